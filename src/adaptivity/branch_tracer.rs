@@ -215,11 +215,11 @@ impl<'a> BranchTracer<'a> {
                 None => {
                     let current = self.controller.adjust(analysis, point, self.interrupt)?;
                     if resolution != before || analysis.resolution() != before {
-                        let previous = match continuation.previous() {
-                            Some(previous) => Some(analysis.transfer(previous, before)?),
-                            None => None,
-                        };
+                        let previous = continuation.previous();
+                        let previous = previous.map(|p| analysis.transfer(p, before)).transpose()?;
                         continuation.go_on_from(previous, current)?;
+                    } else {
+                        continuation.recycle(current);
                     }
                 }
                 Some(Status::StoppedLeftRange) => match self.come_back(analysis, point, (&begin, began), hooks)? {

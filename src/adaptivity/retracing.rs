@@ -57,10 +57,12 @@ impl RecentPoints {
 
     /// Adds a recorded point with its resolution.
     pub fn push(&mut self, (point, resolution): PointAt<'_>) -> Result<()> {
-        if self.before.len() == KEPT {
-            self.before.remove(0);
-        }
-        let before = core::mem::replace(&mut self.last, (point.try_clone()?, resolution));
+        let next = if self.before.len() == KEPT {
+            point.try_clone_into(self.before.remove(0).0)?
+        } else {
+            point.try_clone()?
+        };
+        let before = core::mem::replace(&mut self.last, (next, resolution));
         self.turned = false;
         try_push(&mut self.before, before, CONTEXT)
     }

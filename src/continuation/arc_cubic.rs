@@ -1,7 +1,15 @@
 //! Cubic Hermite interpolation of a branch between two points with their tangents.
 
-use crate::continuation::predictor::arc_length;
 use crate::continuation::{Metric, Point};
+
+/// Length of the arc of a circle over a chord, from the cosine of the angle between the directions at its ends: a resonance is
+/// nearly a circle, and a chord in its place costs most of the accuracy.
+#[must_use]
+pub(super) fn arc_length(chord: f64, cosine: f64) -> f64 {
+    // Half the angle over its sine.
+    let sine = (0.5 * (1.0 - cosine)).clamp(0.0, 1.0).sqrt();
+    if sine < 1e-8 { chord } else { chord * sine.asin() / sine }
+}
 
 /// The cubic through `a` (s = 0) and `b` (s = 1) with their tangents.
 pub struct Cubic<'p> {
@@ -68,5 +76,16 @@ impl<'p> Cubic<'p> {
         for ((derivative, (a, b)), (ta, tb)) in derivative.iter_mut().zip(ends).zip(tangents) {
             *derivative = d[0] * (a - b) + d[2] * ta + d[3] * tb;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::arc_length;
+
+    #[test]
+    fn the_arc_of_a_circle_is_longer_than_its_chord() {
+        assert!((arc_length(2.0 * 0.3_f64.sin(), 0.6_f64.cos()) - 0.6).abs() < 1e-15);
+        assert!((arc_length(1.0, 1.0) - 1.0).abs() < 1e-15);
     }
 }

@@ -1,7 +1,7 @@
 //! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
 //!
 //! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times its present size,
-//! p in units of the range. A step predicts by the polynomial through the last two or three points and tangents, corrects in the
+//! p in units of the range. A step predicts by the polynomial through the last two to five points and tangents, corrects in the
 //! plane orthogonal to the tangent (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
@@ -13,7 +13,7 @@ use crate::continuation::metric::Metric;
 use crate::continuation::point::Point;
 use crate::continuation::settings::Settings;
 use crate::continuation::step_control::StepControl;
-use crate::error::{Error, Result, Status, try_vec};
+use crate::error::{Error, Result, Status, try_extend, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
@@ -45,12 +45,18 @@ pub struct Continuation {
     corrector: Corrector,
     history: History,
     current: Point,
+    /// A point whose memory the next one takes.
+    unused: Option<Point>,
     /// Largest motion and amplitude so far.
     largest: (f64, f64),
+    /// Error of the prediction of the point accepted last.
+    last_error: f64,
     /// Points accepted last whose parameters differ by rounding.
     stationary: usize,
     row: Vec<f64>,
     scratch: Vec<f64>,
+    /// Memory of the next prediction.
+    prediction: Vec<f64>,
     /// Whether corners are left that it reaches along their surface. Paths of homotopies end there, and so does a branch
     /// that meets the next one before its steps have grown again: one that goes to infinity would creep.
     leaves_surfaces: bool,
@@ -78,6 +84,9 @@ const FLOOR: f64 = 1e-2;
 /// which ends in rounding. An amplitude that grows without bound at a resonance would else be followed there by chance.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const MOST_STATIONARY: usize = 32;
+
+/// Relative error of a prediction far below that which shortens steps.
+const SMOOTH: f64 = 1e-5;
 
 /// Length of a step that changes no parameter beyond rounding, wherever the branch leads.
 const TINY: f64 = 1e-6;
@@ -120,9 +129,12 @@ impl Continuation {
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             history: History::new(n + 1)?,
             current: first,
+            unused: None,
+            last_error: f64::INFINITY,
             stationary: 0,
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             scratch: try_vec(n + 1, 0.0, CONTEXT)?,
+            prediction: Vec::new(),
             leaves_surfaces: false,
             left_surface: false,
         })
@@ -153,6 +165,7 @@ impl Continuation {
         if let Some(previous) = previous {
             self.history.push(previous);
         }
+        self.last_error = f64::INFINITY;
         self.current = current;
         Ok(())
     }
@@ -187,6 +200,12 @@ impl Continuation {
     #[must_use]
     pub fn steps_taken(&self) -> usize {
         self.corrector.steps_taken()
+    }
+
+    /// Takes the memory of a point that is no longer used for the next one.
+    pub fn recycle(&mut self, point: Point) {
+        self.prediction = point.v;
+        self.corrector.recycle(point.tangent);
     }
 
     /// The point before it.
@@ -233,6 +252,7 @@ impl Continuation {
                     self.steps
                         .accepted(length, error, self.history.order(), point.iterations);
                     self.steps.turns_at_most(kept.acos() / length);
+                    self.last_error = error;
                     return self.accept(point, fixed);
                 }
                 Attempt::Poor { error } => {
@@ -270,8 +290,11 @@ impl Continuation {
         } else {
             0
         };
-        self.history
-            .push(core::mem::replace(&mut self.current, point.try_clone()?));
+        let next = match self.unused.take() {
+            Some(old) => point.try_clone_into(old)?,
+            None => point.try_clone()?,
+        };
+        self.unused = self.history.push(core::mem::replace(&mut self.current, next));
         Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
             Some(_) => Advance::Accepted { point, last: true },
@@ -290,8 +313,11 @@ impl Continuation {
     /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
         metric.unit(&self.current.tangent, &mut self.row);
-        let mut v = try_vec(self.row.len(), 0.0, CONTEXT)?;
-        let amplitude = self.history.predict(&self.current, metric, step, &mut v);
+        let mut v = core::mem::take(&mut self.prediction);
+        v.clear();
+        try_extend(&mut v, &self.row, CONTEXT)?;
+        let is_smooth = self.last_error <= SMOOTH && self.steps.is_bounded_by_caller();
+        let amplitude = self.history.predict(&self.current, metric, (step, is_smooth), &mut v);
         Ok((v, amplitude))
     }
 

@@ -1,26 +1,33 @@
 //! The points of a branch before the current one, and the prediction of the next one from them.
 //!
-//! Three points predict a smooth branch best, two a branch with corners nearby: the number that would have predicted the last
-//! step better predicts the next one.
+//! Many points predict a smooth branch best, two a branch with corners nearby: the number of the last prediction, one fewer
+//! or one more, that which would have predicted the last step better predicts the next one. More than three points are used
+//! where the branch is far better predicted than its steps, which the caller bounds, require.
 
-use crate::continuation::predictor::{MOST_POINTS, Predictor};
+use crate::continuation::predictor::{MOST_POINTS, Predictor, Weights};
 use crate::continuation::{Metric, Point};
-use crate::error::{Result, try_vec};
+use crate::error::{Error, Result, try_vec};
 use num_complex::Complex64;
 
 /// Largest distance of a prediction from the tangent, as a share of the step.
 const LARGEST_DEPARTURE: f64 = 0.5;
 
+/// Points from which a branch is predicted at first and wherever its steps follow the error of the prediction.
+const FEW_POINTS: usize = 3;
+
+const CONTEXT: &str = "the continuation";
+
 /// Points before the current one.
 pub(super) struct History {
-    previous: Option<Point>,
-    before: Option<Point>,
+    /// The newest one first.
+    before: Vec<Point>,
     /// Number of points, the current one among them, from which predictions are made at most.
     most: usize,
     /// Number of points of the last prediction.
     count: usize,
-    /// Prediction from the other number of points; empty where there are not three.
+    /// Prediction from one point fewer or one more, and their number; empty where there is none.
     other: Vec<f64>,
+    other_count: usize,
 }
 
 impl History {
@@ -29,25 +36,36 @@ impl History {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(length: usize) -> Result<Self> {
-        let mut other = try_vec(length, 0.0, "the continuation")?;
+        let mut before = Vec::new();
+        // One is added before the oldest is dropped.
+        before
+            .try_reserve_exact(MOST_POINTS)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        let mut other = try_vec(length, 0.0, CONTEXT)?;
         other.clear();
         Ok(Self {
-            previous: None,
-            before: None,
-            most: MOST_POINTS,
+            before,
+            most: FEW_POINTS,
             count: 1,
             other,
+            other_count: 1,
         })
     }
 
     /// The point before the current one.
     pub fn previous(&self) -> Option<&Point> {
-        self.previous.as_ref()
+        self.before.first()
     }
 
-    /// Adds the point that was the current one.
-    pub fn push(&mut self, point: Point) {
-        self.before = self.previous.replace(point);
+    /// Adds the point that was the current one; returns one that is no longer used.
+    pub fn push(&mut self, point: Point) -> Option<Point> {
+        let oldest = if self.before.len() + 1 < MOST_POINTS {
+            None
+        } else {
+            self.before.pop()
+        };
+        self.before.insert(0, point);
+        oldest
     }
 
     /// The power of the step with which the error of the last prediction grows.
@@ -55,34 +73,43 @@ impl History {
         2.0 * self.count as f64
     }
 
-    /// Predicts the branch a step beyond `here`; returns the amplitude there.
-    pub fn predict(&mut self, here: &Point, metric: Metric, step: f64, v: &mut [f64]) -> Complex64 {
-        let tangent = Predictor::new(here, metric);
-        tangent.place(step, 1, v);
+    /// Predicts the branch a step beyond `here`, from more than three points if it `is_smooth`; returns the amplitude there.
+    pub fn predict(
+        &mut self,
+        here: &Point,
+        metric: Metric,
+        (step, is_smooth): (f64, bool),
+        v: &mut [f64],
+    ) -> Complex64 {
+        let predictor = if is_smooth {
+            Predictor::by_circle(here, &self.before, metric)
+        } else {
+            Predictor::by_arcs(here, &self.before[..self.before.len().min(FEW_POINTS - 1)], metric)
+        };
+        let other = &mut self.other;
+        let mut weights = predictor.weights(step, 1);
+        fill(&predictor, &weights, other, v.len());
         self.count = 1;
-        self.other.clear();
-        let predictor = tangent
-            .after(self.previous.as_ref(), metric)
-            .after(self.before.as_ref(), metric);
-        // At most as many numbers as there is memory for.
-        self.other.extend_from_slice(v);
         for count in (2..=predictor.count().min(self.most)).rev() {
-            predictor.place(step, count, v);
-            if metric.distance(&self.other, v) <= LARGEST_DEPARTURE * step {
-                self.count = count;
+            let found = predictor.weights(step, count);
+            predictor.place(&found, v);
+            if metric.distance(other, v) <= LARGEST_DEPARTURE * step {
+                (self.count, weights) = (count, found);
                 break;
             }
         }
-        match self.count {
-            1 => v.copy_from_slice(&self.other),
-            count if predictor.count() == MOST_POINTS => {
-                predictor.place(step, other_than(count), &mut self.other);
-                return predictor.amplitude(step, count);
-            }
-            _ => {}
+        if self.count == 1 {
+            v.copy_from_slice(other);
         }
-        self.other.clear();
-        predictor.amplitude(step, self.count)
+        other.clear();
+        // One more and one fewer are tried in turn, where there are both.
+        let (may_fall, may_grow) = (self.count > 2, self.count > 1 && self.count < predictor.count());
+        let grows = may_grow && (!may_fall || self.other_count <= self.count);
+        if grows || may_fall {
+            self.other_count = if grows { self.count + 1 } else { self.count - 1 };
+            fill(&predictor, &predictor.weights(step, self.other_count), other, v.len());
+        }
+        predictor.amplitude(&weights)
     }
 
     /// Selects the number of points of the next prediction, where the last one was `predicted` and led to `v` across the unit
@@ -91,17 +118,15 @@ impl History {
         if self.other.is_empty() {
             return;
         }
-        let across = |from: &[f64]| {
-            let along = metric.along_row(from, row) - metric.along_row(v, row);
-            metric.distance(from, v).powi(2) - along * along
-        };
-        if across(&self.other) < across(predicted) {
-            self.most = other_than(self.count);
+        let square = |from: &[f64]| metric.square_across(from, v, row);
+        if square(&self.other) < square(predicted) {
+            self.most = self.other_count;
         }
     }
 }
 
-/// Two points instead of the most, and the other way round.
-fn other_than(count: usize) -> usize {
-    MOST_POINTS + 2 - count
+/// Fills in a prediction, for which there is memory.
+fn fill(predictor: &Predictor<'_>, weights: &Weights, v: &mut Vec<f64>, length: usize) {
+    v.resize(length, 0.0);
+    predictor.place(weights, v);
 }

@@ -3,6 +3,9 @@
 use crate::continuation::Settings;
 use crate::linalg::norm;
 
+/// Numbers that are summed side by side.
+const LANES: usize = 4;
+
 /// Units in which the unknowns and the parameter are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Metric {
@@ -32,12 +35,56 @@ impl Metric {
         self.dot_with(a, b, |x, y| x * y)
     }
 
-    /// Inner product of an unscaled vector and a scaled one.
+    /// Inner products with two vectors: of the way from `here` to `v`, and of a tangent.
     #[must_use]
-    pub fn along_row(self, v: &[f64], row: &[f64]) -> f64 {
-        let n = v.len() - 1;
-        let u: f64 = v[..n].iter().zip(row).map(|(x, r)| x * r).sum();
-        u / self.u + v[n] / self.p * row[n]
+    pub fn products(self, here: &[f64], (v, tangent): (&[f64], &[f64]), vectors: [&[f64]; 2]) -> [[f64; 2]; 2] {
+        let n = here.len() - 1;
+        let [a, b] = vectors;
+        // Partial sums, which the processor adds in parallel.
+        let mut parts = [[0.0; LANES]; 4];
+        let [v4, h4, t4, a4, b4] = [v, here, tangent, a, b].map(|x| x[..n].as_chunks::<LANES>());
+        let numbers = v4.0.iter().zip(h4.0).zip(t4.0).zip(a4.0).zip(b4.0);
+        for ((((v, h), t), a), b) in numbers {
+            for k in 0..LANES {
+                let way = v[k] - h[k];
+                parts[0][k] += way * a[k];
+                parts[1][k] += t[k] * a[k];
+                parts[2][k] += way * b[k];
+                parts[3][k] += t[k] * b[k];
+            }
+        }
+        let [mut own, mut d_own, mut other, mut d_other] = parts.map(|p| (p[0] + p[1]) + (p[2] + p[3]));
+        for k in 0..v4.1.len() {
+            let (way, t) = (v4.1[k] - h4.1[k], t4.1[k]);
+            own += way * a4.1[k];
+            d_own += t * a4.1[k];
+            other += way * b4.1[k];
+            d_other += t * b4.1[k];
+        }
+        let mut sums = [[own, d_own], [other, d_other]];
+        let (unknowns, parameter) = (1.0 / (self.u * self.u), 1.0 / (self.p * self.p));
+        let last = [v[n] - here[n], tangent[n]];
+        for (sums, vector) in sums.iter_mut().zip(vectors) {
+            for (sum, last) in sums.iter_mut().zip(last) {
+                *sum = *sum * unknowns + last * (vector[n] * parameter);
+            }
+        }
+        sums
+    }
+
+    /// Square of the distance of two points without its part along a scaled unit vector.
+    #[must_use]
+    pub fn square_across(self, a: &[f64], b: &[f64], row: &[f64]) -> f64 {
+        let n = row.len() - 1;
+        let (mut along, mut square) = (0.0, 0.0);
+        for ((a, b), r) in a[..n].iter().zip(&b[..n]).zip(row) {
+            let difference = a - b;
+            along += difference * r;
+            square += difference * difference;
+        }
+        let of_parameter = (a[n] - b[n]) / self.p;
+        let along = along / self.u + of_parameter * row[n];
+        square / (self.u * self.u) + of_parameter * of_parameter - along * along
     }
 
     fn dot_with(self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {

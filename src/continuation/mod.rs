@@ -4,6 +4,7 @@ pub mod arc_cubic;
 pub mod arc_length;
 pub mod bracket;
 pub mod corrector;
+mod curvature_circle;
 mod history;
 pub mod initial_point;
 pub mod metric;

@@ -2,7 +2,7 @@
 
 use crate::continuation::corrector::Corrected;
 use crate::continuation::metric::Metric;
-use crate::error::{Result, try_copy};
+use crate::error::{Result, try_copy, try_extend};
 use crate::problem::End;
 use num_complex::Complex64;
 
@@ -57,6 +57,22 @@ impl Point {
         Ok(Self {
             v: try_copy(&self.v, "a point of the branch")?,
             tangent: try_copy(&self.tangent, "a point of the branch")?,
+            ..*self
+        })
+    }
+
+    /// A copy in the memory of a point that is no longer used.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone_into(&self, mut old: Self) -> Result<Self> {
+        for (to, from) in [(&mut old.v, &self.v), (&mut old.tangent, &self.tangent)] {
+            to.clear();
+            try_extend(to, from, "a point of the branch")?;
+        }
+        Ok(Self {
+            v: old.v,
+            tangent: old.tangent,
             ..*self
         })
     }

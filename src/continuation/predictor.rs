@@ -1,67 +1,99 @@
-//! Prediction of a branch: Hermite extrapolation by arc length through its last points with their tangents.
+//! Prediction of a branch: Hermite extrapolation through its last points with their tangents.
 //!
-//! With nodes t_i, where the branch is v_i and has the unit tangent τ_i, and Lagrange's polynomials L_i,
+//! With nodes t_i, where the branch is v_i and has the derivative τ_i by the parameter t, and Lagrange's polynomials L_i,
 //!
 //! > v(t) = Σ_i L_i(t)² ((1 − 2(t − t_i)L_i′(t_i)) v_i + (t − t_i) τ_i).
 //!
-//! The error grows with the power 2n of the step, where n is the number of points. The length of an arc is that of a circle with the
-//! chord and the angle between the tangents at its ends: a resonance is nearly one, and a chord in its place costs most of the
-//! accuracy.
+//! The error grows with the power 2n of the step, where n is the number of points, as far as the derivatives are those by the
+//! parameter: the arc on the circle of curvature, see `continuation::curvature_circle`.
 
+use crate::continuation::arc_cubic::arc_length;
+use crate::continuation::curvature_circle::CurvatureCircle;
 use crate::continuation::{Metric, Point};
 use num_complex::Complex64;
 
 /// The largest number of points.
-pub const MOST_POINTS: usize = 3;
-
-/// Length of the arc of a circle over a chord, from the cosine of the angle between the directions at its ends.
-#[must_use]
-pub fn arc_length(chord: f64, cosine: f64) -> f64 {
-    // Half the angle over its sine.
-    let sine = (0.5 * (1.0 - cosine)).clamp(0.0, 1.0).sqrt();
-    if sine < 1e-8 { chord } else { chord * sine.asin() / sine }
-}
+pub const MOST_POINTS: usize = 5;
 
 /// The last points of a branch with their places along it, that of the newest one 0.
 pub struct Predictor<'p> {
     /// The newest one first.
     points: [&'p Point; MOST_POINTS],
     places: [f64; MOST_POINTS],
-    /// Factors that turn the stored tangents into unit ones.
+    /// 1/(t_i − t_j)
+    inverses: [[f64; MOST_POINTS]; MOST_POINTS],
+    /// Factors that turn the stored tangents into derivatives by the parameter.
     scales: [f64; MOST_POINTS],
     count: usize,
 }
 
+/// Weights of the points and of their stored tangents.
+pub struct Weights {
+    values: [f64; MOST_POINTS],
+    tangents: [f64; MOST_POINTS],
+    count: usize,
+}
+
 impl<'p> Predictor<'p> {
-    /// The point `here` alone: its tangent.
+    /// The point `here` and those before it, the newest one first, with places by the circle of curvature, up to one that
+    /// coincides with its neighbour or lies in another direction.
     #[must_use]
-    pub fn new(here: &'p Point, metric: Metric) -> Self {
+    pub fn by_circle(here: &'p Point, before: &'p [Point], metric: Metric) -> Self {
+        let circle = CurvatureCircle::new(here, before.first(), metric);
+        let mut predictor = Self::alone(here, circle.unit());
+        for point in before.iter().take(MOST_POINTS - 1) {
+            let Some((place, scale)) = circle.place(point) else {
+                break;
+            };
+            if !predictor.add(point, place, scale) {
+                break;
+            }
+        }
+        predictor
+    }
+
+    /// The same with places by arc length, each arc taken for that of a circle: enough for a few points, and quick.
+    #[must_use]
+    pub fn by_arcs(here: &'p Point, before: &'p [Point], metric: Metric) -> Self {
+        let mut predictor = Self::alone(here, 1.0 / metric.norm(&here.tangent));
+        for point in before.iter().take(MOST_POINTS - 1) {
+            let last = predictor.count - 1;
+            let after = predictor.points[last];
+            let scale = 1.0 / metric.norm(&point.tangent);
+            let cosine = metric.dot(&point.tangent, &after.tangent) * scale * predictor.scales[last];
+            let arc = arc_length(metric.distance(&point.v, &after.v), cosine);
+            if !predictor.add(point, predictor.places[last] - arc, scale) {
+                break;
+            }
+        }
+        predictor
+    }
+
+    /// The point `here` alone, whose tangent becomes the derivative by this factor.
+    fn alone(here: &'p Point, scale: f64) -> Self {
         Self {
             points: [here; MOST_POINTS],
             places: [0.0; MOST_POINTS],
-            scales: [1.0 / metric.norm(&here.tangent); MOST_POINTS],
+            inverses: [[0.0; MOST_POINTS]; MOST_POINTS],
+            scales: [scale; MOST_POINTS],
             count: 1,
         }
     }
 
-    /// With the point before those that it has, unless the two coincide.
-    #[must_use]
-    pub fn after(mut self, before: Option<&'p Point>, metric: Metric) -> Self {
-        let Some(before) = before.filter(|_| self.count < MOST_POINTS) else {
-            return self;
-        };
-        let last = self.count - 1;
-        let after = self.points[last];
-        let chord = metric.distance(&before.v, &after.v);
-        if chord > 0.0 {
-            let scale = 1.0 / metric.norm(&before.tangent);
-            let cosine = metric.dot(&before.tangent, &after.tangent) * scale * self.scales[last];
-            self.points[self.count] = before;
-            self.places[self.count] = self.places[last] - arc_length(chord, cosine);
-            self.scales[self.count] = scale;
-            self.count += 1;
+    /// Adds the point before those that it has; `false` where it does not lie before them.
+    fn add(&mut self, point: &'p Point, place: f64, scale: f64) -> bool {
+        let count = self.count;
+        if place.is_nan() || place >= self.places[count - 1] {
+            return false;
         }
-        self
+        for i in 0..count {
+            let inverse = 1.0 / (self.places[i] - place);
+            self.inverses[i][count] = inverse;
+            self.inverses[count][i] = -inverse;
+        }
+        (self.points[count], self.places[count], self.scales[count]) = (point, place, scale);
+        self.count += 1;
+        true
     }
 
     /// Number of points.
@@ -70,50 +102,56 @@ impl<'p> Predictor<'p> {
         self.count
     }
 
-    /// Weights of the points and of their stored tangents, from the newest `count` points.
-    fn weights(&self, t: f64, count: usize) -> ([f64; MOST_POINTS], [f64; MOST_POINTS]) {
+    /// The weights at the parameter t beyond the newest point, from the newest `count` points.
+    #[must_use]
+    pub fn weights(&self, t: f64, count: usize) -> Weights {
         let (mut values, mut tangents) = ([0.0; MOST_POINTS], [0.0; MOST_POINTS]);
-        let places = &self.places[..count];
-        for (i, &at) in places.iter().enumerate() {
+        for i in 0..count {
             let (mut lagrange, mut slope) = (1.0, 0.0);
-            for (_, other) in places.iter().enumerate().filter(|(j, _)| *j != i) {
-                lagrange *= (t - other) / (at - other);
-                slope += 1.0 / (at - other);
+            // The inverse that belongs to the point itself is 0.
+            for (j, (inverse, other)) in self.inverses[i].iter().zip(&self.places).enumerate().take(count) {
+                slope += inverse;
+                if j != i {
+                    lagrange *= (t - other) * inverse;
+                }
             }
-            let square = lagrange * lagrange;
-            values[i] = square * (1.0 - 2.0 * (t - at) * slope);
-            tangents[i] = square * (t - at) * self.scales[i];
+            let (square, distance) = (lagrange * lagrange, t - self.places[i]);
+            values[i] = square * (1.0 - 2.0 * distance * slope);
+            tangents[i] = square * distance * self.scales[i];
         }
-        (values, tangents)
+        Weights {
+            values,
+            tangents,
+            count,
+        }
     }
 
-    /// The branch at the arc length t beyond the newest point, from the newest `count` points.
-    pub fn place(&self, t: f64, count: usize, v: &mut [f64]) {
-        let (values, tangents) = self.weights(t, count);
+    /// The branch there.
+    pub fn place(&self, weights: &Weights, v: &mut [f64]) {
         let here = self.points[0];
         // The sum is centred on the newest point, so that round-off stays relative to the distance.
         for ((v, h), d) in v.iter_mut().zip(&here.v).zip(&here.tangent) {
-            *v = h + tangents[0] * d;
+            *v = h + weights.tangents[0] * d;
         }
-        for i in 1..count {
-            let point = self.points[i];
+        for i in 1..weights.count {
+            let (point, value, tangent) = (self.points[i], weights.values[i], weights.tangents[i]);
             let differences = point.v.iter().zip(&here.v);
             for ((v, (p, h)), d) in v.iter_mut().zip(differences).zip(&point.tangent) {
-                *v += values[i] * (p - h) + tangents[i] * d;
+                *v += value * (p - h) + tangent * d;
             }
         }
     }
 
     /// The observed amplitude there.
     #[must_use]
-    pub fn amplitude(&self, t: f64, count: usize) -> Complex64 {
-        let (values, tangents) = self.weights(t, count);
+    pub fn amplitude(&self, weights: &Weights) -> Complex64 {
         let here = self.points[0];
-        let points = self.points[1..count].iter().zip(&values[1..]).zip(&tangents[1..]);
-        points.fold(
-            here.amplitude + here.slope * tangents[0],
-            |sum, ((point, value), tangent)| sum + (point.amplitude - here.amplitude) * *value + point.slope * *tangent,
-        )
+        let mut sum = here.amplitude + here.slope * weights.tangents[0];
+        for i in 1..weights.count {
+            let point = self.points[i];
+            sum += (point.amplitude - here.amplitude) * weights.values[i] + point.slope * weights.tangents[i];
+        }
+        sum
     }
 }
 
@@ -121,14 +159,13 @@ impl<'p> Predictor<'p> {
 mod tests {
     use super::*;
 
-    /// A point at `angle` of a circle of radius 2, whose stored tangent has the length 3.
-    fn on_circle(angle: f64) -> Point {
-        let (sine, cosine) = angle.sin_cos();
+    /// A point of a curve, whose stored tangent has the length of the derivative.
+    fn point(v: [f64; 3], tangent: [f64; 3]) -> Point {
         Point {
-            v: vec![2.0 * cosine, 2.0 * sine],
-            tangent: vec![-3.0 * sine, 3.0 * cosine],
-            amplitude: Complex64::new(2.0 * cosine, 0.0),
-            slope: Complex64::new(-3.0 * sine, 0.0),
+            v: v.to_vec(),
+            tangent: tangent.to_vec(),
+            amplitude: Complex64::new(v[0], 0.0),
+            slope: Complex64::new(tangent[0], 0.0),
             residual: 0.0,
             iterations: 0,
             step: 0.0,
@@ -137,35 +174,87 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_circle_is_predicted_with_the_order_of_the_points() {
+    fn on_circle(angle: f64) -> Point {
+        let (sine, cosine) = angle.sin_cos();
+        point([2.0 * cosine, 2.0 * sine, 0.0], [-3.0 * sine, 3.0 * cosine, 0.0])
+    }
+
+    /// A curve in space whose curvature varies.
+    fn on_curve(t: f64) -> Point {
+        point(
+            [t.sin(), 0.7 * t, 0.3 * (2.0 * t).cos()],
+            [t.cos(), 0.7, -0.6 * (2.0 * t).sin()],
+        )
+    }
+
+    /// Distance of the curve from its prediction a step beyond 0.4, from points at uneven distances.
+    fn error(curve: fn(f64) -> Point, step: f64, count: usize) -> f64 {
         let metric = Metric { u: 1.0, p: 1.0 };
-        assert!((arc_length(2.0 * 0.3_f64.sin(), 0.6_f64.cos()) - 0.6).abs() < 1e-15);
-        assert!((arc_length(1.0, 1.0) - 1.0).abs() < 1e-15);
-        let error = |step: f64, count: usize| {
-            let points = [on_circle(0.4), on_circle(0.4 - step), on_circle(0.4 - 1.7 * step)];
-            let predictor = Predictor::new(&points[0], metric)
-                .after(Some(&points[1]), metric)
-                .after(Some(&points[2]), metric);
-            assert_eq!(predictor.count(), 3);
-            let (mut v, truth) = ([0.0; 2], on_circle(0.4 + step));
-            predictor.place(2.0 * step, count, &mut v);
-            assert!((predictor.amplitude(2.0 * step, count).re - v[0]).abs() < 1e-15);
-            (v[0] - truth.v[0]).hypot(v[1] - truth.v[1])
-        };
-        for count in 1..=MOST_POINTS {
-            let order = (error(0.2, count) / error(0.1, count)).log2();
-            assert!((order - 2.0 * count as f64).abs() < 0.1, "{order} with {count} points");
+        let here = curve(0.4);
+        let before = [1.0, 2.2, 3.1, 4.0].map(|steps| curve(0.4 - steps * step));
+        let predictor = Predictor::by_circle(&here, &before, metric);
+        assert_eq!(predictor.count(), MOST_POINTS);
+        let mut v = [0.0; 3];
+        let weights = predictor.weights(step, count);
+        predictor.place(&weights, &mut v);
+        assert!((predictor.amplitude(&weights).re - v[0]).abs() < 1e-14);
+        // The nearest point of the curve, by Newton's method.
+        let mut t = 0.4;
+        for _ in 0..50 {
+            let at = curve(t);
+            let (mut along, mut square) = (0.0, 0.0);
+            for ((x, at), tangent) in v.iter().zip(&at.v).zip(&at.tangent) {
+                along += (x - at) * tangent;
+                square += tangent * tangent;
+            }
+            t += along / square;
+        }
+        let nearest = curve(t).v;
+        (0..3).map(|i| (v[i] - nearest[i]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn curves_are_predicted_with_the_order_of_the_points() {
+        // Steps so long that the errors are far above rounding.
+        let curves: [fn(f64) -> Point; 2] = [on_circle, on_curve];
+        let steps = [[0.05, 0.1, 0.1, 0.2, 0.2], [0.02, 0.02, 0.03, 0.03, 0.05]];
+        for (curve, steps) in curves.into_iter().zip(steps) {
+            for (count, step) in (1..).zip(steps) {
+                let order = (error(curve, step, count) / error(curve, 0.5 * step, count)).log2();
+                assert!(order > 2.0 * count as f64 - 0.8, "{order} with {count} points");
+            }
         }
     }
 
     #[test]
-    fn coinciding_points_count_once() {
+    fn a_circle_is_predicted_along_its_arc() {
         let metric = Metric { u: 1.0, p: 1.0 };
-        let point = on_circle(1.0);
-        let predictor = Predictor::new(&point, metric)
-            .after(Some(&point), metric)
-            .after(None, metric);
-        assert_eq!(predictor.count(), 1);
+        let before = [on_circle(0.2), on_circle(-0.1)];
+        let here = on_circle(0.4);
+        let (mut v, truth) = ([0.0; 3], on_circle(0.5).v);
+        for make in [Predictor::by_circle, Predictor::by_arcs] {
+            let predictor = make(&here, &before, metric);
+            for (place, angle) in predictor.places[..3].iter().zip([0.0, -0.2, -0.5]) {
+                assert!((place - 2.0 * angle).abs() < 1e-14, "{place}");
+            }
+            predictor.place(&predictor.weights(0.2, 3), &mut v);
+            assert!((v[0] - truth[0]).hypot(v[1] - truth[1]) < 2e-6);
+        }
+    }
+
+    #[test]
+    fn coinciding_points_count_once_and_those_of_another_direction_not() {
+        let metric = Metric { u: 1.0, p: 1.0 };
+        let here = on_circle(1.0);
+        let mut reversed = on_circle(0.9);
+        reversed.reverse();
+        for before in [on_circle(1.0), reversed, on_circle(1.2)] {
+            assert_eq!(Predictor::by_circle(&here, &[before], metric).count(), 1);
+        }
+        let same = [on_circle(1.0)];
+        for make in [Predictor::by_circle, Predictor::by_arcs] {
+            assert_eq!(make(&here, &[], metric).count(), 1);
+            assert_eq!(make(&here, &same, metric).count(), 1);
+        }
     }
 }

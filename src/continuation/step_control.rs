@@ -45,6 +45,8 @@ pub struct StepControl {
     step: f64,
     min: f64,
     max: f64,
+    /// Whether the caller gave the largest step.
+    has_bound: bool,
     detail: Detail,
 }
 
@@ -64,13 +66,15 @@ impl StepControl {
     /// The same for another purpose.
     #[must_use]
     pub fn with_detail(first: f64, min: f64, max: f64, detail: Detail) -> Self {
-        let max = if max > 0.0 { max } else { detail.largest_step() };
+        let has_bound = max > 0.0;
+        let max = if has_bound { max } else { detail.largest_step() };
         let min = if min > 0.0 { min } else { (1e-10_f64).min(max) };
         let first = if first > 0.0 { first } else { 0.25 * max };
         Self {
             step: first.clamp(min, max),
             min,
             max,
+            has_bound,
             detail,
         }
     }
@@ -110,6 +114,12 @@ impl StepControl {
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.max
+    }
+
+    /// Whether the step to try is the largest one that the caller allows.
+    #[must_use]
+    pub fn is_bounded_by_caller(&self) -> bool {
+        self.has_bound && self.step >= self.max
     }
 
     /// Shortens the step to try, down to the smallest one.

@@ -1,0 +1,86 @@
+//! The parameter by which a branch is predicted: the arc on its circle of curvature.
+//!
+//! With x and y the coordinates of a point along the tangent and the normal of the branch at its newest point, and the
+//! curvature κ, the angle at the centre of the circle over κ is
+//!
+//! > φ = atan2(κx, 1 − κy)/κ,  dφ = ((1 − κy) dx + κx dy)/((κx)² + (1 − κy)²).
+//!
+//! On a circle this is the arc length. Elsewhere it differs from that, but derivatives by φ are known exactly: those by an
+//! arc length that is approximated would limit the order of a prediction from many points. A resonance is nearly a circle, on
+//! which predictions by the place along the tangent would be poor.
+
+use crate::continuation::{Metric, Point};
+
+/// Angle between two tangents, over 1 the difference of its cosine from 1, below which the branch is straight.
+const STRAIGHT: f64 = 1e-14;
+
+/// The circle through the newest point with its tangent and, about, the point before.
+pub(super) struct CurvatureCircle<'p> {
+    here: &'p Point,
+    /// Factor that makes its tangent one of unit length.
+    unit: f64,
+    metric: Metric,
+    bend: Option<Bend<'p>>,
+}
+
+/// The plane of the circle, which the tangent of the point before spans, too.
+struct Bend<'p> {
+    tangent: &'p [f64],
+    /// Factor that makes this one of unit length.
+    unit: f64,
+    /// Those of the angle between the tangents.
+    cosine: f64,
+    sine: f64,
+    curvature: f64,
+}
+
+impl<'p> CurvatureCircle<'p> {
+    /// The circle at `here`; a straight line where there is no point before.
+    pub fn new(here: &'p Point, before: Option<&'p Point>, metric: Metric) -> Self {
+        let mut circle = Self {
+            here,
+            unit: 1.0 / metric.norm(&here.tangent),
+            metric,
+            bend: None,
+        };
+        if let Some(before) = before {
+            let unit = 1.0 / metric.norm(&before.tangent);
+            let cosine = metric.dot(&here.tangent, &before.tangent) * circle.unit * unit;
+            let chord = metric.distance(&here.v, &before.v);
+            if cosine > 0.0 && 1.0 - cosine > STRAIGHT && chord > 0.0 {
+                circle.bend = Some(Bend {
+                    tangent: &before.tangent,
+                    unit,
+                    cosine,
+                    sine: (1.0 - cosine * cosine).sqrt(),
+                    // Twice the sine of half the angle.
+                    curvature: (2.0 * (1.0 - cosine)).sqrt() / chord,
+                });
+            }
+        }
+        circle
+    }
+
+    /// Factor that makes the tangent of the newest point the derivative by φ there.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// φ at a point, and the factor that makes its tangent the derivative by φ; `None` where φ does not grow along it.
+    pub fn place(&self, point: &Point) -> Option<(f64, f64)> {
+        let own = &self.here.tangent[..];
+        let other = self.bend.as_ref().map_or(own, |bend| bend.tangent);
+        let to = (&point.v[..], &point.tangent[..]);
+        let [along, beside] = self.metric.products(&self.here.v, to, [own, other]);
+        let [x, dx] = along.map(|z| z * self.unit);
+        let Some(bend) = &self.bend else {
+            return (dx > 0.0).then(|| (x, 1.0 / dx));
+        };
+        let curvature = bend.curvature;
+        let across = |x: f64, z: f64| (bend.cosine * x - z * bend.unit) * (curvature / bend.sine);
+        let (y, dy) = (across(x, beside[0]), across(dx, beside[1]));
+        let (x, dx, inward) = (curvature * x, curvature * dx, 1.0 - y);
+        let growth = (inward * dx + x * dy) / (curvature * (x * x + inward * inward));
+        (growth > 0.0).then(|| (x.atan2(inward) / curvature, 1.0 / growth))
+    }
+}
