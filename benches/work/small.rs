@@ -13,7 +13,7 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "case B, 20 N, H 9, about 200 points",
         unit: Unit::Lu11,
-        run: || Ok(Work::whole(&case_b(9, 1.2e-2, 20_000)?)),
+        run: || Ok(Work::whole(&case_b(9, 8.2e-3, 20_000)?)),
     },
     Row {
         name: "case B, 20 N, H 9, default steps",
@@ -78,7 +78,7 @@ fn backbone() -> Result<Work> {
     let solver = SolverOptions {
         harmonics: 9,
         tolerance: 0.0,
-        step_max: 0.05,
+        step_max: 0.021,
         ..SolverOptions::default()
     };
     let options = ModeOptions {
