@@ -15,8 +15,10 @@ use core::ops::RangeInclusive;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Degrees of freedom above which a sweep interpolates.
+/// Degrees of freedom above which a sweep interpolates, and the same where a contact is near-rigid: the error of interpolated
+/// tables, relative to the largest flexibility of a panel, would leave more forces out of balance than rounding does.
 const INTERPOLATE_ABOVE: usize = 32;
+const INTERPOLATE_ABOVE_IF_RIGID: usize = 200;
 
 /// Relative error of interpolated tables, and of tables from modes.
 const TOLERANCE: f64 = 1e-11;
@@ -107,6 +109,12 @@ impl<'a> FrequencyCache<'a> {
         let mut interpolated = Vec::new();
         let (mut modal, mut constant, mut is_quicker) = (Vec::new(), Vec::new(), false);
         let count = condensed.blocks().len();
+        let near_rigid = (0..coordinates).any(|c| condensed.is_near_rigid(c));
+        let interpolate_above = if near_rigid {
+            INTERPOLATE_ABOVE_IF_RIGID
+        } else {
+            INTERPOLATE_ABOVE
+        };
         for i in 0..count {
             interrupt.part(Phase::Condensation, i, count)?;
             try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
@@ -116,7 +124,7 @@ impl<'a> FrequencyCache<'a> {
             } else {
                 None
             };
-            let interpolates = sweep && from_modes.is_none() && condensed.ndof() > INTERPOLATE_ABOVE;
+            let interpolates = sweep && from_modes.is_none() && condensed.ndof() > interpolate_above;
             is_quicker |= from_modes.is_some() || interpolates;
             try_push(&mut modal, from_modes, CONTEXT)?;
             try_push(&mut interpolated, interpolates, CONTEXT)?;
