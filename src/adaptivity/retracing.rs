@@ -24,8 +24,9 @@ const KEPT: usize = 5;
 const CLOSE: f64 = 0.2;
 
 /// Distance of two solutions that are one, over that step: at a corner the branch may come back at a small angle, so that
-/// its two sides are close to each other.
-const SAME: f64 = 1e-2;
+/// its two sides are close to each other. The second one is for points whose sense is that of the recorded curve: a branch
+/// that comes back along its own points has the other one, unless rounding hides it.
+const SAME: (f64, f64) = (1e-2, 1e-3);
 
 /// Bisections that find a parameter value on a cubic.
 const BISECTIONS: usize = 50;
@@ -102,6 +103,11 @@ impl RecentPoints {
         let Some((a, b)) = pairs.find(|(a, b)| (p - a.0.parameter()) * (p - b.0.parameter()) <= 0.0) else {
             return Ok((false, false));
         };
+        let current = analysis.resolution();
+        let keeps_sense = [a, b]
+            .iter()
+            .all(|at| at.1 == current && at.0.positive == point.positive);
+        let same = if keeps_sense { SAME.1 } else { SAME.0 };
         let (a, b) = (analysis.transfer(&a.0, a.1)?, analysis.transfer(&b.0, b.1)?);
         let last = analysis.transfer(last, resolution)?;
         let metric = Metric::along(norm(point.unknowns()), settings);
@@ -117,7 +123,7 @@ impl RecentPoints {
             return Ok((false, true));
         };
         let step = metric.distance(&last.v, &point.v);
-        Ok((metric.distance(&found.v, &point.v) <= SAME * step, true))
+        Ok((metric.distance(&found.v, &point.v) <= same * step, true))
     }
 
     /// The point from which the branch went back, of the current resolution, with its sense corrected: away from the

@@ -77,6 +77,11 @@ const GROWN: f64 = 1e-3;
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
 const ALONG: f64 = 0.9;
 
+/// Angle in radians between two directions up to which they are one line, per length of the step between them, and its bounds:
+/// the branch itself turns along a step.
+const LINE: f64 = 1e3;
+const LINE_BOUNDS: (f64, f64) = (1e-3, 1.4e-2);
+
 /// Motions below this share of the largest so far no longer refine the metric.
 const FLOOR: f64 = 1e-2;
 
@@ -265,7 +270,7 @@ impl Continuation {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();
                     if length <= CORNER_STEP
-                        && let Some(point) = self.turn_corner(problem, metric, length, interrupt)?
+                        && let Some(point) = self.turn_corner(problem, metric, (length, length), interrupt)?
                     {
                         return self.accept(point, None);
                     }
@@ -380,7 +385,7 @@ impl Continuation {
         let turned = kept < STRAIGHT;
         // A change of sense is a jump over corners. Only where other branches cross this one does it belong to the
         // straight continuation, however short the step.
-        let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < ALONG);
+        let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < same_line(step));
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
         let error = self.prediction_error(&self.scratch, &point, amplitude);
@@ -412,6 +417,11 @@ impl Continuation {
         );
         motion.max(observed)
     }
+}
+
+/// Least cosine between two directions, a step apart, that are one line.
+fn same_line(step: f64) -> f64 {
+    (LINE * step).clamp(LINE_BOUNDS.0, LINE_BOUNDS.1).cos()
 }
 
 /// The corrector of the points of a branch.
