@@ -89,6 +89,7 @@ mod tests {
     use super::SharedTables;
     use crate::condense::flexibility::Workspace;
     use crate::condense::frequency_cache::FrequencyCache;
+    use crate::condense::frequency_interpolation::FrequencyInterpolation;
     use crate::condense::modal_table::ModalTable;
     use crate::condense::wave_cache::WaveCache;
     use crate::condense::{Condensed, Reference};
@@ -167,7 +168,10 @@ mod tests {
     fn samples(tables: &SharedTables, condensed: &Condensed) -> usize {
         let i = condensed.blocks().iter().position(|block| block.number == 1).unwrap();
         let count = tables.with(condensed, i, |kept, _| {
-            Ok(kept.interpolation.as_ref().map_or(0, |known| known.evaluations()))
+            Ok(kept
+                .interpolation
+                .as_ref()
+                .map_or(0, FrequencyInterpolation::evaluations))
         });
         count.unwrap()
     }

@@ -150,7 +150,7 @@ pub(super) fn extend<P: Problem>(
             }
             continue;
         }
-        contracts = system.iterates_long() && damping == 1.0 && norm(&next) <= CONTRACTION * size;
+        contracts = system.iterates_long() && damping >= 1.0 && norm(&next) <= CONTRACTION * size;
         z.copy_from_slice(&trial);
         change_from(point, (&z, &next), &mut change);
         if !change.iter().all(|x| x.is_finite()) {

@@ -12,7 +12,6 @@
 //! with B = M, or rᴴr where a contact measures the amplitude.
 
 mod functional;
-mod mode_products;
 
 use crate::condense::Condensed;
 use crate::condense::modal_flexibility::Modal;
@@ -414,16 +413,6 @@ impl Jacobian for Epmc<'_> {
         matrix[(n - 2) * n..(n - 1) * n].copy_from_slice(&self.by_omega);
         matrix[(n - 1) * n..].copy_from_slice(&self.by_damping);
         Ok(())
-    }
-
-    fn multiply_here(&mut self, d: &[f64], out: &mut [f64]) -> Result<bool> {
-        // The matrices of sampled laws jump wherever an event passes a sample.
-        if self.forces.is_sampled() {
-            return Ok(false);
-        }
-        self.forces.interrupt().check()?;
-        self.multiply(d, out);
-        Ok(true)
     }
 }
 
