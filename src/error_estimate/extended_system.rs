@@ -17,8 +17,8 @@ const TOLERANCE: f64 = 1e-3;
 /// The same for a step from a guess, which is a small part of the change.
 const FROM_GUESS: f64 = 1e-2;
 
-/// Unknowns up to which factoring the whole matrix is faster.
-const DENSE_UP_TO: usize = 100;
+/// Unknowns up to which factoring the whole matrix is faster than iterating with factors of the compliant harmonics.
+const DENSE_UP_TO: usize = 24;
 
 /// Most products of an iteration.
 const MOST_PRODUCTS: usize = 240;
@@ -200,4 +200,64 @@ fn krylov(problem: &HarmonicBalance<'_>, factored: Factored) -> Result<KrylovSys
     let part = packed_up_to(set, factored.block);
     let lengths = (set.packed_len(), part, packed_up_to(set, factored.each).max(part));
     KrylovSystem::new(problem.unknowns(), lengths, MOST_PRODUCTS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DENSE_UP_TO, ExtendedSystem, Factored};
+    use crate::condense::Condensed;
+    use crate::contact::Contact;
+    use crate::error_estimate::work::{Sizes, Work};
+    use crate::interrupt::Interrupt;
+    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::norm;
+    use crate::model::Model;
+    use crate::model::structure::MatrixKind;
+    use crate::options::SolverOptions;
+    use crate::problem::harmonic_balance::HarmonicBalance;
+
+    /// A mass that strikes a stop, with harmonics up to 31: those above the third are weak.
+    #[test]
+    fn steps_by_iteration_are_those_by_factors_of_the_whole_matrix() {
+        let mut model = Model::new(1).unwrap();
+        for (kind, value) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Damping, 0.05),
+            (MatrixKind::Stiffness, 1.0),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+        }
+        model
+            .add_contact(&Contact::unilateral(None, Some(0), 5.0, 0.2))
+            .unwrap();
+        model.add_force(0, 1, 0.1.into()).unwrap();
+        let (omega, none) = (1.2, Interrupt::none());
+        let options = SolverOptions {
+            harmonics: 31,
+            ..SolverOptions::default()
+        };
+        let condensed = Condensed::new(&model, &options, omega, &none).unwrap();
+        let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega), 0, None, &none).unwrap();
+        let sizes = Sizes::new(&condensed, 0);
+        let work = Work::of_point(&sizes, 40, 0);
+        let n = condensed.unknowns();
+        assert!(n > DENSE_UP_TO);
+        let few = Factored { block: 4, each: 4 };
+        let mut whole = ExtendedSystem::dense(problem(), omega, sizes, work).unwrap();
+        let mut part = ExtendedSystem::iterative(problem(), omega, few, (sizes, work)).unwrap();
+        // Motions of three harmonics that touch the stop for a short and for a long time.
+        for amplitude in [0.25, 0.6, 2.0] {
+            let mut z = vec![0.0; n];
+            z[..7].copy_from_slice(&[-0.1, 1.0, 0.3, 0.2, -0.1, 0.05, 0.1].map(|x| x * amplitude));
+            let steps = [&mut whole, &mut part].map(|system| {
+                let mut step = vec![0.0; n];
+                assert!(system.evaluate(&z).unwrap() && system.factor(&none).unwrap());
+                assert!(system.step(&mut step, false, &none).unwrap());
+                step
+            });
+            let [a, b] = &steps;
+            let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            assert!(norm(&off) <= 1e-2 * norm(a), "{amplitude}: {:e}", norm(&off) / norm(a));
+        }
+    }
 }
