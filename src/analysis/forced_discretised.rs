@@ -202,11 +202,8 @@ impl<'a> ForcedDiscretised<'a> {
             interrupt,
             estimator: estimates
                 .then(|| {
-                    boxed(|| {
-                        let mut estimator = ForcedEstimator::new(model, solver, response, extended, interrupt);
-                        estimator.set_range((settings.start, settings.end));
-                        Ok(estimator)
-                    })
+                    let estimator = ForcedEstimator::new(model, solver, response, extended, interrupt);
+                    boxed(|| Ok(estimator.over((settings.start, settings.end))))
                 })
                 .transpose()?,
             stale: false,

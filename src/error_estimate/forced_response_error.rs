@@ -58,6 +58,8 @@ pub struct ForcedEstimator<'a> {
     cutoff: Option<CutoffHarmonic>,
     models: &'a ModelCache,
     interrupt: &'a Interrupt<'a>,
+    /// Whether all points have one frequency: no extended problem serves the next one.
+    single: bool,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: KeptRatio,
@@ -89,6 +91,7 @@ impl<'a> ForcedEstimator<'a> {
             cutoff: None,
             models,
             interrupt,
+            single: false,
             extended: Vec::new(),
             ratio: KeptRatio::default(),
             changes: KeptChanges::default(),
@@ -100,9 +103,12 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// Points lie in a range of frequency.
-    pub fn set_range(&mut self, range: (f64, f64)) {
-        self.range = (range.0.to_bits() != range.1.to_bits()).then_some(range);
+    /// For points in a range of frequency; for one point at a single frequency, after which no extended problem is kept.
+    #[must_use]
+    pub fn over(mut self, range: (f64, f64)) -> Self {
+        self.single = range.0.to_bits() == range.1.to_bits();
+        self.range = (!self.single).then_some(range);
+        self
     }
 
     /// Bounds the next estimate by half of the work that the last one might take, which told nothing.
@@ -338,6 +344,9 @@ impl<'a> ForcedEstimator<'a> {
 
     /// Forgets the oldest of the extended problems that do not fit into the memory of an estimate beside that of a slot.
     fn forget_beside(&mut self, slot: usize, of_slot: f64, work: &Work) {
+        if self.single {
+            self.extended.retain(|(kept, _)| *kept == slot);
+        }
         let bytes = |(kept, system): &(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)| {
             if *kept == slot { 0.0 } else { system.bytes() }
         };
