@@ -7,12 +7,12 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
+use crate::analysis::forced_equations::Equations;
 use crate::analysis::point_error::observed;
 use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reference, reduced_resonances};
-use crate::continuation::corrector::Corrector;
-use crate::continuation::resolve::{resolve, solve_linear};
+use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, boxed, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
@@ -24,76 +24,8 @@ use crate::model::resonances::Resonance;
 use crate::model::spring::along;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
-use crate::problem::harmonic_balance::HarmonicBalance;
-use crate::results::{Branch, Record, Resolution, SpecialKind, Verdict};
+use crate::results::{Branch, Resolution, SpecialKind, Verdict};
 use num_complex::Complex64;
-
-/// The equations at one resolution.
-struct Equations<'a> {
-    resolution: &'a Resolution,
-    problem: HarmonicBalance<'a>,
-    corrector: Box<Corrector>,
-    response: Vec<Complex64>,
-}
-
-impl<'a> Equations<'a> {
-    /// The solution with linear contacts at a frequency, see [`Discretised::linear_at`].
-    fn linear_at(
-        &mut self,
-        settings: &Settings,
-        (near, omega): (&Point, f64),
-        factorised: bool,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Point>> {
-        let Self { problem, corrector, .. } = self;
-        problem.set_factorised(factorised);
-        let found = solve_linear(problem, corrector, settings, near, omega, interrupt);
-        problem.set_factorised(false);
-        Ok(found?.filter(|_| problem.forces().all_linear()))
-    }
-
-    fn new(
-        resolution: &'a Resolution,
-        settings: &Settings,
-        response: usize,
-        given: Option<Vec<f64>>,
-        (tables, interrupt): (&'a SharedTables, &'a Interrupt<'a>),
-    ) -> Result<Self> {
-        let (condensed, samples) = (&*resolution.condensed, resolution.samples);
-        let range = (settings.start, settings.end);
-        let mut problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
-        problem.share_tables(tables);
-        Ok(Self {
-            corrector: Box::new(Corrector::new(
-                problem.unknowns(),
-                settings.tolerance,
-                settings.max_iterations,
-            )?),
-            response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
-            problem,
-            resolution,
-        })
-    }
-
-    /// The record of the point at which the problem was evaluated last.
-    fn record<'b>(&'b mut self, point: &'b Point, error: f64) -> Result<Record<'b>> {
-        let (u, omega) = (point.unknowns(), point.parameter());
-        self.problem.response(u, &mut self.response);
-        let sampling_error = self.problem.sampling_error(u, omega)?;
-        Ok(Record {
-            resolution: self.resolution,
-            omega,
-            motion: u,
-            amplitude: point.amplitude,
-            response: &self.response,
-            residual: point.residual,
-            iterations: point.iterations,
-            slip_fractions: self.problem.slip_fractions(),
-            sampling_error,
-            errors: (error, f64::NAN),
-        })
-    }
-}
 
 /// Degrees of freedom up to which a linear response is not interpolated: its points are few.
 const FACTORISE_UP_TO: usize = 1000;

@@ -13,6 +13,7 @@ pub mod floquet;
 mod floquet_on_modes;
 mod followed;
 mod forced_discretised;
+mod forced_equations;
 pub mod forced_response;
 pub mod further_threads;
 pub mod harmonic_residual;
