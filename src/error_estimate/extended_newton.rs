@@ -16,10 +16,6 @@ const SHORT: f64 = 0.1;
 /// Size of a first step, relative to the change, up to which a guess is as good as a point that a step has reached.
 const CLOSE: f64 = 0.3;
 
-/// Size of the simplified step over that of the step before, up to which it is the next step where a solution takes many
-/// products: a new one would cost more than the few further steps that it saves.
-const CONTRACTION: f64 = 0.25;
-
 /// Damping factor below which a step is accepted without the monotonicity test.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
@@ -31,7 +27,7 @@ pub(super) struct ExtendedSolution {
     pub next: Vec<f64>,
     /// Whether δ is small enough.
     pub certified: bool,
-    /// Newton steps taken.
+    /// Newton steps taken, each with a factorisation.
     pub steps: usize,
     /// Share of δ that may still be missing in Z*.
     pub missing: f64,
@@ -90,12 +86,9 @@ pub(super) fn extend<P: Problem>(
     let mut trial = try_vec(n, 0.0, CONTEXT)?;
     let is_guess = start != point;
     let mut damping = 1.0_f64;
-    let mut contracts = false;
     for steps in 1..=MOST_STEPS {
         interrupt.part(Phase::Estimate, steps - 1, MOST_STEPS)?;
-        if contracts {
-            step.copy_from_slice(&next[..n]);
-        } else if !system.factor(interrupt)? || !system.step(&mut step, is_guess && steps == 1, interrupt)? {
+        if !system.factor(interrupt)? || !system.step(&mut step, is_guess && steps == 1, interrupt)? {
             return Ok(None);
         }
         let size = norm(&step);
@@ -137,20 +130,8 @@ pub(super) fn extend<P: Problem>(
             } else if last {
                 return Ok(None);
             }
-            if contracts {
-                // The matrix served too long: a new one at the last motion.
-                break;
-            }
             damping *= 0.5;
         }
-        if contracts && norm(&next) > (1.0 - 0.25 * damping) * size {
-            contracts = false;
-            if !system.evaluate(&z)? {
-                return Ok(None);
-            }
-            continue;
-        }
-        contracts = system.iterates_long() && damping >= 1.0 && norm(&next) <= CONTRACTION * size;
         z.copy_from_slice(&trial);
         change_from(point, (&z, &next), &mut change);
         if !change.iter().all(|x| x.is_finite()) {
