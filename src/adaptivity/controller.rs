@@ -6,7 +6,9 @@
 //! > 3/2 A t(H′) ≤ ½ tolerance,  t(h) = ‖Z*_{>h}‖/‖Z*‖,  A = η/t(H)
 //!
 //! and the branch continues with H′. The factor 3/2 allows for the error of the estimate. Harmonics are dropped only
-//! where the error is far below the tolerance, so that they do not alternate.
+//! where the error is far below the tolerance, so that they do not alternate. Where a harmonic costs many factorisations,
+//! the bound is 0.7 of the tolerance, and harmonics are dropped as soon as fewer meet it: the point is solved with them, and
+//! the change of its response, added to its error, shows whether they do.
 
 use crate::adaptivity::discretised::{Assessment, Discretised};
 use crate::adaptivity::estimate_spacing::{EstimateSpacing, Signs};
@@ -20,11 +22,10 @@ use crate::results::SpecialKind;
 /// Largest ratio of an error to its estimate for which the controller allows.
 const MARGIN: f64 = 1.5;
 
-/// Target of the error as a share of the tolerance.
-const AIM: f64 = 0.5;
+/// Target of the error as a share of the tolerance, where harmonics cost little and where they cost much.
+const AIM: (f64, f64) = (0.5, 0.7);
 
-/// Share of the tolerance above which the next point is refined in advance, unless each level has twice the harmonics of the
-/// one before: then a few points beyond cost less.
+/// Share of the tolerance above which the next point is refined in advance, unless harmonics cost much.
 const RAISE: f64 = 0.7;
 
 /// Share of the tolerance below which the next point is coarsened.
@@ -67,7 +68,7 @@ pub(crate) struct AdaptivityController {
     /// Lowest level to which the branch may be coarsened, one above that where a point missed the tolerance, and the
     /// number of points for which it holds.
     floor: (usize, usize),
-    /// The highest level so far. The branch is coarsened to half its harmonics at most.
+    /// The highest level so far. The branch is coarsened to half its harmonics at most, unless they cost much.
     highest: usize,
     /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
     /// harmonics it may fold elsewhere and reverse.
@@ -164,7 +165,7 @@ impl AdaptivityController {
                 return done(point);
             };
             let accepted = self.accepts(found.error);
-            let required = self.required_harmonics(&found);
+            let required = self.required_harmonics(equations, &found);
             self.last = accepted.then_some((found.error, required));
             if !accepted {
                 self.note_miss(found.error, level);
@@ -293,7 +294,7 @@ impl AdaptivityController {
         if self.accepts(found.error) {
             return Ok(true);
         }
-        let required = self.required_harmonics(&found);
+        let required = self.required_harmonics(equations, &found);
         let last = equations.levels().last();
         let next = equations.levels().level_with(required).max(level + 1).min(last);
         if next <= level || found.estimate.too_large {
@@ -325,23 +326,36 @@ impl AdaptivityController {
         let below = level.saturating_sub(1).max(equations.levels().few());
         let again = self.unknown.is_some() && self.floor.1 == 0 && share < RAISE && !self.folded;
         let next = if again { next.min(below) } else { next };
-        let may_fall = again || (share < DROP && (error == 0.0 || self.low >= LOW));
-        let rises = share > RAISE && next > level && !equations.levels().double();
+        let costly = equations.levels().are_costly();
+        let tries = costly && next < level && self.floor.1 == 0 && error > 0.0;
+        let may_fall = again || tries || (share < DROP && (error == 0.0 || self.low >= LOW));
+        let rises = share > RAISE && next > level && !costly;
         if !(rises || (may_fall && next < level) || too_few) {
             return Ok(point);
         }
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
         // continues.
-        let Some(found) = resolve_at(equations, (&point, level), next, true, interrupt)? else {
-            return Ok(point);
+        let largest = if tries {
+            AIM.1 * self.tolerance / MARGIN - error
+        } else {
+            self.tolerance
         };
-        let before = equations.transfer(&point, level)?;
-        if (found.amplitude - before.amplitude).norm() > self.tolerance * before.amplitude.norm() {
-            // The error with fewer harmonics is larger than its estimate, as near a fold.
+        let found = match resolve_at(equations, (&point, level), next, true, interrupt)? {
+            Some(found) => {
+                let before = equations.transfer(&point, level)?;
+                let change = (found.amplitude - before.amplitude).norm();
+                (change <= largest * before.amplitude.norm()).then_some(found)
+            }
+            None => None,
+        };
+        if found.is_none() {
+            // With fewer harmonics the error is larger than its estimate, as near a fold.
             equations.select(level)?;
-            return Ok(point);
+            if tries {
+                self.floor = (level, PATIENCE);
+            }
         }
-        Ok(found)
+        Ok(found.unwrap_or(point))
     }
 
     /// Lowest level to which the branch may be coarsened from a point of this error.
@@ -352,15 +366,17 @@ impl AdaptivityController {
         if self.folded {
             return level;
         }
-        let half = equations
-            .levels()
-            .level_of_half(self.highest)
-            .max(equations.levels().few());
+        let levels = equations.levels();
+        let half = if levels.are_costly() {
+            levels.few()
+        } else {
+            levels.level_of_half(self.highest).max(levels.few())
+        };
         if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
     }
 
     /// Highest harmonic that the solution requires; 0 if the error is unknown.
-    fn required_harmonics(&self, found: &Assessment) -> usize {
+    fn required_harmonics(&self, equations: &dyn Discretised, found: &Assessment) -> usize {
         if !found.estimate.certified {
             return 0;
         }
@@ -369,9 +385,10 @@ impl AdaptivityController {
             .tail
             .iter()
             .fold(0.0, |s, &(_, share)| f64::hypot(s, share));
+        let aim = if equations.levels().are_costly() { AIM.1 } else { AIM.0 };
         // If the estimated error is zero, keep every harmonic above round-off.
         let bound = if found.error > 0.0 && left_out > 0.0 {
-            AIM * self.tolerance * left_out / (MARGIN * found.error)
+            aim * self.tolerance * left_out / (MARGIN * found.error)
         } else {
             ROUND_OFF
         };

@@ -14,9 +14,6 @@ const CONTEXT: &str = "the harmonics";
 /// Ratio of neighbouring levels.
 const RATIO: f64 = 1.25;
 
-/// The same ratio where each level costs many factorisations.
-const RATIO_LARGE: f64 = 2.0;
-
 /// Degrees of freedom above which a structure without modes of its waves is large.
 const LARGE: usize = 32;
 
@@ -37,8 +34,8 @@ pub(crate) struct HarmonicLevels<'m> {
     models: ModelCache,
     samples: usize,
     automatic: bool,
-    /// Whether each level has about twice the harmonics of the one before.
-    double: bool,
+    /// Whether a harmonic costs many factorisations.
+    costly: bool,
     /// Bytes that the equations of a level may have; 0: any.
     memory_limit: usize,
     condense: Box<Condense<'m>>,
@@ -56,9 +53,9 @@ impl<'m> HarmonicLevels<'m> {
         condense: impl Fn(usize) -> Result<Condensed> + 'm,
     ) -> Result<Self> {
         let automatic = options.tolerance > 0.0;
-        let double = automatic && model.ndof() > LARGE && !have_modes(model)?;
+        let costly = automatic && model.ndof() > LARGE && !have_modes(model)?;
         let numbers = if automatic {
-            automatic_numbers((options, forced), if double { RATIO_LARGE } else { RATIO })?
+            automatic_numbers(options, forced)?
         } else {
             let mut one = Vec::new();
             try_push(&mut one, options.harmonics, CONTEXT)?;
@@ -68,7 +65,7 @@ impl<'m> HarmonicLevels<'m> {
             models: ModelCache::new(numbers.into_iter())?,
             samples: options.samples,
             automatic,
-            double,
+            costly,
             memory_limit: options.memory_limit,
             condense: Box::new(condense),
         })
@@ -79,9 +76,9 @@ impl<'m> HarmonicLevels<'m> {
         self.automatic
     }
 
-    /// Whether each level has about twice the harmonics of the one before, because levels are expensive.
-    pub fn double(&self) -> bool {
-        self.double
+    /// Whether a harmonic costs many factorisations.
+    pub fn are_costly(&self) -> bool {
+        self.costly
     }
 
     /// Number of levels.
@@ -109,7 +106,7 @@ impl<'m> HarmonicLevels<'m> {
         self.models.highest(level)
     }
 
-    /// The lowest level with about half as many harmonics as one: the next one below where levels double as 2H + 1.
+    /// The lowest level with about half as many harmonics as one.
     pub fn level_of_half(&self, level: usize) -> usize {
         self.models.slot_with(self.models.highest(level) / 2)
     }
@@ -124,7 +121,7 @@ impl<'m> HarmonicLevels<'m> {
     /// cost no factorisation.
     pub fn few(&self) -> usize {
         let pays = |known: &Resolution| affordable(&known.condensed, SMALL) < self.models.highest(1);
-        usize::from(self.double || self.count() < 2 || !self.models.any().is_some_and(pays))
+        usize::from(self.costly || self.count() < 2 || !self.models.any().is_some_and(pays))
     }
 
     /// The highest affordable level.
@@ -164,7 +161,7 @@ impl<'m> HarmonicLevels<'m> {
 }
 
 /// Rising numbers of harmonics from the highest forced one to `max_harmonics`.
-fn automatic_numbers((options, forced): (&SolverOptions, &[usize]), ratio: f64) -> Result<Vec<usize>> {
+fn automatic_numbers(options: &SolverOptions, forced: &[usize]) -> Result<Vec<usize>> {
     let most = options.max_harmonics;
     if let Some(h) = forced.iter().find(|&&h| h > most) {
         return fail!(
@@ -183,7 +180,7 @@ fn automatic_numbers((options, forced): (&SolverOptions, &[usize]), ratio: f64) 
     let mut reduced = least.div_ceil(base);
     try_push(&mut numbers, least, CONTEXT)?;
     loop {
-        reduced = (reduced + 2).max(((reduced as f64 * ratio) as usize) | 1);
+        reduced = (reduced + 2).max(((reduced as f64 * RATIO) as usize) | 1);
         if reduced * base > most {
             break;
         }

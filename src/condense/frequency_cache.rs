@@ -23,9 +23,6 @@ const INTERPOLATE_ABOVE_IF_RIGID: usize = 200;
 /// Relative error of interpolated tables, and of tables from modes.
 const TOLERANCE: f64 = 1e-11;
 
-/// Relative error of tables for estimates of errors.
-const FOR_ESTIMATES: f64 = 1e-7;
-
 /// Numbers of relative motions with which sums over modes are interpolated: with fewer the sums take no longer, with more the
 /// tables would take too much memory.
 const INTERPOLATED: RangeInclusive<usize> = 8..=96;
@@ -64,8 +61,21 @@ pub struct FrequencyCache<'a> {
     /// Frequency of the current tables, and how they were made.
     tabulated: Option<(f64, Way)>,
     way: Way,
-    /// Memory of a sample, where sums over modes are interpolated.
-    sample: Option<Table>,
+    /// Where sums over modes are interpolated: how, with memory of a sample.
+    estimates: Option<(EstimateTables<'a>, Table)>,
+}
+
+/// Interpolated tables for estimates of errors over a range of frequency.
+#[derive(Clone, Copy)]
+pub struct EstimateTables<'a> {
+    /// Start and end of the range.
+    pub range: (f64, f64),
+    /// Tables of the solutions over this range, which serve where there are such.
+    pub solved: &'a SharedTables,
+    /// The others.
+    pub estimated: &'a SharedTables,
+    /// Relative error of these.
+    pub tolerance: f64,
 }
 
 /// Interpolated tables of this cache alone, or those that it shares with others.
@@ -141,7 +151,7 @@ impl<'a> FrequencyCache<'a> {
             is_quicker,
             constant,
             tabulated: None,
-            sample: None,
+            estimates: None,
             // Without a sweep no slope is used.
             way: if !sweep && condensed.ndof() > INTERPOLATE_ABOVE {
                 Way::Pointwise
@@ -179,16 +189,14 @@ impl<'a> FrequencyCache<'a> {
         &mut self,
         condensed: &Condensed,
         modal: Vec<Option<ModalTable>>,
-        interpolated: Option<((f64, f64), &'a SharedTables)>,
+        interpolated: Option<EstimateTables<'a>>,
     ) -> Result<()> {
         self.modal = modal;
         self.lanes = None;
         self.modal_slopes = false;
         self.tabulated = None;
-        if let Some((range, tables)) = interpolated.filter(|_| INTERPOLATED.contains(&condensed.coordinates())) {
-            self.range = range;
-            self.tables = Tables::Shared(tables);
-            self.sample = Some(Table::new(condensed.coordinates())?);
+        if let Some(tables) = interpolated.filter(|_| INTERPOLATED.contains(&condensed.coordinates())) {
+            self.estimates = Some((tables, Table::new(condensed.coordinates())?));
         }
         Ok(())
     }
@@ -237,8 +245,9 @@ impl<'a> FrequencyCache<'a> {
             let at = (condensed, i, omega);
             let shared = (self.tables.get(), self.range);
             if let Some(Some(modal)) = self.modal.get_mut(i).filter(|_| !exactly) {
-                if let Some(sample) = &mut self.sample
-                    && interpolate_sums(shared, at, (modal, workspace, sample), table, interrupt)?
+                if let Some((tables, sample)) = &mut self.estimates
+                    && (tables.solved.known(condensed, i, omega, table)?
+                        || interpolate_sums(tables, at, (modal, workspace, sample), table, interrupt)?)
                 {
                     continue;
                 }
@@ -295,13 +304,14 @@ fn interpolate(
 /// Interpolates a table between sums over modes, without slopes; `false` for the first frequencies, where the sums take less
 /// time, and where it is not possible.
 fn interpolate_sums(
-    (tables, range): (&SharedTables, (f64, f64)),
+    tables: &EstimateTables<'_>,
     (condensed, i, omega): (&Condensed, usize, f64),
     (modal, workspace, sample): (&mut ModalTable, &mut Workspace, &mut Table),
     table: &mut Table,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
-    tables.with(condensed, i, |kept, _| {
+    let range = tables.range;
+    tables.estimated.with(condensed, i, |kept, _| {
         kept.requests += 1;
         if kept.requests <= POINTWISE || kept.rejected {
             return Ok(false);
@@ -317,7 +327,7 @@ fn interpolate_sums(
                     return Ok(false);
                 }
                 let kind = kind(condensed, i);
-                none.insert(FrequencyInterpolation::new(kind, range, resonances, FOR_ESTIMATES)?)
+                none.insert(FrequencyInterpolation::new(kind, range, resonances, tables.tolerance)?)
             }
         };
         let mut sum = |w: f64, sample: &mut Table| -> Result<()> {

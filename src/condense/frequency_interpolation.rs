@@ -110,26 +110,30 @@ impl FrequencyInterpolation {
         table: &mut Table,
         mut sample: impl FnMut(f64, &mut [Complex64]) -> Result<()>,
     ) -> Result<bool> {
-        let found = self.panels.iter().rposition(|panel| panel.holds(omega));
-        let index = match found {
-            Some(index) => index,
-            None => match self.add_panel(omega, &mut sample)? {
-                Some(panel) => {
-                    try_push(&mut self.panels, panel, CONTEXT)?;
-                    self.panels.len() - 1
-                }
-                None => return Ok(false),
-            },
+        if self.evaluate_known(omega, table) {
+            return Ok(true);
+        }
+        let Some(panel) = self.add_panel(omega, &mut sample)? else {
+            return Ok(false);
         };
+        try_push(&mut self.panels, panel, CONTEXT)?;
+        Ok(self.evaluate_known(omega, table))
+    }
+
+    /// Fills `table` at `omega` where a panel is known; `false` elsewhere.
+    pub fn evaluate_known(&mut self, omega: f64, table: &mut Table) -> bool {
         let denominator = self.denominator(omega);
+        let Some(panel) = self.panels.iter().rev().find(|panel| panel.holds(omega)) else {
+            return false;
+        };
         if self.layout.is_symmetric() {
-            self.panels[index].evaluate(omega, denominator, &mut self.packed);
+            panel.evaluate(omega, denominator, &mut self.packed);
             self.layout.unpack(&self.packed.value, &mut table.value);
             self.layout.unpack(&self.packed.slope, &mut table.slope);
         } else {
-            self.panels[index].evaluate(omega, denominator, table);
+            panel.evaluate(omega, denominator, table);
         }
-        Ok(true)
+        true
     }
 
     /// d(ω), its factors scaled by the size of their resonances, and d′(ω).

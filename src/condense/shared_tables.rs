@@ -2,6 +2,7 @@
 //! harmonics that they have in common with others.
 
 use crate::condense::Condensed;
+use crate::condense::flexibility::Table;
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::resonance_poles::KnownModes;
 use crate::error::{Result, try_push, try_room};
@@ -55,6 +56,17 @@ impl SharedTables {
         self.kept.set(kept);
         found
     }
+
+    /// Interpolates the table of the i-th carried harmonic at a frequency; `false` where no panel is known.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn known(&self, condensed: &Condensed, i: usize, omega: f64, table: &mut Table) -> Result<bool> {
+        self.with(condensed, i, |kept, _| {
+            let interpolation = kept.interpolation.as_mut();
+            Ok(interpolation.is_some_and(|known| known.evaluate_known(omega, table)))
+        })
+    }
 }
 
 impl Kept {
@@ -88,7 +100,7 @@ impl Kept {
 mod tests {
     use super::SharedTables;
     use crate::condense::flexibility::Workspace;
-    use crate::condense::frequency_cache::FrequencyCache;
+    use crate::condense::frequency_cache::{EstimateTables, FrequencyCache};
     use crate::condense::frequency_interpolation::FrequencyInterpolation;
     use crate::condense::modal_table::ModalTable;
     use crate::condense::wave_cache::WaveCache;
@@ -182,8 +194,13 @@ mod tests {
     fn interpolated_sums_are_the_tables_by_factorisation() {
         for (cyclic, beta) in [(false, 1e-2), (false, 1e-7), (true, 1e-3)] {
             let model = chain(20, cyclic, beta);
-            let tables = SharedTables::default();
-            let range = (0.5, 0.6);
+            let [tables, solved] = [(); 2].map(|()| SharedTables::default());
+            let interpolated = EstimateTables {
+                range: (0.5, 0.6),
+                solved: &solved,
+                estimated: &tables,
+                tolerance: 1e-7,
+            };
             let mut made = 0;
             for harmonics in [3, 7] {
                 let condensed = condensed(&model, harmonics);
@@ -195,7 +212,7 @@ mod tests {
                 };
                 let modal = (0..condensed.blocks().len()).map(by_modes).collect();
                 let mut cache = FrequencyCache::new(&condensed, RESPONSE, (0.5, 0.5), &interrupt).unwrap();
-                cache.set_modes(&condensed, modal, Some((range, &tables))).unwrap();
+                cache.set_modes(&condensed, modal, Some(interpolated)).unwrap();
                 for k in 0..40 {
                     let omega = 0.5 + 0.1 * f64::from(k * 7 % 40) / 40.0;
                     let off = deviation(&mut cache, &condensed, omega);
@@ -206,6 +223,37 @@ mod tests {
                 made = now;
             }
         }
+    }
+
+    #[test]
+    fn estimates_use_the_tables_of_solutions() {
+        let model = chain(40, true, 1e-3);
+        let interrupt = Interrupt::none();
+        let [solved, estimated] = [(); 2].map(|()| SharedTables::default());
+        let (range, condensed) = ((0.5, 0.6), condensed(&model, 3));
+        let mut sweep = FrequencyCache::new(&condensed, RESPONSE, range, &interrupt).unwrap();
+        sweep.share_tables(&solved);
+        let mut waves = WaveCache::default();
+        let by_modes = |i| {
+            let modes = waves.of(&model, &condensed, i, &interrupt).unwrap();
+            modes.map(|modes| ModalTable::new(&condensed, i, RESPONSE, modes).unwrap())
+        };
+        let modal = (0..condensed.blocks().len()).map(by_modes).collect();
+        let mut cache = FrequencyCache::new(&condensed, RESPONSE, (0.5, 0.5), &interrupt).unwrap();
+        let tables = EstimateTables {
+            range,
+            solved: &solved,
+            estimated: &estimated,
+            tolerance: 1e-5,
+        };
+        cache.set_modes(&condensed, modal, Some(tables)).unwrap();
+        for k in 0..20 {
+            let omega = 0.5 + 0.1 * f64::from(k) / 19.0;
+            sweep.tabulate(&condensed, omega, &interrupt).unwrap();
+            let off = deviation(&mut cache, &condensed, omega);
+            assert!(off < 1e-9, "{omega}: {off:e}");
+        }
+        assert_eq!(samples(&estimated, &condensed), 0);
     }
 
     /// Models with more harmonics use the panels of those with fewer, and find them where they need others.

@@ -67,6 +67,8 @@ pub(super) struct CutoffHarmonic {
     /// Frequency of the last cut-off, the angular frequency at which it was found, and the harmonic the search began
     /// from.
     found: Option<(f64, f64, usize)>,
+    /// The same where the structure was compliant in the highest harmonic of the search.
+    beyond: Option<(f64, f64, usize)>,
     matrix: Vec<Complex64>,
     vectors: [Vec<Complex64>; 2],
     lu: Lu<Complex64>,
@@ -84,6 +86,7 @@ impl CutoffHarmonic {
                 try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
             ],
             found: None,
+            beyond: None,
             matrix: try_vec(coordinates.saturating_mul(coordinates), Complex64::ZERO, CONTEXT)?,
             lu: Lu::new(coordinates, coordinates)?,
             condensed,
@@ -93,22 +96,35 @@ impl CutoffHarmonic {
     /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
     /// ω; `from` where it is compliant in none.
     pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
-        // Where all harmonics are one wave, G depends on hω alone.
-        let one_wave = self.condensed.in_step() <= 1;
-        if let Some((frequency, near, searched_from)) = self.found
-            && (one_wave || (omega / near - 1.0).abs() <= if self.highest.is_some() { NEAR } else { FINE })
-            && from >= searched_from
-        {
+        if let Some((frequency, ..)) = self.found.filter(|found| self.serves(*found, omega, from)) {
             return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));
+        }
+        let reaches = |(frequency, ..): (f64, f64, usize)| most as f64 * omega <= (1.0 + FINE) * frequency;
+        if self
+            .beyond
+            .is_some_and(|found| reaches(found) && self.serves(found, omega, from))
+        {
+            return Ok(most.max(from));
         }
         let last = match self.highest {
             Some(highest) => self.check_each(omega, highest, (from, most), interrupt)?,
             None => self.check_some(omega, from, most, interrupt)?,
         };
+        let found = Some((last as f64 * omega, omega, from));
         if last < most {
-            self.found = Some((last as f64 * omega, omega, from));
+            self.found = found;
+        } else {
+            self.beyond = found;
         }
         Ok(last)
+    }
+
+    /// Whether what was found at a frequency serves at another one.
+    fn serves(&self, (_, near, searched_from): (f64, f64, usize), omega: f64, from: usize) -> bool {
+        // Where all harmonics are one wave, G depends on hω alone.
+        let one_wave = self.condensed.in_step() <= 1;
+        let width = if self.highest.is_some() { NEAR } else { FINE };
+        from >= searched_from && (one_wave || (omega / near - 1.0).abs() <= width)
     }
 
     fn check_each(

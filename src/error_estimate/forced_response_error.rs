@@ -1,5 +1,6 @@
 //! The error of a point of a forced response.
 
+use crate::condense::frequency_cache::EstimateTables;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
@@ -46,6 +47,10 @@ const CLOSER: f64 = 0.5;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 const SHARED: f64 = 0.5;
+
+/// Relative error of interpolated tables over the tolerance, and its range.
+const OF_TABLES: f64 = 1e-3;
+const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
@@ -272,7 +277,9 @@ impl<'a> ForcedEstimator<'a> {
         }
         let resolution = self.models.model(slot, |highest| {
             let options = extended_options(&self.options, highest);
-            let condensed = Condensed::new(self.model, &options, omega, self.interrupt)?;
+            // One scale for all points, so that they share tables of one unit.
+            let scaled_at = self.range.map_or(omega, |(start, _)| start);
+            let condensed = Condensed::new(self.model, &options, scaled_at, self.interrupt)?;
             let carried = condensed.set().numbers().last().copied().unwrap_or(0);
             Ok(Resolution {
                 samples: extended_options(&self.options, carried).samples,
@@ -323,7 +330,12 @@ impl<'a> ForcedEstimator<'a> {
         };
         if by_modes && !system.problem.has_modes() {
             let modal = self.modal_tables(condensed)?;
-            let shared = self.range.map(|range| (range, &self.waves.estimated));
+            let shared = self.range.map(|range| EstimateTables {
+                range,
+                solved: &self.waves.tables,
+                estimated: &self.waves.estimated,
+                tolerance: (OF_TABLES * self.options.tolerance).clamp(EXACTEST.0, EXACTEST.1),
+            });
             system.problem.set_modes(modal, shared)?;
         }
         let found = on(

@@ -5,6 +5,7 @@ pub mod bordered;
 pub mod cholesky;
 pub mod compensated_product;
 pub mod compensated_sum;
+pub mod complex_columns;
 pub mod definite;
 pub mod eigen;
 pub mod factor;

@@ -4,7 +4,7 @@
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
 
 use crate::condense::Condensed;
-use crate::condense::frequency_cache::FrequencyCache;
+use crate::condense::frequency_cache::{EstimateTables, FrequencyCache};
 use crate::condense::modal_table::ModalTable;
 use crate::condense::shared_tables::SharedTables;
 use crate::error::{Result, Status, try_vec};
@@ -48,6 +48,8 @@ pub struct HarmonicBalance<'a> {
 #[derive(Default)]
 pub(super) struct ProductMemory {
     pub change: Vec<f64>,
+    /// Numbers of one harmonic, and memory for its product.
+    pub harmonic: [Vec<Complex64>; 2],
     pub column: Vec<f64>,
     /// Stored contact Jacobians.
     pub kept: Vec<f64>,
@@ -70,6 +72,7 @@ impl<'a> HarmonicBalance<'a> {
         const CONTEXT: &str = "the forced response";
         let set = condensed.set();
         let coordinates = condensed.coordinates();
+        let of_harmonic = || try_vec(coordinates, Complex64::ZERO, CONTEXT);
         let flexibility = coordinates
             .saturating_mul(coordinates)
             .saturating_mul(set.numbers().len());
@@ -87,6 +90,7 @@ impl<'a> HarmonicBalance<'a> {
             change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
             products: ProductMemory {
                 change: try_vec(condensed.unknowns(), 0.0, CONTEXT)?,
+                harmonic: [of_harmonic()?, of_harmonic()?],
                 ..ProductMemory::default()
             },
         })
@@ -105,7 +109,7 @@ impl<'a> HarmonicBalance<'a> {
     pub fn set_modes(
         &mut self,
         modal: Vec<Option<ModalTable>>,
-        interpolated: Option<((f64, f64), &'a SharedTables)>,
+        interpolated: Option<EstimateTables<'a>>,
     ) -> Result<()> {
         self.tables.set_modes(self.condensed, modal, interpolated)
     }

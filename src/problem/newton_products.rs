@@ -3,6 +3,7 @@
 
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::linalg::complex_columns;
 use crate::linalg::linear_system::MatrixFree;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::put;
@@ -92,16 +93,13 @@ impl HarmonicBalance<'_> {
         for (c, dw) in dw.chunks_exact_mut(m).enumerate() {
             self.forces.change(d, c, dw);
         }
-        let sum = &mut self.sum[..];
+        let (sum, [z, memory]) = (&mut self.sum[..], &mut self.products.harmonic);
         for (i, table) in self.tables.current().iter().enumerate() {
             let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
-            sum.fill(Complex64::ZERO);
-            for (dw, column) in dw.chunks_exact(m).zip(table.value.chunks_exact(coordinates + 1)) {
-                let z = set.get(dw, i);
-                for (sum, g) in sum.iter_mut().zip(column) {
-                    *sum += g * z;
-                }
+            for (z, dw) in z.iter_mut().zip(dw.chunks_exact(m)) {
+                *z = set.get(dw, i);
             }
+            complex_columns::multiply(&table.value, coordinates + 1, z, sum, memory);
             for (c, sum) in sum.iter().enumerate() {
                 put(out, c * m + at, mean, *sum);
                 if mean {
