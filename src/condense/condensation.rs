@@ -62,21 +62,7 @@ impl Condensed {
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
         let sweep = sweep.into();
-        let mut forced = Vec::new();
-        for force in model
-            .excitation()
-            .forces()
-            .iter()
-            .filter(|f| f.value != Complex64::ZERO)
-        {
-            try_push(&mut forced, force.harmonic, "the forces")?;
-        }
-        forced.sort_unstable();
-        forced.dedup();
-        if forced.is_empty() {
-            // Without forces the solution is zero, and the fundamental carries it.
-            forced.push(usize::from(options.harmonics > 0));
-        }
+        let forced = forced_harmonics(model, options)?;
         let (mut condensed, assembled) =
             Self::unscaled(model, options, (&forced, sweep), (None, reference), interrupt)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
@@ -252,17 +238,7 @@ impl Condensed {
         model.check_matrices(mode.is_some())?;
         let contact_classes = ContactClasses::new(model)?;
         let active = &contact_classes.active;
-        let mut odd = true;
-        for &i in active {
-            odd &= model.contacts()[i].law(1.0)?.is_odd();
-        }
-        let set = HarmonicSet::excited(
-            forced,
-            options.harmonics,
-            !active.is_empty(),
-            odd,
-            options.keep_even_harmonics,
-        )?;
+        let set = carried(model, options, forced, active)?;
         let (assembled, representatives) = assign_coordinates(model, active)?;
         let mut can_stick = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
@@ -281,14 +257,12 @@ impl Condensed {
         )?;
         raise_for_springs(model, &assembled, &structural, &mut stiffness);
         let reference_stiffness = reference_stiffness(&stiffness, &structural)?;
-        let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
-        let quicker = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
-            Reference::Stuck
-        } else {
-            Reference::Complex
+        let reference = match (reference, mode) {
+            (Some(given), _) => given,
+            (None, Some(_)) => Reference::Complex,
+            (None, None) => quicker_reference(model, representatives.len() * set.packed_len()),
         };
-        let reference = reference.unwrap_or(quicker);
         let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
         if let Some((_, shape)) = mode {
             for (c, share) in share.iter_mut().enumerate() {
@@ -367,6 +341,46 @@ impl Condensed {
     }
 }
 
+/// The harmonics in which forces act.
+pub(super) fn forced_harmonics(model: &Model, options: &SolverOptions) -> Result<Vec<usize>> {
+    let mut forced = Vec::new();
+    let forces = model.excitation().forces().iter();
+    for force in forces.filter(|f| f.value != Complex64::ZERO) {
+        try_push(&mut forced, force.harmonic, "the forces")?;
+    }
+    forced.sort_unstable();
+    forced.dedup();
+    if forced.is_empty() {
+        // Without forces the solution is zero, and the fundamental carries it.
+        forced.push(usize::from(options.harmonics > 0));
+    }
+    Ok(forced)
+}
+
+/// The carried harmonics with forces in some of them, and these contacts.
+pub(super) fn carried(
+    model: &Model,
+    options: &SolverOptions,
+    forced: &[usize],
+    active: &[usize],
+) -> Result<HarmonicSet> {
+    let mut odd = true;
+    for &i in active {
+        odd &= model.contacts()[i].law(1.0)?.is_odd();
+    }
+    let (highest, keep_all) = (options.harmonics, options.keep_even_harmonics);
+    HarmonicSet::excited(forced, highest, !active.is_empty(), odd, keep_all)
+}
+
+/// The reference stiffness with which a forced response of so many unknowns is quicker.
+pub(super) fn quicker_reference(model: &Model, unknowns: usize) -> Reference {
+    if unknowns > STUCK_ABOVE && model.structure().is_damped() {
+        Reference::Stuck
+    } else {
+        Reference::Complex
+    }
+}
+
 /// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
 fn direct_blocks(
     request: &Request<'_>,
@@ -379,10 +393,9 @@ fn direct_blocks(
     let mut blocks = Vec::new();
     for (i, &number) in numbers.iter().enumerate() {
         interrupt.part(Phase::Condensation, i, numbers.len())?;
-        let kappa = |c: usize| kappa(c, number);
-        let mut block = match of_same_wave(model, number, &blocks) {
-            Some(known) => shared_block(model, number, known, request.contacts, kappa)?,
-            None => harmonic_block(model, number, request.contacts, kappa, interrupt)?,
+        let mut block = match of_same_wave(model, number, &blocks.iter()) {
+            Some(known) => shared_block(model, number, known, request.contacts, &kappa)?,
+            None => harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?,
         };
         block.artificial = match mode {
             None => Artificial::None,

@@ -22,8 +22,9 @@ pub(super) enum Variable {
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct DynamicStiffness {
     factor: Factor,
-    /// Z_κ per harmonic.
+    /// Z_κ on each pattern, and the index of that of each harmonic.
     z: Vec<Csc>,
+    patterns: Vec<usize>,
     /// b − Z x, and memory for its exact sum.
     remainder: Vec<Complex64>,
     sums: Vec<ComplexSum>,
@@ -43,9 +44,14 @@ impl DynamicStiffness {
     /// `OutOfMemory`.
     pub fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
         const CONTEXT: &str = "the dynamic stiffness";
-        let mut z = Vec::new();
+        let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
         for block in condensed.blocks() {
-            try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
+            let known = z.iter().position(of_block);
+            try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
+            if known.is_none() {
+                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+            }
         }
         let Some(first) = condensed.blocks().first() else {
             return fail!(Internal, "no harmonic is carried");
@@ -54,6 +60,7 @@ impl DynamicStiffness {
         Ok(Self {
             factor: Factor::new(&first.reference, columns)?,
             z,
+            patterns,
             remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
             sums: try_vec(n, ComplexSum::default(), CONTEXT)?,
             part: try_vec(n, ComplexSum::default(), CONTEXT)?,
@@ -74,7 +81,7 @@ impl DynamicStiffness {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let block = &condensed.blocks()[i];
-        let z = &mut self.z[i];
+        let z = &mut self.z[self.patterns[i]];
         let sum = Combination::value(block, omega, damping);
         for (at, z) in z.values.iter_mut().enumerate() {
             *z = sum.at(block, at);

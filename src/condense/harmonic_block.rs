@@ -34,8 +34,9 @@ pub struct HarmonicBlock {
     pub number: usize,
     /// Motion of the next sector over that of this one.
     pub next: Complex64,
-    /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too.
-    pub reference: Csc,
+    /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too. Harmonics
+    /// of one wave with one κ share it.
+    pub reference: Arc<Csc>,
     /// K_h with springs and contacts that never slip, without iD_h and Wᴴ κ W, at the entries of the pattern.
     pub stiffness: Values,
     /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
@@ -140,7 +141,7 @@ impl HarmonicBlock {
 pub(super) fn of_same_wave<'b>(
     model: &Model,
     number: usize,
-    blocks: &'b [HarmonicBlock],
+    blocks: &(impl Iterator<Item = &'b HarmonicBlock> + Clone),
 ) -> Option<(&'b HarmonicBlock, Form)> {
     let structure = model.structure();
     // The mean has no structural damping and no imaginary parts. Structural and gyroscopic matrices may be complex.
@@ -156,19 +157,20 @@ pub(super) fn of_same_wave<'b>(
         let is_shared = known == key && block.number > 0 && number > 0 && (form == Form::Plain || conjugates);
         is_shared.then_some(form)
     };
-    let sharing = || blocks.iter().filter_map(|block| Some((block, form_of(block)?)));
+    let sharing = || blocks.clone().filter_map(|block| Some((block, form_of(block)?)));
     // Values of the same direction are not copied.
     let same = sharing().find(|(_, form)| *form == Form::Plain);
     same.or_else(|| sharing().next())
 }
 
-/// The block of harmonic `number` from that of another harmonic of its wave; see [`of_same_wave`].
+/// The block of harmonic `number` from that of another harmonic of its wave; see [`of_same_wave`]. `kappa` is the reference
+/// stiffness of a coordinate in a harmonic.
 pub(super) fn shared_block(
     model: &Model,
     number: usize,
     (known, form): (&HarmonicBlock, Form),
     (contact_classes, representatives): (&ContactClasses, &[(usize, usize)]),
-    kappa: impl Fn(usize) -> Complex64,
+    kappa: impl Fn(usize, usize) -> Complex64,
 ) -> Result<HarmonicBlock> {
     let copy = |values: &[Complex64]| -> Result<Vec<Complex64>> {
         let mut copy = try_copy(values, "the matrices per harmonic")?;
@@ -188,22 +190,28 @@ pub(super) fn shared_block(
     let rows = rows_of(model, representatives, number)?;
     let stiffness = share(&known.stiffness)?;
     let structural = known.structural.as_ref().map(share).transpose()?;
-    let mut reference = known.reference.try_clone()?;
-    reference.values.copy_from_slice(&stiffness);
-    for (v, d) in reference
-        .values
-        .iter_mut()
-        .zip(structural.iter().flat_map(|values| values.iter()))
-    {
-        *v += Complex64::I * d;
-    }
-    for (c, row) in rows.iter().enumerate() {
-        for &(q, b) in row.iter().flatten() {
-            for &(p, a) in row.iter().flatten() {
-                reference.add_stored(p, q, a.conj() * kappa(c) * b);
+    let has_same_kappa = (0..rows.len()).all(|c| kappa(c, number) == kappa(c, known.number));
+    let reference = if form == Form::Plain && has_same_kappa {
+        Arc::clone(&known.reference)
+    } else {
+        let mut reference = known.reference.try_clone()?;
+        reference.values.copy_from_slice(&stiffness);
+        for (v, d) in reference
+            .values
+            .iter_mut()
+            .zip(structural.iter().flat_map(|values| values.iter()))
+        {
+            *v += Complex64::I * d;
+        }
+        for (c, row) in rows.iter().enumerate() {
+            for &(q, b) in row.iter().flatten() {
+                for &(p, a) in row.iter().flatten() {
+                    reference.add_stored(p, q, a.conj() * kappa(c, number) * b);
+                }
             }
         }
-    }
+        Arc::new(reference)
+    };
     let tied = known.tied.as_ref().map(|tied| {
         Ok(TiedValues {
             stiffness: copy(&tied.stiffness)?,
@@ -228,7 +236,7 @@ struct Matrices {
     damping: Values,
     mass: Values,
     tied: Option<TiedValues>,
-    reference: Csc,
+    reference: Arc<Csc>,
 }
 
 impl Matrices {
@@ -335,7 +343,7 @@ pub(super) fn harmonic_block(
         damping: aligned(&damping)?,
         mass: aligned(&mass)?,
         tied: tied.transpose()?,
-        reference,
+        reference: Arc::new(reference),
     };
     matrices.into_block(model, number, contact_classes, rows)
 }
@@ -369,9 +377,10 @@ mod tests {
         let mut blocks = Vec::new();
         let mut shared = 0;
         for number in 0..=40 {
-            let kappa = |c: usize| Complex64::new(1.0 + c as f64, 0.1 * number as f64);
-            let made = harmonic_block(model, number, contacts, kappa, &interrupt).unwrap();
-            if let Some(known) = of_same_wave(model, number, &blocks) {
+            // The same in some harmonics.
+            let kappa = |c: usize, number: usize| Complex64::new(1.0 + c as f64, 0.1 * (number / 15) as f64);
+            let made = harmonic_block(model, number, contacts, |c| kappa(c, number), &interrupt).unwrap();
+            if let Some(known) = of_same_wave(model, number, &blocks.iter()) {
                 let block = shared_block(model, number, known, contacts, kappa).unwrap();
                 assert_eq!(block.reference.row_idx, made.reference.row_idx);
                 assert!(close(&block.reference.values, &made.reference.values), "{number}");

@@ -18,6 +18,7 @@ mod modal_motion;
 mod modal_solution;
 pub mod modal_table;
 mod model_cache;
+mod more_harmonics;
 pub mod near_rigid_motion;
 mod reduced_block;
 mod reduced_resonances;

@@ -120,6 +120,12 @@ impl ModalTable {
         })
     }
 
+    /// The modes of its wave.
+    #[must_use]
+    pub fn modes(&self) -> Arc<WaveModes> {
+        Arc::clone(&self.modes)
+    }
+
     /// Its numbers where it is one of a single contact without springs.
     pub(super) fn single(&self) -> Option<SinglePart<'_>> {
         match &self.sums {

@@ -72,7 +72,7 @@ pub(super) fn reduced_block(
     Ok(HarmonicBlock {
         number,
         next: structure.phase(number, 1),
-        reference: full,
+        reference: Arc::new(full),
         stiffness: Arc::new(stiffness),
         structural: None,
         damping: Arc::new(damping),

@@ -99,7 +99,7 @@ fn ends_above(modes: &Pairs, highest: f64) -> bool {
 
 /// The lowest modes, up to one above `highest` where there are not too many; `None` where they cannot be found.
 fn lowest_modes(block: &HarmonicBlock, highest: f64, interrupt: &Interrupt<'_>) -> Result<Option<Pairs>> {
-    let reference = &block.reference;
+    let reference: &Csc = &block.reference;
     let n = reference.rows;
     let half = Complex64::new(0.5, 0.0);
     // (A + Aᴴ)/2, with Aᴴ as the conjugate of the transpose.

@@ -57,7 +57,7 @@ impl HarmonicBlock {
     fn with_damping(&self, added: Option<&Csc>, by_mass: f64) -> Result<Self> {
         let n = self.reference.rows;
         let mut terms = Vec::new();
-        try_push(&mut terms, (Complex64::ONE, &self.reference, Form::Plain), CONTEXT)?;
+        try_push(&mut terms, (Complex64::ONE, &*self.reference, Form::Plain), CONTEXT)?;
         if let Some(added) = added {
             // A zero factor adds the pattern alone.
             try_push(&mut terms, (Complex64::ZERO, added, Form::Plain), CONTEXT)?;
@@ -102,7 +102,7 @@ impl HarmonicBlock {
                 None => None,
             },
             view: self.view.clone(),
-            reference,
+            reference: Arc::new(reference),
         })
     }
 }

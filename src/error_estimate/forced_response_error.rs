@@ -3,7 +3,7 @@
 use crate::condense::frequency_cache::EstimateTables;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
-use crate::condense::{Condensed, ModelCache, Resolution};
+use crate::condense::{Condensed, HarmonicBlock, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
@@ -38,9 +38,6 @@ const TABLES: usize = 24;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
 const SMALL: usize = 32;
-
-/// Largest error, relative to the tolerance, that a ratio tells well enough.
-const SURE: f64 = 0.5;
 
 /// Share of the residual that a guess from another point may leave.
 const CLOSER: f64 = 0.5;
@@ -150,7 +147,7 @@ impl<'a> ForcedEstimator<'a> {
         }
         if self.cutoff.is_none() {
             let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
-            let Some(resolution) = self.model_with(waves, solved.omega)? else {
+            let Some(resolution) = self.model_with(waves, solved)? else {
                 return Ok(None);
             };
             self.cutoff = Some(CutoffHarmonic::new(Arc::clone(&resolution.condensed), self.interrupt)?);
@@ -219,9 +216,9 @@ impl<'a> ForcedEstimator<'a> {
             if highest >= extent.core && !extent.short {
                 return Ok(Some(found));
             }
-            if let Some(ratio) = self.ratio.at(extent.least).filter(|_| last.is_none()) {
+            if let Some((ratio, sure)) = self.ratio.at(extent.least).filter(|_| last.is_none()) {
                 let scaled = series.scaled(ratio);
-                if scaled <= SURE * self.options.tolerance {
+                if scaled <= sure * self.options.tolerance {
                     found.response = scaled;
                     return Ok(Some(found));
                 }
@@ -260,9 +257,17 @@ impl<'a> ForcedEstimator<'a> {
 
     /// The table of each harmonic from modes, where it has them.
     fn modal_tables(&mut self, condensed: &Condensed) -> Result<Vec<Option<ModalTable>>> {
-        let mut tables = Vec::new();
-        for i in 0..condensed.set().numbers().len() {
-            let modes = self.waves.of(self.model, condensed, i, self.interrupt)?;
+        let mut tables: Vec<Option<ModalTable>> = Vec::new();
+        let blocks = condensed.blocks();
+        for (i, block) in blocks.iter().enumerate() {
+            let shares = |known: &HarmonicBlock| {
+                Arc::ptr_eq(&known.reference, &block.reference) && Arc::ptr_eq(&known.mass, &block.mass)
+            };
+            let known = blocks[..i].iter().position(shares);
+            let modes = match known.and_then(|known| tables[known].as_ref()) {
+                Some(table) => Some(table.modes()),
+                None => self.waves.of(self.model, condensed, i, self.interrupt)?,
+            };
             let table = modes.map(|modes| ModalTable::new(condensed, i, self.response, modes));
             try_push(&mut tables, table.transpose()?, CONTEXT)?;
         }
@@ -270,16 +275,23 @@ impl<'a> ForcedEstimator<'a> {
     }
 
     /// The model with harmonics up to one at least; `None` where there is none.
-    fn model_with(&self, highest: usize, omega: f64) -> Result<Option<&'a Resolution>> {
+    fn model_with(&self, highest: usize, solved: &Solved<'_>) -> Result<Option<&'a Resolution>> {
         let slot = self.models.slot_with(highest);
         if slot == self.models.slots() {
             return Ok(None);
         }
         let resolution = self.models.model(slot, |highest| {
             let options = extended_options(&self.options, highest);
-            // One scale for all points, so that they share tables of one unit.
-            let scaled_at = self.range.map_or(omega, |(start, _)| start);
-            let condensed = Condensed::new(self.model, &options, scaled_at, self.interrupt)?;
+            let shared = solved
+                .condensed
+                .with_more_harmonics(self.model, &options, self.interrupt)?;
+            let condensed = if let Some(condensed) = shared {
+                condensed
+            } else {
+                // One scale for all points, so that they share tables of one unit.
+                let scaled_at = self.range.map_or(solved.omega, |(start, _)| start);
+                Condensed::new(self.model, &options, scaled_at, self.interrupt)?
+            };
             let carried = condensed.set().numbers().last().copied().unwrap_or(0);
             Ok(Resolution {
                 samples: extended_options(&self.options, carried).samples,
@@ -299,7 +311,7 @@ impl<'a> ForcedEstimator<'a> {
         mut work: Work,
     ) -> Result<(Option<Estimate>, Work)> {
         let (slot, omega) = (self.models.slot_with(extent.highest), solved.omega);
-        let Some(resolution) = self.model_with(extent.highest, omega)? else {
+        let Some(resolution) = self.model_with(extent.highest, solved)? else {
             return Ok((Some(solved.unknown(0.0, true)?), work));
         };
         let condensed = &*resolution.condensed;

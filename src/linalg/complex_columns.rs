@@ -1,4 +1,4 @@
-//! Products of complex columns with a vector, compiled for the vector instructions of the processor.
+//! Products of complex columns with a vector, and their change by two dyads, compiled for the vector instructions of the processor.
 //!
 //! Re z and Im z multiply the numbers of a column as they lie in memory, each into a sum of its own, and
 //! A z = Σ a Re z + i Σ a Im z is put together at the end: no number is moved within a register.
@@ -61,9 +61,36 @@ impl WithSimd for Product<'_> {
     }
 }
 
+/// A ← A − v wᴴ − w vᴴ for columns that begin `stride` apart and are as long as v; the last one ends with the matrix.
+pub fn subtract_dyads(columns: &mut [Complex64], stride: usize, v: &[Complex64], w: &[Complex64]) {
+    Arch::new().dispatch(Dyads { columns, stride, v, w });
+}
+
+struct Dyads<'a> {
+    columns: &'a mut [Complex64],
+    stride: usize,
+    v: &'a [Complex64],
+    w: &'a [Complex64],
+}
+
+impl WithSimd for Dyads<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self { columns, stride, v, w } = self;
+        for ((column, by_w), by_v) in columns.chunks_mut(stride).zip(w).zip(v) {
+            let (by_w, by_v) = (by_w.conj(), by_v.conj());
+            for ((a, v), w) in column.iter_mut().zip(v).zip(w) {
+                *a -= v * by_w + w * by_v;
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::multiply;
+    use super::{multiply, subtract_dyads};
     use num_complex::Complex64;
 
     #[test]
@@ -82,6 +109,25 @@ mod tests {
                     "{rows}, {count}: {out} {exact}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn dyads_are_subtracted_from_each_column() {
+        let number = |k: usize| Complex64::new((k as f64).sin(), (1.7 * k as f64).cos());
+        let (n, stride) = (7, 9);
+        let mut a: Vec<Complex64> = (0..(n - 1) * stride + n).map(number).collect();
+        let before = a.clone();
+        let [v, w] = [1, 2].map(|s| (0..n).map(|k| number(5 * k + s)).collect::<Vec<_>>());
+        subtract_dyads(&mut a, stride, &v, &w);
+        for (k, (a, before)) in a.iter().zip(before).enumerate() {
+            let (i, j) = (k % stride, k / stride);
+            let change = if i < n {
+                v[i] * w[j].conj() + w[i] * v[j].conj()
+            } else {
+                Complex64::ZERO
+            };
+            assert!((a - (before - change)).norm() < 1e-14);
         }
     }
 }

@@ -6,12 +6,18 @@
 
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
+use crate::linalg::complex_columns;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place_with_conj};
+use faer::{Conj, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
 /// Iterations for one eigenvalue; two or three suffice.
 const MOST_ITERATIONS: usize = 60;
+
+/// Columns of a solution between two checks of the interrupt.
+const AT_ONCE: usize = 32;
 
 /// Shares of the work in the reduction, the iteration and the vectors, for the progress.
 const REDUCED: f64 = 0.4;
@@ -74,6 +80,10 @@ fn tridiagonalise(
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     let mut w = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    let mut memory = [
+        try_vec(n, Complex64::ZERO, CONTEXT)?,
+        try_vec(n, Complex64::ZERO, CONTEXT)?,
+    ];
     for k in 0..n.saturating_sub(1) {
         let left = (n - k) as f64 / n as f64;
         interrupt.phase(Phase::Modes, REDUCED * (1.0 - left * left * left))?;
@@ -100,24 +110,18 @@ fn tridiagonalise(
         }
         // w = τ A v − ½ τ (wᴴ v) v,  A ← A − v wᴴ − w vᴴ
         let w = &mut w[..v.len()];
-        w.fill(Complex64::ZERO);
-        for (column, v) in rest.chunks_exact(n).zip(&*v) {
-            let factor = tau * v;
-            for (w, a) in w.iter_mut().zip(&column[k + 1..]) {
-                *w += a * factor;
-            }
+        let [factors, memory] = memory.each_mut().map(|x| &mut x[..w.len()]);
+        for (factor, v) in factors.iter_mut().zip(&*v) {
+            *factor = tau * v;
         }
+        let trailing = &mut rest[k + 1..];
+        complex_columns::multiply(trailing, n, factors, w, memory);
         let along: Complex64 = w.iter().zip(&*v).map(|(w, v)| w.conj() * v).sum();
         let half = -0.5 * tau * along;
         for (w, v) in w.iter_mut().zip(&*v) {
             *w += half * v;
         }
-        for (j, column) in rest.chunks_exact_mut(n).enumerate() {
-            let (by_w, by_v) = (w[j].conj(), v[j].conj());
-            for ((a, v), w) in column[k + 1..].iter_mut().zip(&*v).zip(&*w) {
-                *a -= v * by_w + w * by_v;
-            }
-        }
+        complex_columns::subtract_dyads(trailing, n, v, w);
     }
     for (k, d) in diagonal.iter_mut().enumerate() {
         *d = a[k * n + k].re;
@@ -219,7 +223,7 @@ pub fn cholesky(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Res
     Ok(true)
 }
 
-/// B ← L⁻¹ B, or L⁻ᴴ B, column by column.
+/// B ← L⁻¹ B, or L⁻ᴴ B, a few columns at a time.
 ///
 /// # Errors
 /// `StoppedByCaller`.
@@ -230,22 +234,15 @@ pub fn solve_triangular(
     b: &mut [Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
-    for x in b.chunks_exact_mut(n.max(1)) {
-        interrupt.check_before((4 * n * n) as u64)?;
+    let factors = MatRef::from_column_major_slice(l, n, n);
+    for x in b.chunks_mut((AT_ONCE * n).max(1)) {
+        let columns = x.len() / n;
+        interrupt.check_before((4 * n * n * columns) as u64)?;
+        let x = MatMut::from_column_major_slice_mut(x, n, columns);
         if adjoint {
-            for k in (0..n).rev() {
-                let column = &l[k * n + k + 1..(k + 1) * n];
-                let known: Complex64 = column.iter().zip(&x[k + 1..]).map(|(l, x)| l.conj() * x).sum();
-                x[k] = (x[k] - known) / l[k * n + k].re;
-            }
+            solve_upper_triangular_in_place_with_conj(factors.transpose(), Conj::Yes, x, Par::Seq);
         } else {
-            for k in 0..n {
-                let (head, rest) = x[k..].split_at_mut(1);
-                head[0] /= l[k * n + k].re;
-                for (x, l) in rest.iter_mut().zip(&l[k * n + k + 1..(k + 1) * n]) {
-                    *x -= head[0] * l;
-                }
-            }
+            solve_lower_triangular_in_place(factors, x, Par::Seq);
         }
     }
     Ok(())
