@@ -68,7 +68,7 @@ pub(crate) struct AdaptivityController {
     /// Lowest level to which the branch may be coarsened, one above that where a point missed the tolerance, and the
     /// number of points for which it holds.
     floor: (usize, usize),
-    /// The highest level so far. The branch is coarsened to half its harmonics at most, unless they cost much.
+    /// The highest level so far. The branch is coarsened to half its harmonics at most.
     highest: usize,
     /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
     /// harmonics it may fold elsewhere and reverse.
@@ -366,12 +366,10 @@ impl AdaptivityController {
         if self.folded {
             return level;
         }
-        let levels = equations.levels();
-        let half = if levels.are_costly() {
-            levels.few()
-        } else {
-            levels.level_of_half(self.highest).max(levels.few())
-        };
+        let half = equations
+            .levels()
+            .level_of_half(self.highest)
+            .max(equations.levels().few());
         if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
     }
 

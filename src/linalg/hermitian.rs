@@ -6,7 +6,7 @@
 
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::complex_columns;
+use crate::linalg::{complex_columns, inner, remove};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place_with_conj};
 use faer::{Conj, MatMut, MatRef, Par};
 use num_complex::Complex64;
@@ -63,11 +63,7 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
 
 /// x ← (I − τ v vᴴ) x
 fn reflect(v: &[Complex64], factor: Complex64, x: &mut [Complex64]) {
-    let along: Complex64 = v.iter().zip(&*x).map(|(v, x)| v.conj() * x).sum();
-    let along = factor * along;
-    for (x, v) in x.iter_mut().zip(v) {
-        *x -= v * along;
-    }
+    remove(x, v, factor * inner(v, x));
 }
 
 /// Reduces A to T: its diagonal and the entries beside it. The vectors v of the reflections I − τ v vᴴ remain below
@@ -116,7 +112,7 @@ fn tridiagonalise(
         }
         let trailing = &mut rest[k + 1..];
         complex_columns::multiply(trailing, n, factors, w, memory);
-        let along: Complex64 = w.iter().zip(&*v).map(|(w, v)| w.conj() * v).sum();
+        let along = inner(w, v);
         let half = -0.5 * tau * along;
         for (w, v) in w.iter_mut().zip(&*v) {
             *w += half * v;
