@@ -40,6 +40,8 @@ pub(super) struct ExtendedSystem<P> {
     system: Box<dyn LinearSystem>,
     /// Harmonics that the linear system factors.
     factored: Factored,
+    /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
+    pub stalled: bool,
     sizes: Sizes,
     work: Work,
     /// Border of a fixed parameter: no column, and the row (0, …, 0, 1).
@@ -75,6 +77,7 @@ impl<P: Problem> ExtendedSystem<P> {
             at: Residual::new(n)?,
             system,
             factored,
+            stalled: false,
             sizes,
             work,
             column: try_vec(n, 0.0, CONTEXT)?,
@@ -129,6 +132,7 @@ impl<P: Problem> ExtendedSystem<P> {
         let solved = self
             .system
             .solve(&mut self.problem, tolerance, &mut self.b, interrupt)?;
+        self.stalled |= !solved && most >= MOST_PRODUCTS;
         step.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }

@@ -10,7 +10,8 @@ use crate::error_estimate::estimate::{
     CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
 use crate::error_estimate::extended_newton::extend;
-use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
+use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::factored_harmonics::{factored, wide};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::kept_ratio::KeptRatio;
 use crate::error_estimate::work::{Sizes, Work};
@@ -25,12 +26,6 @@ use std::sync::Arc;
 
 /// Evaluations, each with a product, for which the work must suffice.
 const EVALUATIONS: f64 = 6.0;
-
-/// Factorisations of the block for which the work must suffice.
-const FACTORISATIONS: f64 = 5.0;
-
-/// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
-const BLOCK: f64 = 300.0;
 
 /// Flexibility tables by factorisation that cost about as much as all modes of a structure.
 const TABLES: usize = 24;
@@ -306,7 +301,13 @@ impl<'a> ForcedEstimator<'a> {
             return Ok((None, work));
         }
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
-        let factored = factored(&sizes, compliant, &work);
+        let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
+        let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
+        let factored = if stalled {
+            wide(&sizes, &work)
+        } else {
+            factored(&sizes, compliant, &work)
+        };
         let packed = sizes.packed().min(2.0 * factored.block as f64);
         let pairs = factored.each.saturating_sub(factored.block) as f64;
         self.forget_beside(slot, sizes.bytes(packed, pairs), &work);
@@ -326,15 +327,24 @@ impl<'a> ForcedEstimator<'a> {
             let shared = self.range.map(|range| (range, &self.waves.estimated));
             system.problem.set_modes(modal, shared)?;
         }
-        let found = on(
-            &mut system,
-            condensed,
-            (solved, from),
-            (extent, slot),
-            (&mut self.changes, self.options.tol_residual),
-            self.interrupt,
-        );
-        let left = system.work();
+        let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
+        let extend = |system: &mut _, changes: &mut _| {
+            let kept = (changes, tolerance);
+            on(system, condensed, (solved, from), (extent, slot), kept, interrupt)
+        };
+        let mut found = extend(&mut system, &mut self.changes);
+        let mut left = system.work();
+        let wide = if stalled || !system.stalled {
+            factored
+        } else {
+            wide(&sizes, &left)
+        };
+        if wide.block > factored.block {
+            self.forget_beside(slot, sizes.bytes(2.0 * wide.block as f64, 0.0), &left);
+            system.set_point(omega, wide, left)?;
+            found = extend(&mut system, &mut self.changes);
+            left = system.work();
+        }
         if self.extended.len() == MOST_KEPT {
             self.extended.remove(0);
         }
@@ -356,23 +366,6 @@ impl<'a> ForcedEstimator<'a> {
             self.extended.remove(oldest);
         }
     }
-}
-
-/// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
-/// each by itself.
-fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
-    let fits = |block: usize| {
-        let packed = sizes.packed().min(2.0 * block as f64);
-        let pairs = (compliant - block) as f64;
-        sizes.order(packed) <= BLOCK
-            && FACTORISATIONS * sizes.factors(packed, pairs) <= work.left()
-            && work.fits(sizes.bytes(packed, pairs))
-    };
-    let block = (1..=compliant)
-        .rev()
-        .find(|&block| fits(block))
-        .unwrap_or(compliant.min(1));
-    Factored { block, each: compliant }
 }
 
 fn on(

@@ -121,6 +121,11 @@ impl Sizes {
         self.packed
     }
 
+    /// Carried harmonics.
+    pub fn harmonics(&self) -> usize {
+        self.harmonics as usize
+    }
+
     /// Unknowns of the block between the first `packed` numbers of each coordinate.
     pub fn order(&self, packed: f64) -> f64 {
         self.coordinates * packed

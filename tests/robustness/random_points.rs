@@ -356,6 +356,21 @@ fn a_point_that_needed_more_harmonics_is_not_solved_again_with_fewer() {
     assert_eq!((branch.harmonics_used()[0], branch.estimates()), (3.0, 2));
 }
 
+/// Polynomials of model 278 are far stiffer at its motion than in their linear state: with factors of the harmonics that
+/// are compliant there the steps of its estimates do not converge.
+#[test]
+fn an_estimate_whose_steps_do_not_converge_by_iteration_is_found_by_factors() {
+    let case = Case::random(SEED, 278);
+    let branch = solve(&case, &SolverOptions::default(), None).0.unwrap();
+    assert_eq!(branch.status(), Status::Ok);
+    let (estimate, error) = (branch.error_estimate()[0], error(&case, &branch).unwrap());
+    let share = estimate / error;
+    assert!(
+        error <= TOLERANCE && (0.3..=3.0).contains(&share),
+        "{estimate:e} for {error:e}"
+    );
+}
+
 #[test]
 #[ignore = "minutes: limits on times, for tests/deep.sh"]
 fn three_hundred_random_models_are_answered_within_the_tolerance_and_a_bounded_time() {
