@@ -14,7 +14,7 @@ use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::factored_harmonics::{factored, wide};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::kept_ratio::KeptRatio;
-use crate::error_estimate::work::{Sizes, Work};
+use crate::error_estimate::work::{OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -121,7 +121,8 @@ impl<'a> ForcedEstimator<'a> {
             return solved.exact(0.0);
         }
         let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let mut work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
+        let least = if self.single { OF_A_START.0 } else { OF_A_START.1 };
+        let mut work = Work::of_point(&sizes, solved.iterations.max(least), self.options.memory_limit);
         work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
         self.allowed = work.left();
         let found = self.extend(solved, work);

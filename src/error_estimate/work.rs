@@ -12,8 +12,9 @@ use crate::error_estimate::cutoff_harmonic::affordable;
 use crate::error_estimate::estimate::{MOST_EXTENDED, extended_options};
 use crate::options::SolverOptions;
 
-/// Least number of Newton iterations that a solution without a neighbour counts: that of an easy homotopy.
-const ITERATIONS: usize = 40;
+/// Least number of Newton iterations that a solution without a neighbour counts: for a point at a single frequency, and for the
+/// first point of a branch, which may become harder.
+pub(super) const OF_A_START: (usize, usize) = (16, 40);
 
 /// Newton iterations of an extension.
 const EXTENSION: f64 = 12.0;
@@ -227,8 +228,7 @@ impl Work {
     pub fn of_point(point: &Sizes, iterations: usize, limit: usize) -> Self {
         let limit = if limit == 0 { f64::INFINITY } else { limit as f64 };
         Self {
-            operations: LEAST
-                + MULTIPLE * (iterations.max(ITERATIONS) as f64 * point.iteration() + TABLES * point.flexibility()),
+            operations: LEAST + MULTIPLE * (iterations as f64 * point.iteration() + TABLES * point.flexibility()),
             bytes: (BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0)).min(limit),
         }
     }
