@@ -90,16 +90,20 @@ impl CutoffHarmonic {
         })
     }
 
+    /// The same without a bound, where it follows from the last one.
+    pub fn known(&self, omega: f64, from: usize) -> Option<usize> {
+        // Where all harmonics are one wave, G depends on hω alone.
+        let one_wave = self.condensed.in_step() <= 1;
+        let (frequency, near, searched_from) = self.found?;
+        let is_near = (omega / near - 1.0).abs() <= if self.highest.is_some() { NEAR } else { FINE };
+        ((one_wave || is_near) && from >= searched_from).then(|| (frequency / omega).round() as usize)
+    }
+
     /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
     /// ω; `from` where it is compliant in none.
     pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
-        // Where all harmonics are one wave, G depends on hω alone.
-        let one_wave = self.condensed.in_step() <= 1;
-        if let Some((frequency, near, searched_from)) = self.found
-            && (one_wave || (omega / near - 1.0).abs() <= if self.highest.is_some() { NEAR } else { FINE })
-            && from >= searched_from
-        {
-            return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));
+        if let Some(known) = self.known(omega, from) {
+            return Ok(known.clamp(from, most.max(from)));
         }
         let last = match self.highest {
             Some(highest) => self.check_each(omega, highest, (from, most), interrupt)?,

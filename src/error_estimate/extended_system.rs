@@ -213,6 +213,7 @@ mod tests {
     use crate::contact::Contact;
     use crate::error_estimate::work::{Sizes, Work};
     use crate::interrupt::Interrupt;
+    use crate::linalg::linear_system::{Jacobian, MatrixFree};
     use crate::linalg::matrix_view::MatrixView;
     use crate::linalg::norm;
     use crate::model::Model;
@@ -244,6 +245,9 @@ mod tests {
         let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega), 0, None, &none).unwrap();
         let sizes = Sizes::new(&condensed, 0);
         let work = Work::of_point(&sizes, 40, 0);
+        let bounded = |enough| work.highest((&condensed, enough), &options, 1.0, Sizes::evaluation);
+        let most = bounded(usize::MAX);
+        assert!(most > 63 && [31, 63, most, most + 1].map(bounded) == [31, 63, most, most]);
         let n = condensed.unknowns();
         assert!(n > DENSE_UP_TO);
         let few = Factored { block: 4, each: 4 };
@@ -259,6 +263,13 @@ mod tests {
                 assert!(system.step(&mut step, false, &none).unwrap());
                 step
             });
+            // A block of all harmonics is filled as the whole matrix, which has fewer operations.
+            let (m, mut active) = (condensed.set().packed_len(), vec![true; n]);
+            let [mut filled, mut block] = [0; 2].map(|_| vec![0.0; n * n]);
+            part.problem.fill(&mut filled, &mut active).unwrap();
+            part.problem.fill_block(m, &mut block, &mut active).unwrap();
+            let scale = norm(&filled);
+            assert!(filled.iter().zip(&block).all(|(a, b)| (a - b).abs() <= 1e-13 * scale));
             let [a, b] = &steps;
             let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
             assert!(norm(&off) <= 1e-2 * norm(a), "{amplitude}: {:e}", norm(&off) / norm(a));

@@ -135,7 +135,13 @@ impl<'a> ForcedEstimator<'a> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
-        let most = self.affordable(solved, work);
+        // With the cut-off known, bounds beyond it are not sought.
+        let known = self
+            .cutoff
+            .as_ref()
+            .and_then(|cutoff| cutoff.known(solved.omega, set.base()));
+        let enough = known.map_or(usize::MAX, |known| known.saturating_add(1).max(least));
+        let most = self.affordable(solved, work, enough);
         if least > most {
             return Ok(None);
         }
@@ -160,9 +166,9 @@ impl<'a> ForcedEstimator<'a> {
         }))
     }
 
-    /// The highest harmonic to which the work suffices to extend a point.
-    fn affordable(&self, solved: &Solved<'_>, work: &Work) -> usize {
-        work.highest(solved.condensed, &self.options, EVALUATIONS, |sizes| {
+    /// The highest harmonic to which the work suffices to extend a point; `enough` where that is no higher.
+    fn affordable(&self, solved: &Solved<'_>, work: &Work, enough: usize) -> usize {
+        work.highest((solved.condensed, enough), &self.options, EVALUATIONS, |sizes| {
             sizes.evaluation() + sizes.product(0.0, sizes.packed())
         })
     }
@@ -225,7 +231,7 @@ impl<'a> ForcedEstimator<'a> {
             }
             let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
             let next = if extent.short { next } else { next.min(extent.highest) };
-            let ends = next > self.affordable(solved, &work);
+            let ends = next > self.affordable(solved, &work, next);
             if series.has_settled() || (ends && series.suffices()) {
                 self.ratio.note(extent.least, series.ratio());
                 return Ok(Some(series.completed(found)));

@@ -102,7 +102,7 @@ impl<'a> ModeEstimator<'a> {
         let own = set.numbers().last().copied().unwrap_or(0);
         let sizes = Sizes::new(solved.condensed, self.options.samples);
         let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START.1), self.options.memory_limit);
-        let most = work.highest(solved.condensed, &self.options, ITERATIONS, |sizes| {
+        let most = work.highest((solved.condensed, usize::MAX), &self.options, ITERATIONS, |sizes| {
             sizes.evaluation() + sizes.factors(sizes.packed(), 0.0)
         });
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);

@@ -243,10 +243,11 @@ impl Work {
         bytes <= self.bytes
     }
 
-    /// The highest harmonic to which a point can be extended such that the work suffices for `times` the operations.
+    /// The highest harmonic to which a point can be extended such that the work suffices for `times` the operations; `enough`
+    /// where that is no higher.
     pub fn highest(
         &self,
-        point: &Condensed,
+        (point, enough): (&Condensed, usize),
         options: &SolverOptions,
         times: f64,
         operations: impl Fn(&Sizes) -> f64,
@@ -258,6 +259,9 @@ impl Work {
                 && sizes.flexibility() + times * operations(&sizes) <= self.operations
         };
         let (mut low, mut high) = (0, affordable(point, MOST_EXTENDED) / base);
+        if enough <= high.saturating_mul(base) && fits(enough) {
+            return enough;
+        }
         while high > low {
             let middle = low + (high - low).div_ceil(2);
             if fits(middle * base) {
