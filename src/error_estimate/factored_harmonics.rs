@@ -15,10 +15,11 @@ pub(super) fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored
     within(sizes, compliant, BLOCK, work)
 }
 
-/// As many harmonics in one block as the work allows: where contacts are far stiffer than their reference stiffness, the
-/// other compliant ones are not enough.
-pub(super) fn wide(sizes: &Sizes, work: &Work) -> Factored {
-    within(sizes, sizes.harmonics(), f64::INFINITY, work)
+/// All harmonics in one block, if the work allows: where contacts are far stiffer than their reference stiffness, the
+/// compliant ones are not enough.
+pub(super) fn whole(sizes: &Sizes, work: &Work) -> Option<Factored> {
+    let all = sizes.harmonics();
+    Some(within(sizes, all, f64::INFINITY, work)).filter(|found| found.block == all)
 }
 
 /// The first of the compliant harmonics in one block of an order at most.

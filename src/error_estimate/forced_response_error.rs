@@ -11,10 +11,10 @@ use crate::error_estimate::estimate::{
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::ExtendedSystem;
-use crate::error_estimate::factored_harmonics::{factored, wide};
+use crate::error_estimate::factored_harmonics::{factored, whole};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::kept_ratio::KeptRatio;
-use crate::error_estimate::work::{OF_A_START, Sizes, Work};
+use crate::error_estimate::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -55,6 +55,8 @@ pub struct ForcedEstimator<'a> {
     interrupt: &'a Interrupt<'a>,
     /// Whether all points have one frequency: no extended problem serves the next one.
     single: bool,
+    /// Whether some estimate told nothing.
+    told_nothing: bool,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: KeptRatio,
@@ -87,6 +89,7 @@ impl<'a> ForcedEstimator<'a> {
             models,
             interrupt,
             single: false,
+            told_nothing: false,
             extended: Vec::new(),
             ratio: KeptRatio::default(),
             changes: KeptChanges::default(),
@@ -121,12 +124,18 @@ impl<'a> ForcedEstimator<'a> {
             return solved.exact(0.0);
         }
         let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let least = if self.single { OF_A_START.0 } else { OF_A_START.1 };
+        let least = match (self.single, self.told_nothing) {
+            (false, _) => OF_A_START,
+            (true, false) => OF_A_POINT.0,
+            (true, true) => OF_A_POINT.1,
+        };
         let mut work = Work::of_point(&sizes, solved.iterations.max(least), self.options.memory_limit);
         work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
         self.allowed = work.left();
         let found = self.extend(solved, work);
-        or_unknown(found, solved, 0.0)
+        let found = or_unknown(found, solved, 0.0)?;
+        self.told_nothing |= !found.certified;
+        Ok(found)
     }
 
     /// The harmonics to which a point is extended; `None` where the work does not suffice.
@@ -310,11 +319,8 @@ impl<'a> ForcedEstimator<'a> {
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
         let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
         let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
-        let factored = if stalled {
-            wide(&sizes, &work)
-        } else {
-            factored(&sizes, compliant, &work)
-        };
+        let all = if stalled { whole(&sizes, &work) } else { None };
+        let factored = all.unwrap_or_else(|| factored(&sizes, compliant, &work));
         let packed = sizes.packed().min(2.0 * factored.block as f64);
         let pairs = factored.each.saturating_sub(factored.block) as f64;
         self.forget_beside(slot, sizes.bytes(packed, pairs), &work);
@@ -341,14 +347,12 @@ impl<'a> ForcedEstimator<'a> {
         };
         let mut found = extend(&mut system, &mut self.changes);
         let mut left = system.work();
-        let wide = if stalled || !system.stalled {
-            factored
-        } else {
-            wide(&sizes, &left)
-        };
-        if wide.block > factored.block {
-            self.forget_beside(slot, sizes.bytes(2.0 * wide.block as f64, 0.0), &left);
-            system.set_point(omega, wide, left)?;
+        if system.stalled
+            && !stalled
+            && let Some(all) = whole(&sizes, &left)
+        {
+            self.forget_beside(slot, sizes.bytes(sizes.packed(), 0.0), &left);
+            system.set_point(omega, all, left)?;
             found = extend(&mut system, &mut self.changes);
             left = system.work();
         }

@@ -101,7 +101,7 @@ impl<'a> ModeEstimator<'a> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
         let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START.1), self.options.memory_limit);
+        let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START), self.options.memory_limit);
         let most = work.highest((solved.condensed, usize::MAX), &self.options, ITERATIONS, |sizes| {
             sizes.evaluation() + sizes.factors(sizes.packed(), 0.0)
         });

@@ -12,9 +12,11 @@ use crate::error_estimate::cutoff_harmonic::affordable;
 use crate::error_estimate::estimate::{MOST_EXTENDED, extended_options};
 use crate::options::SolverOptions;
 
-/// Least number of Newton iterations that a solution without a neighbour counts: for a point at a single frequency, and for the
-/// first point of a branch, which may become harder.
-pub(super) const OF_A_START: (usize, usize) = (16, 40);
+/// Least number of Newton iterations that the first point of a branch counts, which may become harder.
+pub(super) const OF_A_START: usize = 40;
+
+/// The same for a point at a single frequency, and after an estimate of it that told nothing.
+pub(super) const OF_A_POINT: (usize, usize) = (32, 16);
 
 /// Newton iterations of an extension.
 const EXTENSION: f64 = 12.0;

@@ -38,7 +38,7 @@ const NOT_FOUND: f64 = 0.04;
 /// Errors below this are not told apart from those of the truth.
 const RESOLVED: f64 = 1e-7;
 
-/// Time after which a call is stopped: one without an answer.
+/// Processor time after which a call is stopped: one without an answer.
 const LONGEST: Duration = Duration::from_secs(8);
 
 /// Time after which a call is not repeated.
@@ -72,10 +72,10 @@ fn solve(case: &Case, solver: &SolverOptions, guess: Option<&[Complex64]>) -> (R
         guess,
         ..ForcedOptions::default()
     };
-    let (checks, begin, started) = (Cell::new(0), Instant::now(), cpu_seconds());
+    let (checks, started) = (Cell::new(0), cpu_seconds());
     let count = || {
         checks.set(checks.get() + 1);
-        checks.get() % 64 == 0 && begin.elapsed() > LONGEST
+        checks.get() % 64 == 0 && cpu_seconds() - started > LONGEST.as_secs_f64()
     };
     let mut hooks = Hooks {
         cancelled: Some(&count),
