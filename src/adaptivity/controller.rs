@@ -159,6 +159,7 @@ impl AdaptivityController {
         }
         // The point before the last refinement, where its error was unknown and the refinement changed nothing.
         let mut settled: Option<(Point, usize)> = None;
+        let mut missed = false; // with fewer harmonics
         for refinements in 0..=MOST_REFINEMENTS {
             let level = equations.resolution();
             let Some(found) = self.estimate(equations, &point, signs)? else {
@@ -169,6 +170,7 @@ impl AdaptivityController {
             self.last = accepted.then_some((found.error, required));
             if !accepted {
                 self.note_miss(found.error, level);
+                missed = true;
             }
             if let Some((fewer, below)) = settled.take().filter(|_| found.error.is_nan()) {
                 // More harmonics would tell no more, and each later point would pay for them.
@@ -176,7 +178,7 @@ impl AdaptivityController {
                 self.floor = (below, 0);
                 return done(fewer);
             }
-            let drops = accepted && self.may_drop(found.error);
+            let drops = accepted && self.may_drop(found.error, missed);
             let next = if found.error.is_nan() {
                 equations.levels().level_of_double(level)
             } else {
@@ -250,13 +252,14 @@ impl AdaptivityController {
     }
 
     /// Whether harmonics may be dropped at once: those without content, and at the first point that is nonlinear those
-    /// that it does not require, since the branch began with a number of harmonics that nothing has justified.
-    fn may_drop(&mut self, error: f64) -> bool {
+    /// that it does not require, if the branch began with a number of harmonics that nothing has justified: not if the point
+    /// `missed` the tolerance with fewer.
+    fn may_drop(&mut self, error: f64, missed: bool) -> bool {
         if error == 0.0 {
             return true;
         }
         let first = !core::mem::replace(&mut self.begun, true);
-        first && MARGIN * error <= DROP * self.tolerance
+        first && !missed && MARGIN * error <= DROP * self.tolerance
     }
 
     /// Whether two solutions have one response within the tolerance.

@@ -93,11 +93,17 @@ impl CutoffHarmonic {
         })
     }
 
+    /// The same without a bound, where it follows from the last one.
+    pub fn known(&self, omega: f64, from: usize) -> Option<usize> {
+        let found = self.found.filter(|found| self.serves(*found, omega, from));
+        found.map(|(frequency, ..)| (frequency / omega).round() as usize)
+    }
+
     /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
     /// ω; `from` where it is compliant in none.
     pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
-        if let Some((frequency, ..)) = self.found.filter(|found| self.serves(*found, omega, from)) {
-            return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));
+        if let Some(known) = self.known(omega, from) {
+            return Ok(known.clamp(from, most.max(from)));
         }
         let reaches = |(frequency, ..): (f64, f64, usize)| most as f64 * omega <= (1.0 + FINE) * frequency;
         if self

@@ -40,6 +40,8 @@ pub(super) struct ExtendedSystem<P> {
     system: Box<dyn LinearSystem>,
     /// Harmonics that the linear system factors.
     factored: Factored,
+    /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
+    pub stalled: bool,
     sizes: Sizes,
     work: Work,
     /// Border of a fixed parameter: no column, and the row (0, …, 0, 1).
@@ -75,6 +77,7 @@ impl<P: Problem> ExtendedSystem<P> {
             at: Residual::new(n)?,
             system,
             factored,
+            stalled: false,
             sizes,
             work,
             column: try_vec(n, 0.0, CONTEXT)?,
@@ -129,6 +132,7 @@ impl<P: Problem> ExtendedSystem<P> {
         let solved = self
             .system
             .solve(&mut self.problem, tolerance, &mut self.b, interrupt)?;
+        self.stalled |= !solved && most >= MOST_PRODUCTS;
         step.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
@@ -209,6 +213,7 @@ mod tests {
     use crate::contact::Contact;
     use crate::error_estimate::work::{Sizes, Work};
     use crate::interrupt::Interrupt;
+    use crate::linalg::linear_system::{Jacobian, MatrixFree};
     use crate::linalg::matrix_view::MatrixView;
     use crate::linalg::norm;
     use crate::model::Model;
@@ -240,6 +245,9 @@ mod tests {
         let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega), 0, None, &none).unwrap();
         let sizes = Sizes::new(&condensed, 0);
         let work = Work::of_point(&sizes, 40, 0);
+        let bounded = |enough| work.highest((&condensed, enough), &options, 1.0, Sizes::evaluation);
+        let most = bounded(usize::MAX);
+        assert!(most > 63 && [31, 63, most, most + 1].map(bounded) == [31, 63, most, most]);
         let n = condensed.unknowns();
         assert!(n > DENSE_UP_TO);
         let few = Factored { block: 4, each: 4 };
@@ -255,6 +263,13 @@ mod tests {
                 assert!(system.step(&mut step, false, &none).unwrap());
                 step
             });
+            // A block of all harmonics is filled as the whole matrix, which has fewer operations.
+            let (m, mut active) = (condensed.set().packed_len(), vec![true; n]);
+            let [mut filled, mut block] = [0; 2].map(|_| vec![0.0; n * n]);
+            part.problem.fill(&mut filled, &mut active).unwrap();
+            part.problem.fill_block(m, &mut block, &mut active).unwrap();
+            let scale = norm(&filled);
+            assert!(filled.iter().zip(&block).all(|(a, b)| (a - b).abs() <= 1e-13 * scale));
             let [a, b] = &steps;
             let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
             assert!(norm(&off) <= 1e-2 * norm(a), "{amplitude}: {:e}", norm(&off) / norm(a));

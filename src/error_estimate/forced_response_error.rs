@@ -11,10 +11,11 @@ use crate::error_estimate::estimate::{
     CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
 use crate::error_estimate::extended_newton::extend;
-use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
+use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::factored_harmonics::{factored, whole};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::kept_ratio::KeptRatio;
-use crate::error_estimate::work::{Sizes, Work};
+use crate::error_estimate::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -26,12 +27,6 @@ use std::sync::Arc;
 
 /// Evaluations, each with a product, for which the work must suffice.
 const EVALUATIONS: f64 = 6.0;
-
-/// Factorisations of the block for which the work must suffice.
-const FACTORISATIONS: f64 = 5.0;
-
-/// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
-const BLOCK: f64 = 300.0;
 
 /// Flexibility tables by factorisation that cost about as much as all modes of a structure.
 const TABLES: usize = 24;
@@ -62,6 +57,8 @@ pub struct ForcedEstimator<'a> {
     interrupt: &'a Interrupt<'a>,
     /// Whether all points have one frequency: no extended problem serves the next one.
     single: bool,
+    /// Whether some estimate told nothing.
+    told_nothing: bool,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: KeptRatio,
@@ -94,6 +91,7 @@ impl<'a> ForcedEstimator<'a> {
             models,
             interrupt,
             single: false,
+            told_nothing: false,
             extended: Vec::new(),
             ratio: KeptRatio::default(),
             changes: KeptChanges::default(),
@@ -128,11 +126,18 @@ impl<'a> ForcedEstimator<'a> {
             return solved.exact(0.0);
         }
         let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let mut work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
+        let least = match (self.single, self.told_nothing) {
+            (false, _) => OF_A_START,
+            (true, false) => OF_A_POINT.0,
+            (true, true) => OF_A_POINT.1,
+        };
+        let mut work = Work::of_point(&sizes, solved.iterations.max(least), self.options.memory_limit);
         work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
         self.allowed = work.left();
         let found = self.extend(solved, work);
-        or_unknown(found, solved, 0.0)
+        let found = or_unknown(found, solved, 0.0)?;
+        self.told_nothing |= !found.certified;
+        Ok(found)
     }
 
     /// The harmonics to which a point is extended; `None` where the work does not suffice.
@@ -141,7 +146,13 @@ impl<'a> ForcedEstimator<'a> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
-        let most = self.affordable(solved, work);
+        // With the cut-off known, bounds beyond it are not sought.
+        let known = self
+            .cutoff
+            .as_ref()
+            .and_then(|cutoff| cutoff.known(solved.omega, set.base()));
+        let enough = known.map_or(usize::MAX, |known| known.saturating_add(1).max(least));
+        let most = self.affordable(solved, work, enough);
         if least > most {
             return Ok(None);
         }
@@ -166,9 +177,9 @@ impl<'a> ForcedEstimator<'a> {
         }))
     }
 
-    /// The highest harmonic to which the work suffices to extend a point.
-    fn affordable(&self, solved: &Solved<'_>, work: &Work) -> usize {
-        work.highest(solved.condensed, &self.options, EVALUATIONS, |sizes| {
+    /// The highest harmonic to which the work suffices to extend a point; `enough` where that is no higher.
+    fn affordable(&self, solved: &Solved<'_>, work: &Work, enough: usize) -> usize {
+        work.highest((solved.condensed, enough), &self.options, EVALUATIONS, |sizes| {
             sizes.evaluation() + sizes.product(0.0, sizes.packed())
         })
     }
@@ -231,7 +242,7 @@ impl<'a> ForcedEstimator<'a> {
             }
             let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
             let next = if extent.short { next } else { next.min(extent.highest) };
-            let ends = next > self.affordable(solved, &work);
+            let ends = next > self.affordable(solved, &work, next);
             if series.has_settled() || (ends && series.suffices()) {
                 self.ratio.note(extent.least, series.ratio());
                 return Ok(Some(series.completed(found)));
@@ -325,7 +336,10 @@ impl<'a> ForcedEstimator<'a> {
             return Ok((None, work));
         }
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
-        let factored = factored(&sizes, compliant, &work);
+        let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
+        let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
+        let all = if stalled { whole(&sizes, &work) } else { None };
+        let factored = all.unwrap_or_else(|| factored(&sizes, compliant, &work));
         let packed = sizes.packed().min(2.0 * factored.block as f64);
         let pairs = factored.each.saturating_sub(factored.block) as f64;
         self.forget_beside(slot, sizes.bytes(packed, pairs), &work);
@@ -350,15 +364,22 @@ impl<'a> ForcedEstimator<'a> {
             });
             system.problem.set_modes(modal, shared)?;
         }
-        let found = on(
-            &mut system,
-            condensed,
-            (solved, from),
-            (extent, slot),
-            (&mut self.changes, self.options.tol_residual),
-            self.interrupt,
-        );
-        let left = system.work();
+        let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
+        let extend = |system: &mut _, changes: &mut _| {
+            let kept = (changes, tolerance);
+            on(system, condensed, (solved, from), (extent, slot), kept, interrupt)
+        };
+        let mut found = extend(&mut system, &mut self.changes);
+        let mut left = system.work();
+        if system.stalled
+            && !stalled
+            && let Some(all) = whole(&sizes, &left)
+        {
+            self.forget_beside(slot, sizes.bytes(sizes.packed(), 0.0), &left);
+            system.set_point(omega, all, left)?;
+            found = extend(&mut system, &mut self.changes);
+            left = system.work();
+        }
         if self.extended.len() == MOST_KEPT {
             self.extended.remove(0);
         }
@@ -380,23 +401,6 @@ impl<'a> ForcedEstimator<'a> {
             self.extended.remove(oldest);
         }
     }
-}
-
-/// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
-/// each by itself.
-fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
-    let fits = |block: usize| {
-        let packed = sizes.packed().min(2.0 * block as f64);
-        let pairs = (compliant - block) as f64;
-        sizes.order(packed) <= BLOCK
-            && FACTORISATIONS * sizes.factors(packed, pairs) <= work.left()
-            && work.fits(sizes.bytes(packed, pairs))
-    };
-    let block = (1..=compliant)
-        .rev()
-        .find(|&block| fits(block))
-        .unwrap_or(compliant.min(1));
-    Factored { block, each: compliant }
 }
 
 fn on(

@@ -5,6 +5,7 @@ mod doubling;
 mod estimate;
 mod extended_newton;
 mod extended_system;
+mod factored_harmonics;
 pub mod forced_response_error;
 mod kept_changes;
 mod kept_ratio;

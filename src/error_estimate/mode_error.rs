@@ -8,7 +8,7 @@ use crate::error_estimate::estimate::{
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::ExtendedSystem;
-use crate::error_estimate::work::{Sizes, Work};
+use crate::error_estimate::work::{OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::linear_system::Jacobian;
@@ -101,8 +101,8 @@ impl<'a> ModeEstimator<'a> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
         let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
-        let most = work.highest(solved.condensed, &self.options, ITERATIONS, |sizes| {
+        let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START), self.options.memory_limit);
+        let most = work.highest((solved.condensed, usize::MAX), &self.options, ITERATIONS, |sizes| {
             sizes.evaluation() + sizes.factors(sizes.packed(), 0.0)
         });
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);

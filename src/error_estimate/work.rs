@@ -12,8 +12,11 @@ use crate::error_estimate::cutoff_harmonic::affordable;
 use crate::error_estimate::estimate::{MOST_EXTENDED, extended_options};
 use crate::options::SolverOptions;
 
-/// Least number of Newton iterations that a solution without a neighbour counts: that of an easy homotopy.
-const ITERATIONS: usize = 40;
+/// Least number of Newton iterations that the first point of a branch counts, which may become harder.
+pub(super) const OF_A_START: usize = 40;
+
+/// The same for a point at a single frequency, and after an estimate of it that told nothing.
+pub(super) const OF_A_POINT: (usize, usize) = (32, 16);
 
 /// Newton iterations of an extension.
 const EXTENSION: f64 = 12.0;
@@ -121,6 +124,11 @@ impl Sizes {
         self.packed
     }
 
+    /// Carried harmonics.
+    pub fn harmonics(&self) -> usize {
+        self.harmonics as usize
+    }
+
     /// Unknowns of the block between the first `packed` numbers of each coordinate.
     pub fn order(&self, packed: f64) -> f64 {
         self.coordinates * packed
@@ -222,8 +230,7 @@ impl Work {
     pub fn of_point(point: &Sizes, iterations: usize, limit: usize) -> Self {
         let limit = if limit == 0 { f64::INFINITY } else { limit as f64 };
         Self {
-            operations: LEAST
-                + MULTIPLE * (iterations.max(ITERATIONS) as f64 * point.iteration() + TABLES * point.flexibility()),
+            operations: LEAST + MULTIPLE * (iterations as f64 * point.iteration() + TABLES * point.flexibility()),
             bytes: (BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0)).min(limit),
         }
     }
@@ -238,10 +245,11 @@ impl Work {
         bytes <= self.bytes
     }
 
-    /// The highest harmonic to which a point can be extended such that the work suffices for `times` the operations.
+    /// The highest harmonic to which a point can be extended such that the work suffices for `times` the operations; `enough`
+    /// where that is no higher.
     pub fn highest(
         &self,
-        point: &Condensed,
+        (point, enough): (&Condensed, usize),
         options: &SolverOptions,
         times: f64,
         operations: impl Fn(&Sizes) -> f64,
@@ -253,6 +261,9 @@ impl Work {
                 && sizes.flexibility() + times * operations(&sizes) <= self.operations
         };
         let (mut low, mut high) = (0, affordable(point, MOST_EXTENDED) / base);
+        if enough <= high.saturating_mul(base) && fits(enough) {
+            return enough;
+        }
         while high > low {
             let middle = low + (high - low).div_ceil(2);
             if fits(middle * base) {

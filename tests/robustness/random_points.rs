@@ -5,10 +5,13 @@
 //! --test robustness three_hundred -- --ignored --nocapture`.
 
 mod caller;
+#[path = "../../examples/support/cpu_time.rs"]
+mod cpu_time;
 mod model;
 
 use crate::common::harmonics;
 use crate::random_problems::random::from_environment;
+use cpu_time::cpu_seconds;
 use hbvib::analysis::{forced_response, verify};
 use hbvib::error::{Error, Status};
 use hbvib::hooks::Hooks;
@@ -35,7 +38,7 @@ const NOT_FOUND: f64 = 0.04;
 /// Errors below this are not told apart from those of the truth.
 const RESOLVED: f64 = 1e-7;
 
-/// Time after which a call is stopped: one without an answer.
+/// Processor time after which a call is stopped: one without an answer.
 const LONGEST: Duration = Duration::from_secs(8);
 
 /// Time after which a call is not repeated.
@@ -44,7 +47,7 @@ const REPEATED: Duration = Duration::from_millis(10);
 /// Most harmonics of a truth by harmonic balance.
 const MOST_HARMONICS: usize = 300;
 
-/// Cost of a call: time, and checks of the interrupt.
+/// Cost of a call: processor time, and checks of the interrupt.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     time: Duration,
@@ -69,17 +72,17 @@ fn solve(case: &Case, solver: &SolverOptions, guess: Option<&[Complex64]>) -> (R
         guess,
         ..ForcedOptions::default()
     };
-    let (checks, begin) = (Cell::new(0), Instant::now());
+    let (checks, started) = (Cell::new(0), cpu_seconds());
     let count = || {
         checks.set(checks.get() + 1);
-        checks.get() % 64 == 0 && begin.elapsed() > LONGEST
+        checks.get() % 64 == 0 && cpu_seconds() - started > LONGEST.as_secs_f64()
     };
     let mut hooks = Hooks {
         cancelled: Some(&count),
         ..Hooks::default()
     };
     let found = forced_response(&case.model, solver, &range, &mut hooks);
-    let time = begin.elapsed();
+    let time = Duration::from_secs_f64(cpu_seconds() - started);
     let checks = checks.get();
     (found, Cost { time, checks })
 }
@@ -343,6 +346,29 @@ const QUICK: [u64; 36] = [
 #[test]
 fn random_models_are_answered_within_the_tolerance() {
     Table::run(SEED, QUICK.into_iter()).check();
+}
+
+/// Model 193 misses the tolerance with one harmonic and needs less than it has with three.
+#[test]
+fn a_point_that_needed_more_harmonics_is_not_solved_again_with_fewer() {
+    let case = Case::random(SEED, 193);
+    let branch = solve(&case, &SolverOptions::default(), None).0.unwrap();
+    assert_eq!((branch.harmonics_used()[0], branch.estimates()), (3.0, 2));
+}
+
+/// Polynomials of model 278 are far stiffer at its motion than in their linear state: with factors of the harmonics that
+/// are compliant there the steps of its estimates do not converge.
+#[test]
+fn an_estimate_whose_steps_do_not_converge_by_iteration_is_found_by_factors() {
+    let case = Case::random(SEED, 278);
+    let branch = solve(&case, &SolverOptions::default(), None).0.unwrap();
+    assert_eq!(branch.status(), Status::Ok);
+    let (estimate, error) = (branch.error_estimate()[0], error(&case, &branch).unwrap());
+    let share = estimate / error;
+    assert!(
+        error <= TOLERANCE && (0.3..=3.0).contains(&share),
+        "{estimate:e} for {error:e}"
+    );
 }
 
 #[test]

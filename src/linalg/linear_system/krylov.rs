@@ -243,10 +243,12 @@ impl LinearSystem for KrylovSystem {
         self.scales = border.scales;
         interrupt.check()?;
         let is_direct = self.is_direct();
-        let operator = operator(jacobian)?;
         let (matrix, active) = self.block.memory();
-        operator.fill_block(self.lengths.part, matrix, active)?;
-        if !is_direct {
+        if is_direct {
+            jacobian.fill(matrix, active)?;
+        } else {
+            let operator = operator(jacobian)?;
+            operator.fill_block(self.lengths.part, matrix, active)?;
             operator.keep()?;
         }
         let lengths = self.lengths;
