@@ -194,12 +194,8 @@ impl<'a> ContactForces<'a> {
         let s = self.factor;
         // Forces that scale with the motion; at rest they follow from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
-        if s == 1.0 {
-            self.scaled.copy_from_slice(motion);
-        } else {
-            for (scaled, y) in self.scaled.iter_mut().zip(motion) {
-                *scaled = y / s;
-            }
+        for (scaled, y) in self.scaled.iter_mut().zip(motion) {
+            *scaled = y / s;
         }
         for (scaled, rest) in self.scaled.iter_mut().step_by(m).zip(&self.rest) {
             *scaled += rest;
