@@ -120,12 +120,14 @@ impl SingleContactLanes {
     /// small or a number is not finite.
     pub fn evaluate(&self, omega: f64, tables: &mut [Table]) -> bool {
         self.groups.iter().all(|group| {
-            let Some([value, slope]) = self.arch.dispatch(Evaluate { group, omega }) else {
+            let mut found = [[Lanes::ZERO; ENTRIES]; 2];
+            if !self.arch.dispatch(Evaluate(group, omega, &mut found)) {
                 return false;
-            };
+            }
+            let [value, slope] = &found;
             let tables = &mut tables[group.first..group.first + group.count];
             for (lane, table) in tables.iter_mut().enumerate() {
-                for (to, from) in [(&mut table.value, &value), (&mut table.slope, &slope)] {
+                for (to, from) in [(&mut table.value, value), (&mut table.slope, slope)] {
                     for (to, from) in to.iter_mut().zip(from) {
                         *to = Complex64::new(from.re[lane], from.im[lane]);
                     }
@@ -136,26 +138,23 @@ impl SingleContactLanes {
     }
 }
 
-/// The entries of the tables of a group and their slopes.
-struct Evaluate<'a> {
-    group: &'a Group,
-    omega: f64,
-}
+/// Fills in the entries of the tables of a group and their slopes at ω; `false` where that is not possible.
+struct Evaluate<'a>(&'a Group, f64, &'a mut [[Lanes; ENTRIES]; 2]);
 
 impl WithSimd for Evaluate<'_> {
-    type Output = Option<[[Lanes; ENTRIES]; 2]>;
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let mut tables = [[Lanes::ZERO; ENTRIES]; 2];
-        let vectors = self.group.count.div_ceil(size_of::<S::f64s>() / size_of::<f64>());
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self(group, omega, tables) = self;
+        let vectors = group.count.div_ceil(size_of::<S::f64s>() / size_of::<f64>());
         // A closure would be compiled without the instructions of the caller.
         for k in 0..vectors {
-            if !(Vectors { simd, k }).evaluate(&self, &mut tables) {
-                return None;
+            if !(Vectors { simd, k }).evaluate(group, omega, tables) {
+                return false;
             }
         }
-        Some(tables)
+        true
     }
 }
 
@@ -242,8 +241,8 @@ impl<S: Simd> Vectors<S> {
 
     /// The tables and their slopes; `false` where a denominator is small or a number is not finite.
     #[inline(always)]
-    fn evaluate(self, by: &Evaluate<'_>, tables: &mut [[Lanes; ENTRIES]; 2]) -> bool {
-        let (simd, group) = (self.simd, by.group);
+    fn evaluate(self, group: &Group, omega: f64, tables: &mut [[Lanes; ENTRIES]; 2]) -> bool {
+        let simd = self.simd;
         let (zero, one) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
         let none = Complex { re: zero, im: zero };
         let (number, alpha, beta) = (
@@ -251,7 +250,7 @@ impl<S: Simd> Vectors<S> {
             self.read(&group.alpha),
             self.read(&group.beta),
         );
-        let nu = self.mul(number, simd.splat_f64s(by.omega));
+        let nu = self.mul(number, simd.splat_f64s(omega));
         // c = i·of_damping, s = ν² − iνα
         let of_damping = self.add(self.mul(nu, beta), self.read(&group.loss_factor));
         let d_of_damping = self.mul(number, beta);

@@ -1,7 +1,7 @@
 //! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
 //!
 //! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times its present size,
-//! p in units of the range. A step predicts by the polynomial through the last two to five points and tangents, corrects in the
+//! p in units of the range. A step predicts by the polynomial through the last two to seven points and tangents, corrects in the
 //! plane orthogonal to the tangent (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
@@ -377,19 +377,16 @@ impl Continuation {
         let chord = metric.distance(&point.v, &here.v);
         let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
         let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
-        let kept = cosine(
-            metric.dot(&point.tangent, &here.tangent),
-            metric.norm(&point.tangent),
-            metric.norm(&here.tangent),
-        );
+        let lengths = (metric.norm(&here.tangent), metric.norm(&point.tangent));
+        let kept = cosine(metric.dot(&point.tangent, &here.tangent), lengths.0, lengths.1);
         let turned = kept < STRAIGHT;
         // A change of sense is a jump over corners. Only where other branches cross this one does it belong to the
         // straight continuation, however short the step.
         let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < same_line(step));
-        let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
+        let back = cosine(along, chord, lengths.0) < STRAIGHT;
         let far = chord > 3.0 * step;
         let error = self.prediction_error(&self.scratch, &point, amplitude);
-        self.history.judge(&self.scratch, &point.v, &self.row, metric);
+        self.history.judge(&self.scratch, &point, &self.row, metric);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }

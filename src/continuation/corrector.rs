@@ -2,6 +2,7 @@
 //! damping the solver of the first point.
 
 mod last_evaluation;
+mod moved_tangent;
 
 use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_extend, try_vec};
@@ -62,6 +63,8 @@ pub struct Corrector {
     /// Memory of the next tangent.
     unused: Vec<f64>,
     change: Vec<f64>,
+    /// Points of the matrices that the linear system took over last, the newest first; NaN where they are not known.
+    matrices_at: [Vec<f64>; 3],
     tolerance: f64,
     min_iterations: usize,
     max_iterations: usize,
@@ -94,15 +97,17 @@ impl Corrector {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(n: usize, tolerance: f64, max_iterations: usize) -> Result<Self> {
+        let point = || try_vec(n + 1, 0.0, "Newton's method");
         Ok(Self {
             at: Residual::new(n)?,
             system: AutomaticSystem::new(n)?,
             factors: Factors::None,
-            step: try_vec(n + 1, 0.0, "Newton's method")?,
-            trial: try_vec(n + 1, 0.0, "Newton's method")?,
-            next: try_vec(n + 1, 0.0, "Newton's method")?,
+            step: point()?,
+            trial: point()?,
+            next: point()?,
             unused: Vec::new(),
-            change: try_vec(n + 1, 0.0, "Newton's method")?,
+            change: point()?,
+            matrices_at: [point()?, point()?, point()?],
             tolerance,
             min_iterations: 0,
             max_iterations,
@@ -181,6 +186,7 @@ impl Corrector {
             if !residual.is_finite() || !self.newton_step(problem, metric, row, reuse, interrupt)? {
                 return Ok(Outcome::Failed);
             }
+            self.matrices_at[0].copy_from_slice(v);
             let size = norm(&self.step);
             if !size.is_finite() {
                 return Ok(Outcome::Failed);
@@ -192,7 +198,12 @@ impl Corrector {
             let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
             let converged = (residual <= self.attainable() && near) || (round_off && !shrinks);
             if converged && iteration >= self.min_iterations {
-                if !self.solve_for_tangent(problem, (metric, row), interrupt)? {
+                let slope = if iteration == 0 {
+                    self.slope_weights(metric, row)
+                } else {
+                    None
+                };
+                if !self.solve_for_tangent(problem, (metric, row), slope, interrupt)? {
                     return Ok(Outcome::Failed);
                 }
                 return self.finish(problem, v, metric, (iteration, residual));
@@ -270,6 +281,9 @@ impl Corrector {
         row: &[f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
+        // NaN until it is known that the matrix is one of a correction.
+        self.matrices_at.rotate_right(1);
+        self.matrices_at[0].fill(f64::NAN);
         let border = Border {
             column: &self.at.d_parameter,
             scales: (metric.u, metric.p),
@@ -417,16 +431,20 @@ impl Corrector {
         }))
     }
 
-    /// The tangent of the current matrix in scaled numbers, of any length, in `next`; `false` where the matrix is singular.
+    /// The tangent of the current matrix in scaled numbers, of any length, in `next`; `false` where the matrix is singular. With
+    /// weights of `slope_weights` it is that behind the Newton step.
     fn solve_for_tangent(
         &mut self,
         problem: &mut dyn Problem,
         (metric, row): (Metric, &[f64]),
+        slope: Option<[f64; 3]>,
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let n = self.step.len() - 1;
         core::mem::swap(&mut self.step, &mut self.next);
-        self.step.fill(0.0);
+        if !slope.is_some_and(|slope| self.system.apply_last(slope.map(|w| -w), &self.next, &mut self.step)) {
+            self.step.fill(0.0);
+        }
         self.step[n] = 1.0;
         let solved = self.solve(problem, (metric, row), TANGENT_ERROR, interrupt);
         core::mem::swap(&mut self.step, &mut self.next);
@@ -460,7 +478,7 @@ impl Corrector {
             return Ok(None);
         }
         self.update(problem, metric, row, interrupt)?;
-        if !self.factor(problem, interrupt)? || !self.solve_for_tangent(problem, (metric, row), interrupt)? {
+        if !self.factor(problem, interrupt)? || !self.solve_for_tangent(problem, (metric, row), None, interrupt)? {
             return Ok(None);
         }
         self.unit_tangent(metric, tangent);

@@ -30,8 +30,10 @@ struct Bend<'p> {
     unit: f64,
     /// Those of the angle between the tangents.
     cosine: f64,
-    sine: f64,
     curvature: f64,
+    /// 1/κ, and κ over the sine of the angle.
+    radius: f64,
+    across: f64,
 }
 
 impl<'p> CurvatureCircle<'p> {
@@ -48,13 +50,15 @@ impl<'p> CurvatureCircle<'p> {
             let cosine = metric.dot(&here.tangent, &before.tangent) * circle.unit * unit;
             let chord = metric.distance(&here.v, &before.v);
             if cosine > 0.0 && 1.0 - cosine > STRAIGHT && chord > 0.0 {
+                // Twice the sine of half the angle.
+                let curvature = (2.0 * (1.0 - cosine)).sqrt() / chord;
                 circle.bend = Some(Bend {
                     tangent: &before.tangent,
                     unit,
                     cosine,
-                    sine: (1.0 - cosine * cosine).sqrt(),
-                    // Twice the sine of half the angle.
-                    curvature: (2.0 * (1.0 - cosine)).sqrt() / chord,
+                    curvature,
+                    radius: 1.0 / curvature,
+                    across: curvature / (1.0 - cosine * cosine).sqrt(),
                 });
             }
         }
@@ -77,10 +81,10 @@ impl<'p> CurvatureCircle<'p> {
             return (dx > 0.0).then(|| (x, 1.0 / dx));
         };
         let curvature = bend.curvature;
-        let across = |x: f64, z: f64| (bend.cosine * x - z * bend.unit) * (curvature / bend.sine);
+        let across = |x: f64, z: f64| (bend.cosine * x - z * bend.unit) * bend.across;
         let (y, dy) = (across(x, beside[0]), across(dx, beside[1]));
         let (x, dx, inward) = (curvature * x, curvature * dx, 1.0 - y);
-        let growth = (inward * dx + x * dy) / (curvature * (x * x + inward * inward));
-        (growth > 0.0).then(|| (x.atan2(inward) / curvature, 1.0 / growth))
+        let scale = curvature * (x * x + inward * inward) / (inward * dx + x * dy);
+        (scale > 0.0).then(|| (x.atan2(inward) * bend.radius, scale))
     }
 }

@@ -28,6 +28,8 @@ pub(super) struct History {
     /// Prediction from one point fewer or one more, and their number; empty where there is none.
     other: Vec<f64>,
     other_count: usize,
+    /// Whether the last prediction was a solution, so that fewer points need not be tried.
+    is_met: bool,
 }
 
 impl History {
@@ -49,6 +51,7 @@ impl History {
             count: 1,
             other,
             other_count: 1,
+            is_met: false,
         })
     }
 
@@ -105,20 +108,21 @@ impl History {
         // One more and one fewer are tried in turn, where there are both.
         let (may_fall, may_grow) = (self.count > 2, self.count > 1 && self.count < predictor.count());
         let grows = may_grow && (!may_fall || self.other_count <= self.count);
-        if grows || may_fall {
+        if grows || (may_fall && !(self.is_met && self.count == predictor.count())) {
             self.other_count = if grows { self.count + 1 } else { self.count - 1 };
             fill(&predictor, &predictor.weights(step, self.other_count), other, v.len());
         }
         predictor.amplitude(&weights)
     }
 
-    /// Selects the number of points of the next prediction, where the last one was `predicted` and led to `v` across the unit
+    /// Selects the number of points of the next prediction, where the last one was `predicted` and led to `point` across the unit
     /// vector `row`.
-    pub fn judge(&mut self, predicted: &[f64], v: &[f64], row: &[f64], metric: Metric) {
+    pub fn judge(&mut self, predicted: &[f64], point: &Point, row: &[f64], metric: Metric) {
+        self.is_met = point.iterations == 0;
         if self.other.is_empty() {
             return;
         }
-        let square = |from: &[f64]| metric.square_across(from, v, row);
+        let square = |from: &[f64]| metric.square_across(from, &point.v, row);
         if square(&self.other) < square(predicted) {
             self.most = self.other_count;
         }

@@ -1,7 +1,7 @@
 //! The metric of a branch: the unknowns in units that follow the branch, the parameter in units of the range.
 
 use crate::continuation::Settings;
-use crate::linalg::norm;
+use crate::linalg::{SAFE_SQUARES, dot, norm};
 
 /// Numbers that are summed side by side.
 const LANES: usize = 4;
@@ -20,19 +20,30 @@ impl Metric {
     #[must_use]
     pub fn norm(self, v: &[f64]) -> f64 {
         let (u, p) = v.split_at(v.len() - 1);
-        (norm(u) / self.u).hypot(p[0] / self.p)
+        let (u, p) = (norm(u) / self.u, p[0] / self.p);
+        let square = u * u + p * p;
+        // Neither an overflow nor squares lost below the smallest number.
+        if (SAFE_SQUARES..f64::INFINITY).contains(&square) {
+            square.sqrt()
+        } else {
+            u.hypot(p)
+        }
     }
 
     /// Distance of two points.
     #[must_use]
     pub fn distance(self, a: &[f64], b: &[f64]) -> f64 {
-        self.dot_with(a, b, |x, y| (x - y) * (x - y)).sqrt()
+        let n = a.len() - 1;
+        let squares = a[..n].iter().zip(&b[..n]).map(|(x, y)| (x - y) * (x - y));
+        let along = (a[n] - b[n]) / self.p;
+        (squares.sum::<f64>() / (self.u * self.u) + along * along).sqrt()
     }
 
     /// Inner product.
     #[must_use]
     pub fn dot(self, a: &[f64], b: &[f64]) -> f64 {
-        self.dot_with(a, b, |x, y| x * y)
+        let n = a.len() - 1;
+        dot(&a[..n], &b[..n]) / (self.u * self.u) + a[n] * b[n] / (self.p * self.p)
     }
 
     /// Inner products with two vectors: of the way from `here` to `v`, and of a tangent.
@@ -87,10 +98,13 @@ impl Metric {
         square / (self.u * self.u) + of_parameter * of_parameter - along * along
     }
 
-    fn dot_with(self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
-        let n = a.len() - 1;
-        let u: f64 = a[..n].iter().zip(&b[..n]).map(|(x, y)| f(x / self.u, y / self.u)).sum();
-        u + f(a[n] / self.p, b[n] / self.p)
+    /// Length of the way between two points along a scaled unit vector.
+    #[must_use]
+    pub fn along_row(self, from: &[f64], to: &[f64], row: &[f64]) -> f64 {
+        let n = row.len() - 1;
+        let unknowns = from[..n].iter().zip(&to[..n]).zip(row);
+        let along: f64 = unknowns.map(|((from, to), row)| (to - from) * row).sum();
+        along / self.u + (to[n] - from[n]) / self.p * row[n]
     }
 
     /// v += factor·step, the step in scaled unknowns.
@@ -115,10 +129,11 @@ impl Metric {
     pub fn unit(self, direction: &[f64], row: &mut [f64]) {
         let n = row.len() - 1;
         let length = self.norm(direction);
+        let (u, p) = (1.0 / (self.u * length), 1.0 / (self.p * length));
         for i in 0..n {
-            row[i] = direction[i] / self.u / length;
+            row[i] = direction[i] * u;
         }
-        row[n] = direction[n] / self.p / length;
+        row[n] = direction[n] * p;
     }
 
     /// Units for unknowns of the given size and the range of `settings`.

@@ -27,27 +27,29 @@ pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
 /// The same at the time whose e^{iτ} is `turn`.
 fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
-    let mut j = Jet {
-        x: mean.first().copied().unwrap_or(0.0),
-        dx: 0.0,
-        ddx: 0.0,
-        dddx: 0.0,
-    };
     let stride = set.stride();
     let step = if stride == 2 { turn * turn } else { turn };
+    // Value and p times the quadrature, which the processor makes side by side, and their products with p².
+    let (mut low, mut high) = ([0.0; 2], [0.0; 2]);
     let mut p = 1.0;
-    for pair in rest.as_chunks::<2>().0 {
-        let x = pair[0] * turn.re - pair[1] * turn.im;
-        let quadrature = p * (pair[0] * turn.im + pair[1] * turn.re);
+    for [a, b] in rest.as_chunks::<2>().0 {
+        let (along, across) = ([turn.re, turn.im], [-turn.im, turn.re]);
+        let factors = [1.0, p];
         let square = p * p;
-        j.x += x;
-        j.dx -= quadrature;
-        j.ddx -= square * x;
-        j.dddx += square * quadrature;
+        for k in 0..2 {
+            let value = (a * along[k] + b * across[k]) * factors[k];
+            low[k] += value;
+            high[k] += square * value;
+        }
         turn *= step;
         p += stride as f64;
     }
-    j
+    Jet {
+        x: mean.first().copied().unwrap_or(0.0) + low[0],
+        dx: -low[1],
+        ddx: -high[0],
+        dddx: high[1],
+    }
 }
 
 /// The jets of a signal at times that approach one another: most e^{iτ} follow from the one before.

@@ -7,7 +7,7 @@
 
 mod factor_reuse;
 
-use crate::error::{Result, try_vec};
+use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 use crate::linalg::small_lu::{self, SmallLu};
@@ -29,7 +29,7 @@ pub struct Parts<'a> {
 
 /// Factors of the matrix of the active unknowns and the parameter.
 enum Factors {
-    Small(SmallLu),
+    Small(Box<SmallLu>),
     Large(Lu<f64>),
 }
 
@@ -37,7 +37,7 @@ impl Factors {
     /// Memory for matrices of up to `n` rows.
     fn new(n: usize) -> Result<Self> {
         Ok(if n <= small_lu::LARGEST {
-            Self::Small(SmallLu::new(n)?)
+            Self::Small(boxed(|| SmallLu::new(n))?)
         } else {
             Self::Large(Lu::new(n, 1)?)
         })

@@ -218,7 +218,8 @@ impl<T: Scalar> Lu<T> {
             }
         }
         for k in (0..n).rev() {
-            let x = b[k] / self.a[k * n + k];
+            // The product with the reciprocal is the digits of `small_lu`.
+            let x = b[k] * (T::one() / self.a[k * n + k]);
             b[k] = x;
             for (b, &u) in b[..k].iter_mut().zip(&self.a[k * n..k * n + k]) {
                 *b -= x * u;

@@ -30,6 +30,6 @@ pub mod triangle;
 mod vectors;
 
 pub use vectors::{
-    COPIED_UP_TO, add_outer_products, add_outer_products_to, add_product, dot, expand, first_product, inner, norm,
-    power_of_two, remove, transposed_products,
+    COPIED_UP_TO, SAFE_SQUARES, add_outer_products, add_outer_products_to, add_product, dot, expand, first_product,
+    inner, norm, power_of_two, remove, transposed_products,
 };

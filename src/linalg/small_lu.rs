@@ -31,6 +31,10 @@ pub struct SmallLu {
     /// L without its diagonal.
     lower: Vec<Column>,
     pivots: [usize; LARGEST],
+    /// Reciprocals of the diagonal of U.
+    inverses: [f64; LARGEST],
+    /// Row of A in each row of P A.
+    order: [usize; LARGEST],
 }
 
 impl SmallLu {
@@ -46,6 +50,8 @@ impl SmallLu {
             upper: try_vec(n.min(LARGEST), ZERO, CONTEXT)?,
             lower: try_vec(n.min(LARGEST), ZERO, CONTEXT)?,
             pivots: [0; LARGEST],
+            inverses: [0.0; LARGEST],
+            order: [0; LARGEST],
         })
     }
 
@@ -54,7 +60,9 @@ impl SmallLu {
         self.n = n.min(self.upper.len());
         let padded = self.n.next_multiple_of(WIDTH);
         for column in &mut self.upper[..self.n] {
-            column.as_flattened_mut()[self.n..padded].fill(0.0);
+            for x in &mut column.as_flattened_mut()[self.n..padded] {
+                *x = 0.0;
+            }
         }
     }
 
@@ -76,17 +84,24 @@ impl SmallLu {
     pub fn factor(&mut self) -> Result<()> {
         let n = self.n;
         let (upper, lower, pivots) = (&mut self.upper[..n], &mut self.lower[..n], &mut self.pivots[..n]);
+        let inverses = &mut self.inverses[..n];
         let arch = self.arch;
         let broken = match n.div_ceil(WIDTH) {
-            0 | 1 => arch.dispatch(Factor::<1>(upper, lower, pivots)),
-            2 => arch.dispatch(Factor::<2>(upper, lower, pivots)),
-            3 => arch.dispatch(Factor::<3>(upper, lower, pivots)),
-            4 => arch.dispatch(Factor::<4>(upper, lower, pivots)),
-            5 => arch.dispatch(Factor::<5>(upper, lower, pivots)),
-            6 => arch.dispatch(Factor::<6>(upper, lower, pivots)),
-            7 => arch.dispatch(Factor::<7>(upper, lower, pivots)),
-            _ => arch.dispatch(Factor::<8>(upper, lower, pivots)),
+            0 | 1 => arch.dispatch(Factor::<1>(upper, lower, pivots, inverses)),
+            2 => arch.dispatch(Factor::<2>(upper, lower, pivots, inverses)),
+            3 => arch.dispatch(Factor::<3>(upper, lower, pivots, inverses)),
+            4 => arch.dispatch(Factor::<4>(upper, lower, pivots, inverses)),
+            5 => arch.dispatch(Factor::<5>(upper, lower, pivots, inverses)),
+            6 => arch.dispatch(Factor::<6>(upper, lower, pivots, inverses)),
+            7 => arch.dispatch(Factor::<7>(upper, lower, pivots, inverses)),
+            _ => arch.dispatch(Factor::<8>(upper, lower, pivots, inverses)),
         };
+        for (k, row) in self.order[..n].iter_mut().enumerate() {
+            *row = k;
+        }
+        for (k, pivot) in self.pivots[..n].iter().enumerate() {
+            self.order.swap(k, *pivot);
+        }
         match broken {
             None => Ok(()),
             Some((pivot, size)) => fail!(
@@ -99,17 +114,21 @@ impl SmallLu {
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
         let n = self.n;
-        let (upper, lower, pivots) = (&self.upper[..n], &self.lower[..n], &self.pivots[..n]);
+        let (upper, lower, order) = (
+            &self.upper[..n],
+            &self.lower[..n],
+            (&self.order[..n], &self.inverses[..n]),
+        );
         let arch = self.arch;
         match n.div_ceil(WIDTH) {
-            0 | 1 => arch.dispatch(Solve::<1>(upper, lower, pivots, b)),
-            2 => arch.dispatch(Solve::<2>(upper, lower, pivots, b)),
-            3 => arch.dispatch(Solve::<3>(upper, lower, pivots, b)),
-            4 => arch.dispatch(Solve::<4>(upper, lower, pivots, b)),
-            5 => arch.dispatch(Solve::<5>(upper, lower, pivots, b)),
-            6 => arch.dispatch(Solve::<6>(upper, lower, pivots, b)),
-            7 => arch.dispatch(Solve::<7>(upper, lower, pivots, b)),
-            _ => arch.dispatch(Solve::<8>(upper, lower, pivots, b)),
+            0 | 1 => arch.dispatch(Solve::<1>(upper, lower, order, b)),
+            2 => arch.dispatch(Solve::<2>(upper, lower, order, b)),
+            3 => arch.dispatch(Solve::<3>(upper, lower, order, b)),
+            4 => arch.dispatch(Solve::<4>(upper, lower, order, b)),
+            5 => arch.dispatch(Solve::<5>(upper, lower, order, b)),
+            6 => arch.dispatch(Solve::<6>(upper, lower, order, b)),
+            7 => arch.dispatch(Solve::<7>(upper, lower, order, b)),
+            _ => arch.dispatch(Solve::<8>(upper, lower, order, b)),
         }
     }
 
@@ -156,14 +175,14 @@ impl WithSimd for Fill<'_> {
 }
 
 /// Factors columns of B blocks; the pivot that is zero or not finite, with its size, if there is one.
-struct Factor<'a, const B: usize>(&'a mut [Column], &'a mut [Column], &'a mut [usize]);
+struct Factor<'a, const B: usize>(&'a mut [Column], &'a mut [Column], &'a mut [usize], &'a mut [f64]);
 
 impl<const B: usize> WithSimd for Factor<'_, B> {
     type Output = Option<(usize, f64)>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self(upper, lower, pivots) = self;
+        let Self(upper, lower, pivots, inverses) = self;
         let n = upper.len();
         for k in 0..n {
             let (left, right) = upper.split_at_mut(k + 1);
@@ -180,6 +199,7 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
             }
             pivots[k] = pivot;
             let inverse = 1.0 / numbers[pivot];
+            inverses[k] = inverse;
             numbers.swap(k, pivot);
             // Blocks above the row of the pivot are not used.
             let first = k / WIDTH;
@@ -189,8 +209,8 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
                     *l = c * inverse;
                 }
             }
-            for l in &mut l[first][..=k % WIDTH] {
-                *l = 0.0;
+            for (i, l) in l[first].iter_mut().enumerate() {
+                *l = if i <= k % WIDTH { 0.0 } else { *l };
             }
             lower[k][..B].copy_from_slice(&l);
             if pivot != k {
@@ -214,35 +234,43 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
 }
 
 /// Solves with the factors of B blocks a column.
-struct Solve<'a, const B: usize>(&'a [Column], &'a [Column], &'a [usize], &'a mut [f64]);
+struct Solve<'a, const B: usize>(&'a [Column], &'a [Column], (&'a [usize], &'a [f64]), &'a mut [f64]);
 
 impl<const B: usize> WithSimd for Solve<'_, B> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self(upper, lower, pivots, b) = self;
+        let Self(upper, lower, (order, inverses), b) = self;
         let mut x = [[0.0; WIDTH]; B];
-        for (x, b) in x.as_flattened_mut().iter_mut().zip(&*b) {
-            *x = *b;
+        for (x, &row) in x.as_flattened_mut().iter_mut().zip(order) {
+            *x = b[row];
         }
-        for (k, &pivot) in pivots.iter().enumerate() {
-            if pivot != k {
-                x.as_flattened_mut().swap(k, pivot);
+        // With places known to the compiler, the numbers stay in registers, each of which depends on the one before.
+        for block in 0..B {
+            for k in 0..WIDTH {
+                let Some(l) = lower.get(block * WIDTH + k) else { break };
+                let value = x[block][k];
+                for i in block..B {
+                    subtract(simd, &mut x[i], value, &l[i]);
+                }
             }
         }
-        for (k, l) in lower.iter().enumerate() {
-            let value = x[k / WIDTH][k % WIDTH];
-            for block in k / WIDTH..B {
-                subtract(simd, &mut x[block], value, &l[block]);
-            }
-        }
-        for (k, u) in upper.iter().enumerate().rev() {
-            let value = x[k / WIDTH][k % WIDTH] / u[k / WIDTH][k % WIDTH];
-            b[k] = value;
-            // This also changes rows from k on, which are not read again.
-            for block in 0..(k / WIDTH + 1).min(B) {
-                subtract(simd, &mut x[block], value, &u[block]);
+        for block in 0..B {
+            let block = B - 1 - block;
+            for k in 0..WIDTH {
+                let k = WIDTH - 1 - k;
+                let Some(u) = upper.get(block * WIDTH + k) else {
+                    continue;
+                };
+                let value = x[block][k] * inverses[block * WIDTH + k];
+                b[block * WIDTH + k] = value;
+                for i in 0..B {
+                    // This also changes rows from k on, which are not read again.
+                    if i <= block {
+                        subtract(simd, &mut x[i], value, &u[i]);
+                    }
+                }
             }
         }
     }

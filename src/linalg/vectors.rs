@@ -4,6 +4,7 @@ use crate::error::{Result, try_vec};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 
 /// aᴴ b in four partial sums, which the processor adds in parallel.
 #[must_use]
@@ -42,7 +43,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Sum of squares above which those that are lost below the smallest number are rounding.
-const SAFE_SQUARES: f64 = 1e-280;
+pub const SAFE_SQUARES: f64 = 1e-280;
 
 /// Euclidean norm that neither overflows nor underflows.
 #[must_use]
@@ -72,9 +73,6 @@ pub fn power_of_two(x: f64) -> f64 {
         1.0
     }
 }
-
-/// Order up to which plain loops multiply as fast as vector instructions chosen at run time.
-const LOOPS_UP_TO: usize = 32;
 
 /// Multiplications up to which a product with the transpose of a matrix is one of plain loops. faer copies the matrix then, and
 /// takes 128 KiB of stack for the copy.
@@ -111,21 +109,44 @@ pub fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
 
 /// out += factor·A x for a column-major A with `out.len()` rows.
 pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
-    let rows = out.len();
-    if rows > LOOPS_UP_TO {
-        matmul(
-            MatMut::from_column_major_slice_mut(out, rows, 1),
-            Accum::Add,
-            MatRef::from_column_major_slice(a, rows, x.len()),
-            MatRef::from_column_major_slice(x, x.len(), 1),
-            factor,
-            Par::Seq,
-        );
-        return;
-    }
-    for (column, x) in a.chunks_exact(rows.max(1)).zip(x) {
-        for (out, a) in out.iter_mut().zip(column) {
-            *out += factor * a * x;
+    Arch::new().dispatch(Product(factor, a, x, out));
+}
+
+/// The arguments of [`add_product`].
+struct Product<'a>(f64, &'a [f64], &'a [f64], &'a mut [f64]);
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self(factor, a, x, out) = self;
+        let rows = out.len();
+        // Four columns at a time are summed before they are stored.
+        let (fours, rest) = x.as_chunks::<4>();
+        let (of_fours, of_rest) = a.split_at(4 * fours.len() * rows);
+        for (columns, x) in of_fours.chunks_exact((4 * rows).max(1)).zip(fours) {
+            let x = x.map(|x| factor * x);
+            let (first, second) = columns.split_at(2 * rows);
+            let ((a, b), (c, d)) = (first.split_at(rows), second.split_at(rows));
+            let (blocks, last) = out.as_chunks_mut::<4>();
+            let [(a, a_last), (b, b_last), (c, c_last), (d, d_last)] =
+                [a, b, c, d].map(|column| column.as_chunks::<4>());
+            for ((((out, a), b), c), d) in blocks.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                for i in 0..4 {
+                    out[i] += (a[i] * x[0] + b[i] * x[1]) + (c[i] * x[2] + d[i] * x[3]);
+                }
+            }
+            for (i, out) in last.iter_mut().enumerate() {
+                *out += (a_last[i] * x[0] + b_last[i] * x[1]) + (c_last[i] * x[2] + d_last[i] * x[3]);
+            }
+        }
+        for (column, x) in of_rest.chunks_exact(rows.max(1)).zip(rest) {
+            let x = factor * x;
+            for (out, a) in out.iter_mut().zip(column) {
+                *out += a * x;
+            }
         }
     }
 }

@@ -139,6 +139,11 @@ impl LinearSystem for AutomaticSystem {
         self.backend()?.apply(jacobian, x, out)
     }
 
+    fn apply_last(&mut self, weights: [f64; 3], x: &[f64], out: &mut [f64]) -> bool {
+        let dense = self.dense.as_mut().filter(|_| !self.iterates);
+        dense.is_some_and(|dense| dense.apply_last(weights, x, out))
+    }
+
     fn solve_by_earlier_factors(
         &mut self,
         jacobian: &mut dyn Jacobian,

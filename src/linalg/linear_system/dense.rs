@@ -5,6 +5,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::add_product;
 use crate::linalg::bordered::{Bordered, Parts};
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
+use crate::linalg::small_lu;
 
 /// A bordered system with a dense matrix.
 pub struct DenseSystem {
@@ -12,6 +13,8 @@ pub struct DenseSystem {
     matrix: Vec<f64>,
     active: Vec<bool>,
     column: Vec<f64>,
+    /// Matrix and column, one after the other, of the two updates before, the newest first, where they are small.
+    before: [Vec<f64>; 2],
     scales: (f64, f64),
     row: Vec<f64>,
     scaled: Vec<f64>,
@@ -24,14 +27,16 @@ impl DenseSystem {
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
         const CONTEXT: &str = "the linear system";
+        let kept = if n < small_lu::LARGEST { n * (n + 1) } else { 0 };
         Ok(Self {
             factors: Bordered::new(n)?,
             matrix: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,
             active: try_vec(n, true, CONTEXT)?,
             column: try_vec(n, 0.0, CONTEXT)?,
+            before: [try_vec(kept, 0.0, CONTEXT)?, try_vec(kept, 0.0, CONTEXT)?],
             scales: (1.0, 1.0),
             row: try_vec(n + 1, 0.0, CONTEXT)?,
-            scaled: try_vec(n, 0.0, CONTEXT)?,
+            scaled: try_vec(n + 1, 0.0, CONTEXT)?,
         })
     }
 
@@ -85,6 +90,12 @@ impl DenseSystem {
 impl LinearSystem for DenseSystem {
     fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
         interrupt.check()?;
+        if !self.before[0].is_empty() {
+            self.before.swap(0, 1);
+            let (matrix, column) = self.before[0].split_at_mut(self.matrix.len());
+            matrix.copy_from_slice(&self.matrix);
+            column.copy_from_slice(&self.column);
+        }
         jacobian.fill(&mut self.matrix, &mut self.active)?;
         self.column.copy_from_slice(border.column);
         self.row.copy_from_slice(border.row);
@@ -116,9 +127,28 @@ impl LinearSystem for DenseSystem {
         for (out, c) in out.iter_mut().zip(&self.column) {
             *out = c * (self.scales.1 * x[n]);
         }
-        add_product(1.0, &self.matrix, &self.scaled, &mut out[..n]);
+        add_product(1.0, &self.matrix, &self.scaled[..n], &mut out[..n]);
         out[n] = self.row.iter().zip(x).map(|(t, x)| t * x).sum();
         Ok(())
+    }
+
+    fn apply_last(&mut self, [w, w1, w2]: [f64; 3], x: &[f64], out: &mut [f64]) -> bool {
+        if self.before[0].is_empty() {
+            return false;
+        }
+        let n = self.column.len();
+        for (s, x) in self.scaled.iter_mut().zip(x) {
+            *s = self.scales.0 * x;
+        }
+        self.scaled[n] = self.scales.1 * x[n];
+        out.fill(0.0);
+        let (unknowns, parameter) = self.scaled.split_at(n);
+        add_product(w, &self.matrix, unknowns, &mut out[..n]);
+        add_product(w, &self.column, parameter, &mut out[..n]);
+        for (weight, kept) in [w1, w2].into_iter().zip(&self.before) {
+            add_product(weight, kept, &self.scaled, &mut out[..n]);
+        }
+        true
     }
 
     fn solve_by_earlier_factors(

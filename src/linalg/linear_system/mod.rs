@@ -121,6 +121,12 @@ pub trait LinearSystem {
     /// `OutOfMemory`, and those of products.
     fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()>;
 
+    /// out = (w₀K + w₁K₁ + w₂K₂) x with the matrices taken over last, the newest first, but for their rows, of which out has 0;
+    /// `false` where they are not kept.
+    fn apply_last(&mut self, _weights: [f64; 3], _x: &[f64], _out: &mut [f64]) -> bool {
+        false
+    }
+
     /// Solves in place with the matrix that was taken over last by the factors of an earlier one, to a relative error
     /// of `tolerance`. `false`, with `b` as it was, where new factors are needed or are quicker.
     ///

@@ -4,7 +4,8 @@
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
 use crate::error::Result;
-use crate::problem::contact_forces::{ContactForces, add};
+use crate::linalg::add_product;
+use crate::problem::contact_forces::ContactForces;
 use core::ops::Range;
 use num_complex::Complex64;
 use pulp::{Simd, WithSimd};
@@ -85,9 +86,7 @@ impl ContactForces<'_> {
         let m = set.packed_len();
         dw.fill(0.0);
         for (by, block) in self.jacobians.of_force(coordinate) {
-            for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
-                add(dw, column, *d);
-            }
+            add_product(1.0, block, &direction[by * m..(by + 1) * m], dw);
         }
         let own = &direction[coordinate * m..(coordinate + 1) * m];
         for i in 0..set.numbers().len() {
