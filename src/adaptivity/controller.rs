@@ -39,10 +39,6 @@ const LOW: usize = 2;
 const PATIENCE: usize = 10;
 const MOST_PATIENCE: usize = 80;
 
-/// Share of the largest |dp/ds| of the branch below which it is about to fold: with fewer harmonics it may have folded before, and
-/// the point with its parameter lies behind the fold.
-const STEEP: f64 = 0.05;
-
 /// Relative size of a harmonic that is round-off.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -77,8 +73,6 @@ pub(crate) struct AdaptivityController {
     /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
     /// harmonics it may fold elsewhere and reverse.
     folded: bool,
-    /// Largest |dp/ds| so far.
-    flattest: f64,
     /// Where the branch was refined because an error was unknown: the number of points until it may be coarsened again.
     unknown: Option<usize>,
     /// Whether a nonlinear point was estimated.
@@ -98,7 +92,6 @@ impl AdaptivityController {
             floor: (0, 0),
             highest: 0,
             folded: false,
-            flattest: 0.0,
             unknown: None,
             begun: false,
             low: 0,
@@ -338,10 +331,7 @@ impl AdaptivityController {
         let next = if again { next.min(below) } else { next };
         let costly = equations.levels().are_costly();
         let tries = costly && next < level && self.floor.1 == 0 && error > 0.0;
-        let along = point.tangent.last().copied().unwrap_or(0.0).abs();
-        self.flattest = self.flattest.max(along);
-        let is_steep = along < STEEP * self.flattest && error > 0.0;
-        let may_fall = (again || tries || (share < DROP && (error == 0.0 || self.low >= LOW))) && !is_steep;
+        let may_fall = again || tries || (share < DROP && (error == 0.0 || self.low >= LOW));
         let rises = share > RAISE && next > level && !costly;
         if !(rises || (may_fall && next < level) || too_few) {
             return Ok(point);

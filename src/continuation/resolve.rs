@@ -10,6 +10,9 @@ use crate::problem::Problem;
 /// Distance, relative to the unknowns, beyond which a solution is another one than requested.
 const NEAR: f64 = 0.3;
 
+/// Cosine of the angle between two lines that are one.
+const PARALLEL: f64 = 0.99;
+
 /// Solves from `near`, at its parameter or in the plane across its tangent. The found point is followed in the sense of
 /// `near`, see `in_sense_of`. `None` where Newton's method fails or converges to another solution.
 ///
@@ -44,7 +47,7 @@ pub fn resolve(
         return Ok(None);
     }
     let mut point = Point::new(v, corrected, near.step);
-    in_sense_of(near, &mut point);
+    in_sense_of(near, &mut point, metric);
     Ok(Some(point))
 }
 
@@ -93,9 +96,17 @@ pub fn solve_linear(
 /// of G of the added harmonics leads from the equations without them (s = 0, where their block of J is the identity, and
 /// the determinant is that of the others) to those with them (s = 1). The sign of the bordered determinant is constant
 /// along regular solution curves and under such a change of the equations, so that both branches run from the same end
-/// to the same end.
-fn in_sense_of(near: &Point, point: &mut Point) {
-    if point.positive != near.positive {
+/// to the same end. Where both tangents lie on one line nothing is left to decide: their angle tells the sense, also where the
+/// equations are singular on the way to the added harmonics.
+fn in_sense_of(near: &Point, point: &mut Point, metric: Metric) {
+    let sizes = metric.norm(&near.tangent) * metric.norm(&point.tangent);
+    let cosine = metric.dot(&near.tangent, &point.tangent) / sizes;
+    let is_opposed = if cosine.abs() > PARALLEL {
+        cosine < 0.0
+    } else {
+        point.positive != near.positive
+    };
+    if is_opposed {
         point.reverse();
     }
 }
