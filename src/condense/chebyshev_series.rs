@@ -155,8 +155,9 @@ impl ChebyshevSeries {
         Ok(())
     }
 
-    /// Fills a table with the value of the series S over d(ω), and its slope (S′ − d′ S/d)/d, from d and d′. T′ₖ = k Uₖ₋₁.
-    pub fn evaluate(&self, omega: f64, denominator: (Complex64, Complex64), table: &mut Table) {
+    /// Fills a table with the value of the series S over d(ω), and its slope, where `with_slopes`, with (S′ − d′ S/d)/d, from
+    /// d and d′, or with 0. T′ₖ = k Uₖ₋₁.
+    pub fn evaluate(&self, omega: f64, denominator: (Complex64, Complex64), with_slopes: bool, table: &mut Table) {
         let stretch = 2.0 / (self.high - self.low);
         let x = (2.0 * omega - self.low - self.high) / (self.high - self.low);
         let [mut values, mut slopes] = [[0.0; MOST_INTERVALS + 1]; 2];
@@ -177,7 +178,7 @@ impl ChebyshevSeries {
         Arch::new().dispatch(Values {
             coefficients: &self.coefficients,
             narrow: &self.narrow,
-            weights: [&values[..count], &slopes[..count]],
+            weights: [&values[..count], if with_slopes { &slopes[..count] } else { &[] }],
             denominator,
             table,
         });
@@ -214,7 +215,7 @@ impl WithSimd for Transform<'_> {
 struct Values<'a> {
     coefficients: &'a [Vec<Complex64>],
     narrow: &'a [Vec<Complex<f32>>],
-    /// Tₖ and their derivatives by ω, those of narrow coefficients with their units.
+    /// Tₖ and their derivatives by ω where slopes are wanted, those of narrow coefficients with their units.
     weights: [&'a [f64]; 2],
     denominator: (Complex64, Complex64),
     table: &'a mut Table,
@@ -234,13 +235,18 @@ impl WithSimd for Values<'_> {
             let narrow = |k: usize| cast_slice::<Complex<f32>, f32>(&self.narrow[k][from..end]);
             for (sum, weights) in [&mut *value, &mut *slope].into_iter().zip(self.weights) {
                 sum.fill(Complex64::ZERO);
+                if weights.is_empty() {
+                    continue;
+                }
                 let (of_wide, of_narrow) = weights.split_at(self.coefficients.len());
                 add(cast_slice_mut(sum), of_wide, wide);
                 add(cast_slice_mut(sum), of_narrow, narrow);
             }
             for (v, s) in value.iter_mut().zip(slope) {
                 *v *= inverse;
-                *s = (*s - self.denominator.1 * *v) * inverse;
+                if !self.weights[1].is_empty() {
+                    *s = (*s - self.denominator.1 * *v) * inverse;
+                }
             }
             from = end;
         }
@@ -301,7 +307,13 @@ mod tests {
                 // Over d = ω².
                 for w in [0.7, 0.9, 1.33, 1.9] {
                     assert!(series.holds(w));
-                    series.evaluate(w, ((w * w).into(), (2.0 * w).into()), &mut table);
+                    let mut values = Table::of_size(size).unwrap();
+                    values.slope.fill(1.0.into());
+                    for (slopes, table) in [(true, &mut table), (false, &mut values)] {
+                        series.evaluate(w, ((w * w).into(), (2.0 * w).into()), slopes, table);
+                    }
+                    assert_eq!(values.value, table.value);
+                    assert!(values.slope.iter().all(|z| *z == Complex64::ZERO));
                     for i in 0..size {
                         let value = exact(w, i) / (w * w);
                         let by_omega = slope(w, i) / (w * w) - 2.0 * value / w;

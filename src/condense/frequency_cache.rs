@@ -294,7 +294,7 @@ fn interpolate(
                 )?)
             }
         };
-        interpolation.evaluate(omega, table, |w, values| {
+        interpolation.evaluate((omega, true), table, |w, values| {
             values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
             Ok(())
         })
@@ -338,7 +338,7 @@ fn interpolate_sums(
             Ok(())
         };
         let sums = interpolation.evaluations();
-        let mut done = interpolation.evaluate(omega, table, |w, values| {
+        let mut done = interpolation.evaluate((omega, false), table, |w, values| {
             sum(w, sample)?;
             values.copy_from_slice(&sample.value);
             Ok(())

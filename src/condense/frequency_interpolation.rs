@@ -99,39 +99,39 @@ impl FrequencyInterpolation {
         self.evaluations
     }
 
-    /// Fills `table` at `omega`; `sample` evaluates H by factorisation. Returns `false` if no panel of acceptable
-    /// width converged here.
+    /// Fills `table` at `omega`, its slope if `slopes`; `sample` evaluates H by factorisation. Returns `false` if no panel
+    /// of acceptable width converged here.
     ///
     /// # Errors
     /// Those of `sample`, `OutOfMemory`.
     pub fn evaluate(
         &mut self,
-        omega: f64,
+        (omega, slopes): (f64, bool),
         table: &mut Table,
         mut sample: impl FnMut(f64, &mut [Complex64]) -> Result<()>,
     ) -> Result<bool> {
-        if self.evaluate_known(omega, table) {
+        if self.evaluate_known((omega, slopes), table) {
             return Ok(true);
         }
         let Some(panel) = self.add_panel(omega, &mut sample)? else {
             return Ok(false);
         };
         try_push(&mut self.panels, panel, CONTEXT)?;
-        Ok(self.evaluate_known(omega, table))
+        Ok(self.evaluate_known((omega, slopes), table))
     }
 
     /// Fills `table` at `omega` where a panel is known; `false` elsewhere.
-    pub fn evaluate_known(&mut self, omega: f64, table: &mut Table) -> bool {
+    pub fn evaluate_known(&mut self, (omega, slopes): (f64, bool), table: &mut Table) -> bool {
         let denominator = self.denominator(omega);
         let Some(panel) = self.panels.iter().rev().find(|panel| panel.holds(omega)) else {
             return false;
         };
         if self.layout.is_symmetric() {
-            panel.evaluate(omega, denominator, &mut self.packed);
+            panel.evaluate(omega, denominator, slopes, &mut self.packed);
             self.layout.unpack(&self.packed.value, &mut table.value);
             self.layout.unpack(&self.packed.slope, &mut table.slope);
         } else {
-            panel.evaluate(omega, denominator, table);
+            panel.evaluate(omega, denominator, slopes, table);
         }
         true
     }
@@ -318,7 +318,7 @@ mod tests {
             for k in 0..=400 {
                 let w = start + (end - start) * f64::from(k) / 400.0;
                 let done = interpolation
-                    .evaluate(w, &mut table, |w, values| {
+                    .evaluate((w, true), &mut table, |w, values| {
                         values[0] = exact(w);
                         Ok(())
                     })
@@ -358,7 +358,9 @@ mod tests {
         let [mut a, mut b] = [0; 2].map(|_| Table::new(coordinates).unwrap());
         for k in 0..20 {
             let w = 0.9 + 0.025 * f64::from(k);
-            assert!(half.evaluate(w, &mut a, fill).unwrap() && whole.evaluate(w, &mut b, fill).unwrap());
+            assert!(
+                half.evaluate((w, true), &mut a, fill).unwrap() && whole.evaluate((w, true), &mut b, fill).unwrap()
+            );
             let mut exact = vec![Complex64::ZERO; outputs * outputs];
             fill(w, &mut exact).unwrap();
             for ((a, b), exact) in a.value.iter().zip(&b.value).zip(&exact) {
@@ -380,7 +382,7 @@ mod tests {
                 values[0] = exact(w);
                 Ok(())
             };
-            assert!(interpolation.evaluate(w, &mut table, sample).unwrap());
+            assert!(interpolation.evaluate((w, true), &mut table, sample).unwrap());
             assert!((table.value[0] - exact(w)).norm() < 1e-11 * exact(w).norm());
             let slope = -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
             assert!((table.slope[0] - slope).norm() < 1e-9 * slope.norm());

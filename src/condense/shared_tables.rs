@@ -57,14 +57,14 @@ impl SharedTables {
         found
     }
 
-    /// Interpolates the table of the i-th carried harmonic at a frequency; `false` where no panel is known.
+    /// Interpolates the table of the i-th carried harmonic at a frequency, without its slope; `false` where no panel is known.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub(super) fn known(&self, condensed: &Condensed, i: usize, omega: f64, table: &mut Table) -> Result<bool> {
         self.with(condensed, i, |kept, _| {
             let interpolation = kept.interpolation.as_mut();
-            Ok(interpolation.is_some_and(|known| known.evaluate_known(omega, table)))
+            Ok(interpolation.is_some_and(|known| known.evaluate_known((omega, false), table)))
         })
     }
 }

@@ -181,6 +181,8 @@ impl<'a> HarmonicBalance<'a> {
         out.values.copy_from_slice(u);
         out.d_parameter.fill(0.0);
         let (mut linear, mut rounding) = (Squares::default(), 0.0_f64);
+        // Estimates of errors have one frequency, and tables without slopes.
+        let has_slopes = path.is_some() || !self.tables.has_modes();
         for (i, table) in self.tables.current().iter().enumerate() {
             if i.is_multiple_of(BETWEEN_CHECKS) {
                 interrupt.check()?;
@@ -195,7 +197,9 @@ impl<'a> HarmonicBalance<'a> {
                 match path {
                     None => {
                         put(&mut out.values, r, mean, -y_lin);
-                        put(&mut out.d_parameter, r, mean, -table.slope[coordinates * outputs + row]);
+                        if has_slopes {
+                            put(&mut out.d_parameter, r, mean, -table.slope[coordinates * outputs + row]);
+                        }
                     }
                     Some((Path::GrowingLoad, p)) if !mean => {
                         put(&mut out.values, r, mean, -p * y_lin);
@@ -222,6 +226,9 @@ impl<'a> HarmonicBalance<'a> {
                         rounding += lost * lost * g.norm_sqr();
                     }
                     put(&mut out.values, r, mean, g * w);
+                    if !has_slopes {
+                        continue;
+                    }
                     let along = match path {
                         None => slope * w + g * by_parameter,
                         Some(_) => g * by_parameter,
