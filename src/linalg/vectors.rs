@@ -6,19 +6,10 @@ use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
-/// aᴴ b in four partial sums, which the processor adds in parallel.
+/// aᴴ b
 #[must_use]
 pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    let mut sums = [Complex64::ZERO; 4];
-    let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest = left.remainder().iter().zip(right.remainder());
-    let rest: Complex64 = rest.map(|(a, b)| a.conj() * b).sum();
-    for (a, b) in left.zip(right) {
-        for ((s, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *s += a.conj() * b;
-        }
-    }
-    sums.iter().sum::<Complex64>() + rest
+    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
 /// v ← v − part q
