@@ -198,7 +198,7 @@ impl Corrector {
             let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
             let converged = (residual <= self.attainable() && near) || (round_off && !shrinks);
             if converged && iteration >= self.min_iterations {
-                let slope = if iteration == 0 {
+                let slope = if iteration == 0 && !problem.has_kinks() {
                     self.slope_weights(metric, row)
                 } else {
                     None

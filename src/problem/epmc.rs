@@ -435,6 +435,10 @@ impl AlongPath for Epmc<'_> {
 }
 
 impl Problem for Epmc<'_> {
+    fn has_kinks(&self) -> bool {
+        self.forces.is_sampled()
+    }
+
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
         self.evaluate_scaled(u, 10f64.powf(-p), -LN_10, out)
     }

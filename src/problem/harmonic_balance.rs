@@ -466,9 +466,13 @@ impl Problem for HarmonicBalance<'_> {
         true
     }
 
+    fn has_kinks(&self) -> bool {
+        self.forces.is_sampled()
+    }
+
     fn resonance_between(&self, a: &End<'_>, b: &End<'_>, length: f64) -> Option<f64> {
         // Kinks seem to be resonances.
-        if self.forces.is_sampled() {
+        if self.has_kinks() {
             return None;
         }
         passed_resonance::between(self.condensed.set(), a, b, length)

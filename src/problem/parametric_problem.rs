@@ -98,6 +98,11 @@ pub trait Problem: Jacobian {
         false
     }
 
+    /// Whether the matrix jumps along the branch, wherever an event passes a sample.
+    fn has_kinks(&self) -> bool {
+        false
+    }
+
     /// Share of a step of this length along the branch at which something resonates that the step passes as a whole; `None` where
     /// nothing does.
     fn resonance_between(&self, _a: &End<'_>, _b: &End<'_>, _length: f64) -> Option<f64> {

@@ -67,7 +67,7 @@ fn a_bladed_disk_is_swept_whole_at_every_force_harmonic_and_sampling() {
                     tolerance: 0.0,
                     // So few samples for so many harmonics give twenty narrow maxima, which differ by 3 %: longer steps pass by
                     // the highest.
-                    step_max: if (highest, samples) == (15, 64) { 0.007 } else { 0.0 },
+                    step_max: if (highest, samples) == (15, 64) { 0.004 } else { 0.0 },
                     ..SolverOptions::default()
                 };
                 let (from, to) = RANGE;
