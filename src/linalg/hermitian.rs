@@ -7,17 +7,12 @@
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::{complex_columns, inner, remove};
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place_with_conj};
-use faer::{Conj, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
 /// Iterations for one eigenvalue; two or three suffice.
 const MOST_ITERATIONS: usize = 60;
-
-/// Columns of a solution between two checks of the interrupt.
-const AT_ONCE: usize = 32;
 
 /// Shares of the work in the reduction, the iteration and the vectors, for the progress.
 const REDUCED: f64 = 0.4;
@@ -219,7 +214,7 @@ pub fn cholesky(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Res
     Ok(true)
 }
 
-/// B ← L⁻¹ B, or L⁻ᴴ B, a few columns at a time.
+/// B ← L⁻¹ B, or L⁻ᴴ B, column by column.
 ///
 /// # Errors
 /// `StoppedByCaller`.
@@ -230,15 +225,22 @@ pub fn solve_triangular(
     b: &mut [Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
-    let factors = MatRef::from_column_major_slice(l, n, n);
-    for x in b.chunks_mut((AT_ONCE * n).max(1)) {
-        let columns = x.len() / n;
-        interrupt.check_before((4 * n * n * columns) as u64)?;
-        let x = MatMut::from_column_major_slice_mut(x, n, columns);
+    for x in b.chunks_exact_mut(n.max(1)) {
+        interrupt.check_before((4 * n * n) as u64)?;
         if adjoint {
-            solve_upper_triangular_in_place_with_conj(factors.transpose(), Conj::Yes, x, Par::Seq);
+            for k in (0..n).rev() {
+                let column = &l[k * n + k + 1..(k + 1) * n];
+                let known: Complex64 = column.iter().zip(&x[k + 1..]).map(|(l, x)| l.conj() * x).sum();
+                x[k] = (x[k] - known) / l[k * n + k].re;
+            }
         } else {
-            solve_lower_triangular_in_place(factors, x, Par::Seq);
+            for k in 0..n {
+                let (head, rest) = x[k..].split_at_mut(1);
+                head[0] /= l[k * n + k].re;
+                for (x, l) in rest.iter_mut().zip(&l[k * n + k + 1..(k + 1) * n]) {
+                    *x -= head[0] * l;
+                }
+            }
         }
     }
     Ok(())
