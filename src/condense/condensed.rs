@@ -4,7 +4,7 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::condense::tied_load::{LoadedLaw, TiedLoad};
 use crate::contact::Law;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::degree_map::DegreeMap;
 use crate::model::reduced_wave::MotionRow;
@@ -95,6 +95,31 @@ pub struct Condensed {
 }
 
 impl Condensed {
+    /// The same model with other blocks, one for each harmonic of `set`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn with_blocks(&self, set: HarmonicSet, blocks: Vec<HarmonicBlock>) -> Result<Self> {
+        const CONTEXT: &str = "the matrices per harmonic";
+        let mut laws = Vec::new();
+        for assembled in &self.laws {
+            try_push(&mut laws, assembled.clone(), CONTEXT)?;
+        }
+        Ok(Self {
+            set,
+            degrees: self.degrees.clone(),
+            blocks,
+            laws,
+            stiffness: try_copy(&self.stiffness, CONTEXT)?,
+            reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
+            can_stick: try_copy(&self.can_stick, CONTEXT)?,
+            share: try_copy(&self.share, CONTEXT)?,
+            contact_classes: self.contact_classes.clone(),
+            structure: self.structure.as_ref().map(Structure::try_clone).transpose()?,
+            ..*self
+        })
+    }
+
     /// The carried harmonics.
     #[must_use]
     #[inline]

@@ -88,6 +88,12 @@ impl HarmonicBlock {
         }
     }
 
+    /// Whether the matrices are those of another block, in the same memory.
+    #[must_use]
+    pub fn shares_matrices(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.reference, &other.reference) && Arc::ptr_eq(&self.mass, &other.mass)
+    }
+
     /// K_h of the structure itself, without any spring, at the entries of the pattern.
     ///
     /// # Errors

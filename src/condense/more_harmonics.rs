@@ -49,23 +49,9 @@ impl Condensed {
             }
             try_push(&mut blocks, block, CONTEXT)?;
         }
-        let mut laws = Vec::new();
-        for assembled in &self.laws {
-            try_push(&mut laws, assembled.clone(), CONTEXT)?;
-        }
         Ok(Some(Self {
-            set,
-            degrees: self.degrees.clone(),
-            structure: None,
-            blocks,
-            laws,
-            stiffness: try_copy(&self.stiffness, CONTEXT)?,
-            reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
-            can_stick: try_copy(&self.can_stick, CONTEXT)?,
-            share: try_copy(&self.share, CONTEXT)?,
-            contact_classes: self.contact_classes.clone(),
             refinement: options.refinement,
-            ..*self
+            ..self.with_blocks(set, blocks)?
         }))
     }
 }

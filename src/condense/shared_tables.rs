@@ -176,6 +176,16 @@ mod tests {
         largest
     }
 
+    /// The tables of all harmonics from modes.
+    fn by_modes(model: &Model, condensed: &Condensed) -> Vec<Option<ModalTable>> {
+        let mut waves = WaveCache::default();
+        let table = |i| {
+            let modes = waves.of(model, condensed, i, &Interrupt::none()).unwrap();
+            modes.map(|modes| ModalTable::new(condensed, i, RESPONSE, modes).unwrap())
+        };
+        (0..condensed.blocks().len()).map(table).collect()
+    }
+
     /// Number of samples of the table of harmonic 1.
     fn samples(tables: &SharedTables, condensed: &Condensed) -> usize {
         let i = condensed.blocks().iter().position(|block| block.number == 1).unwrap();
@@ -205,12 +215,7 @@ mod tests {
             for harmonics in [3, 7] {
                 let condensed = condensed(&model, harmonics);
                 let interrupt = Interrupt::none();
-                let mut waves = WaveCache::default();
-                let by_modes = |i| {
-                    let modes = waves.of(&model, &condensed, i, &interrupt).unwrap();
-                    modes.map(|modes| ModalTable::new(&condensed, i, RESPONSE, modes).unwrap())
-                };
-                let modal = (0..condensed.blocks().len()).map(by_modes).collect();
+                let modal = by_modes(&model, &condensed);
                 let mut cache = FrequencyCache::new(&condensed, RESPONSE, (0.5, 0.5), &interrupt).unwrap();
                 cache.set_modes(&condensed, modal, Some(interpolated)).unwrap();
                 for k in 0..40 {
@@ -233,12 +238,7 @@ mod tests {
         let (range, condensed) = ((0.5, 0.6), condensed(&model, 3));
         let mut sweep = FrequencyCache::new(&condensed, RESPONSE, range, &interrupt).unwrap();
         sweep.share_tables(&solved);
-        let mut waves = WaveCache::default();
-        let by_modes = |i| {
-            let modes = waves.of(&model, &condensed, i, &interrupt).unwrap();
-            modes.map(|modes| ModalTable::new(&condensed, i, RESPONSE, modes).unwrap())
-        };
-        let modal = (0..condensed.blocks().len()).map(by_modes).collect();
+        let modal = by_modes(&model, &condensed);
         let mut cache = FrequencyCache::new(&condensed, RESPONSE, (0.5, 0.5), &interrupt).unwrap();
         let tables = EstimateTables {
             range,

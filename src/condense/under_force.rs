@@ -4,7 +4,6 @@ use crate::condense::Condensed;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, TiedValues};
 use crate::error::{Result, try_copy, try_push};
 use crate::linalg::sparse::{Csc, Form};
-use crate::model::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -32,23 +31,7 @@ impl Condensed {
             }
             try_push(&mut blocks, forced, CONTEXT)?;
         }
-        let mut laws = Vec::new();
-        for assembled in &self.laws {
-            try_push(&mut laws, assembled.clone(), CONTEXT)?;
-        }
-        Ok(Self {
-            set: self.set.try_clone()?,
-            degrees: self.degrees.clone(),
-            blocks,
-            laws,
-            stiffness: try_copy(&self.stiffness, CONTEXT)?,
-            reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
-            can_stick: try_copy(&self.can_stick, CONTEXT)?,
-            share: try_copy(&self.share, CONTEXT)?,
-            contact_classes: self.contact_classes.clone(),
-            structure: self.structure.as_ref().map(Structure::try_clone).transpose()?,
-            ..*self
-        })
+        self.with_blocks(self.set.try_clone()?, blocks)
     }
 }
 

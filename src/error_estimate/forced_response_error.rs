@@ -3,7 +3,7 @@
 use crate::condense::frequency_cache::EstimateTables;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
-use crate::condense::{Condensed, HarmonicBlock, ModelCache, Resolution};
+use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
@@ -271,10 +271,7 @@ impl<'a> ForcedEstimator<'a> {
         let mut tables: Vec<Option<ModalTable>> = Vec::new();
         let blocks = condensed.blocks();
         for (i, block) in blocks.iter().enumerate() {
-            let shares = |known: &HarmonicBlock| {
-                Arc::ptr_eq(&known.reference, &block.reference) && Arc::ptr_eq(&known.mass, &block.mass)
-            };
-            let known = blocks[..i].iter().position(shares);
+            let known = blocks[..i].iter().position(|known| known.shares_matrices(block));
             let modes = match known.and_then(|known| tables[known].as_ref()) {
                 Some(table) => Some(table.modes()),
                 None => self.waves.of(self.model, condensed, i, self.interrupt)?,
@@ -365,11 +362,11 @@ impl<'a> ForcedEstimator<'a> {
             system.problem.set_modes(modal, shared)?;
         }
         let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
-        let extend = |system: &mut _, changes: &mut _| {
+        let run = |system: &mut _, changes: &mut _| {
             let kept = (changes, tolerance);
             on(system, condensed, (solved, from), (extent, slot), kept, interrupt)
         };
-        let mut found = extend(&mut system, &mut self.changes);
+        let mut found = run(&mut system, &mut self.changes);
         let mut left = system.work();
         if system.stalled
             && !stalled
@@ -377,7 +374,7 @@ impl<'a> ForcedEstimator<'a> {
         {
             self.forget_beside(slot, sizes.bytes(sizes.packed(), 0.0), &left);
             system.set_point(omega, all, left)?;
-            found = extend(&mut system, &mut self.changes);
+            found = run(&mut system, &mut self.changes);
             left = system.work();
         }
         if self.extended.len() == MOST_KEPT {
