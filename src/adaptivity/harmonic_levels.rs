@@ -26,8 +26,8 @@ const SMALL: usize = 32;
 /// Samples per harmonic where laws are sampled and the tolerance decides.
 const SAMPLES_PER_HARMONIC: usize = 8;
 
-/// Condenses the model to harmonics up to the one given.
-type Condense<'m> = dyn Fn(usize) -> Result<Condensed> + 'm;
+/// Condenses the model to harmonics up to the one given; from the same with fewer, where there is one.
+type Condense<'m> = dyn Fn(usize, Option<&Condensed>) -> Result<Condensed> + 'm;
 
 /// The levels; the model is condensed at each of them when it is first requested.
 pub(crate) struct HarmonicLevels<'m> {
@@ -50,7 +50,7 @@ impl<'m> HarmonicLevels<'m> {
         model: &Model,
         options: &SolverOptions,
         forced: &[usize],
-        condense: impl Fn(usize) -> Result<Condensed> + 'm,
+        condense: impl Fn(usize, Option<&Condensed>) -> Result<Condensed> + 'm,
     ) -> Result<Self> {
         let automatic = options.tolerance > 0.0;
         let costly = automatic && model.ndof() > LARGE && !have_modes(model)?;
@@ -150,7 +150,8 @@ impl<'m> HarmonicLevels<'m> {
     pub fn at(&self, level: usize) -> Result<&Resolution> {
         self.models.model(level, |highest| {
             let samples = self.samples_up_to(highest);
-            let condensed = (self.condense)(highest)?;
+            let fewer = self.models.below(level).map(|known| &*known.condensed);
+            let condensed = (self.condense)(highest, fewer)?;
             allow_point(self.memory_limit, &condensed, highest, samples)?;
             Ok(Resolution {
                 condensed: Arc::new(condensed),

@@ -66,7 +66,7 @@ pub(super) fn follow(
     };
     let (linear, gauge) = (&data.linear, &data.gauge);
     let is_loaded = linear.rest.is_loaded();
-    let levels = HarmonicLevels::new(first, solver, &[1], |harmonics| {
+    let levels = HarmonicLevels::new(first, solver, &[1], |harmonics, _| {
         let options = SolverOptions { harmonics, ..*solver };
         Ok(Condensed::for_mode(
             first,

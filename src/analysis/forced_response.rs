@@ -106,13 +106,15 @@ fn follow(
     let sweep = (range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;
     let waves = SharedWaves::default();
-    let condensed = |harmonics, reference| {
+    let condensed = |harmonics, reference, fewer: Option<&Condensed>| {
         let options = SolverOptions { harmonics, ..*solver };
-        condensed(model, &options, sweep, reference, &waves, interrupt)
+        condensed((model, &options), sweep, (reference, fewer), &waves, interrupt)
     };
-    let levels = HarmonicLevels::new(model, solver, &forced, |harmonics| condensed(harmonics, None))?;
+    let levels = HarmonicLevels::new(model, solver, &forced, |highest, fewer| condensed(highest, None, fewer))?;
     let stuck = Some(Reference::Stuck);
-    let stuck = HarmonicLevels::new(model, solver, &forced, |harmonics| condensed(harmonics, stuck))?;
+    let stuck = HarmonicLevels::new(model, solver, &forced, |highest, fewer| {
+        condensed(highest, stuck, fewer)
+    })?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = if levels.is_automatic() && range.guess.is_none() {
         0
@@ -267,16 +269,22 @@ pub(super) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     Ok(forced)
 }
 
-/// A model condensed for a sweep, with the modes of its waves where it has some.
+/// A model condensed for a sweep, with the modes of its waves where it has some; from one with fewer harmonics, where there is one.
 fn condensed(
-    model: &Model,
-    options: &SolverOptions,
+    (model, options): (&Model, &SolverOptions),
     sweep: (f64, f64),
-    reference: Option<Reference>,
+    (reference, fewer): (Option<Reference>, Option<&Condensed>),
     waves: &SharedWaves,
     interrupt: &Interrupt<'_>,
 ) -> Result<Condensed> {
-    let condensed = Condensed::with_reference(model, options, sweep, reference, interrupt)?;
+    let shared = match fewer {
+        Some(fewer) => fewer.with_more_harmonics(model, options, interrupt)?,
+        None => None,
+    };
+    let condensed = match shared {
+        Some(shared) => shared,
+        None => Condensed::with_reference(model, options, sweep, reference, interrupt)?,
+    };
     if sweep.0.to_bits() == sweep.1.to_bits() {
         return Ok(condensed);
     }

@@ -140,7 +140,7 @@ fn on_wave(
     let start = boxed(|| ModeStart::new(model, solver, range, interrupt))?;
     let (linear, gauge) = (&start.linear, &start.gauge);
     let waves = SharedWaves::default();
-    let levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
+    let levels = HarmonicLevels::new(model, solver, &[1], |harmonics, _| {
         let options = SolverOptions { harmonics, ..*solver };
         let form = (range.damping_form, linear.rest.is_loaded());
         let (condensed, _) = Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?;

@@ -100,7 +100,7 @@ fn follow(
     let (Some(omega), Some(motion)) = (branch.omega_at(point), branch.motion_at(point)) else {
         return fail!(Internal, "a stored point has no motion");
     };
-    let levels = HarmonicLevels::new(first, solver, &forced_harmonics(first)?, |harmonics| {
+    let levels = HarmonicLevels::new(first, solver, &forced_harmonics(first)?, |harmonics, _| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::with_reference(first, &options, (omega, omega), Some(Reference::Complex), interrupt)
     })?;

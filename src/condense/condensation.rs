@@ -102,18 +102,20 @@ impl Condensed {
         Ok(condensed)
     }
 
-    /// Attaches the modes of its waves to a small model, whose flexibility is then a sum over them along a branch.
+    /// Attaches the modes of its waves to a small model, whose flexibility is then a sum over them along a branch; those that are
+    /// known to a larger one.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn attach_modes(&mut self, model: &Model, waves: &mut WaveCache, interrupt: &Interrupt<'_>) -> Result<()> {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
         let is_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
-        if self.is_reduced() || self.order > ALL_UP_TO || is_rigid {
+        if self.is_reduced() || is_rigid {
             return Ok(());
         }
+        let wanted = self.order <= ALL_UP_TO;
         for i in 0..self.blocks.len() {
-            self.blocks[i].modes = waves.of(model, self, i, interrupt)?;
+            self.blocks[i].modes = waves.find(model, self, (i, wanted), interrupt)?;
         }
         Ok(())
     }

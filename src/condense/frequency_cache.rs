@@ -1,15 +1,17 @@
 //! The flexibility tables of all carried harmonics at a frequency: by factorisation for small structures or a
 //! single frequency; along a sweep from modes for small structures, interpolated for others.
 
+use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
-use crate::condense::modal_table::ModalTable;
+use crate::condense::modal_rows::ModalRows;
+use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::resonance_poles;
 use crate::condense::shared_tables::SharedTables;
 use crate::condense::single_contact_lanes::SingleContactLanes;
 use crate::condense::table_layout::is_symmetric;
-use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, try_copy, try_push};
+use crate::condense::wave_cache::ALL_UP_TO;
+use crate::error::{Result, boxed, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use core::ops::RangeInclusive;
 use num_complex::Complex64;
@@ -42,6 +44,7 @@ const SLOPE: f64 = 10.0;
 /// Tables of all carried harmonics.
 pub struct FrequencyCache<'a> {
     workspace: Workspace,
+    response: usize,
     current: Vec<Table>,
     /// Per harmonic, whether a sweep interpolates its table.
     interpolated: Vec<bool>,
@@ -50,6 +53,7 @@ pub struct FrequencyCache<'a> {
     range: (f64, f64),
     /// Per harmonic the table from modes, where it is used.
     modal: Vec<Option<ModalTable>>,
+    modal_work: ModalWork,
     /// The same tables of all harmonics at once, where each is from modes of a single contact.
     lanes: Option<SingleContactLanes>,
     /// Whether the tables from modes have slopes.
@@ -118,6 +122,7 @@ impl<'a> FrequencyCache<'a> {
         let mut tables = Vec::new();
         let mut interpolated = Vec::new();
         let (mut modal, mut constant, mut is_quicker) = (Vec::new(), Vec::new(), false);
+        let (mut waves, mut modal_work) = (Vec::new(), ModalWork::default());
         let count = condensed.blocks().len();
         let near_rigid = (0..coordinates).any(|c| condensed.is_near_rigid(c));
         let interpolate_above = if near_rigid {
@@ -129,8 +134,10 @@ impl<'a> FrequencyCache<'a> {
             interrupt.part(Phase::Condensation, i, count)?;
             try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
             try_push(&mut constant, false, CONTEXT)?;
-            let from_modes = if sweep {
-                of_wave(condensed, i, response, (range, &mut workspace), interrupt)?
+            // With many degrees of freedom a sum takes longer than an interpolation.
+            let from_modes = if sweep && condensed.ndof() <= ALL_UP_TO {
+                let known = (&mut waves, &mut modal_work, &mut workspace);
+                of_wave((condensed, i, response), range, known, interrupt)?
             } else {
                 None
             };
@@ -141,12 +148,14 @@ impl<'a> FrequencyCache<'a> {
         }
         Ok(Self {
             workspace,
+            response,
             current: tables,
             interpolated,
             tables: Tables::Own(SharedTables::default()),
             range,
             lanes: SingleContactLanes::new(&modal)?,
             modal,
+            modal_work,
             modal_slopes: true,
             is_quicker,
             constant,
@@ -229,7 +238,7 @@ impl<'a> FrequencyCache<'a> {
             self.tabulated = Some((omega, self.way));
             return Ok(());
         }
-        let workspace = &mut self.workspace;
+        let (workspace, work) = (&mut self.workspace, &mut self.modal_work);
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {
                 continue;
@@ -243,21 +252,21 @@ impl<'a> FrequencyCache<'a> {
             let is_quick = self.way == Way::Quick;
             let exactly = self.modal_slopes && !is_quick;
             let at = (condensed, i, omega);
-            let shared = (self.tables.get(), self.range);
-            if let Some(Some(modal)) = self.modal.get_mut(i).filter(|_| !exactly) {
+            let shared = (self.tables.get(), self.range, self.response);
+            if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly) {
                 if let Some((tables, sample)) = &mut self.estimates
                     && (tables.solved.known(condensed, i, omega, table)?
-                        || interpolate_sums(tables, at, (modal, workspace, sample), table, interrupt)?)
+                        || interpolate_sums(tables, at, modal, (work, workspace, sample), table, interrupt)?)
                 {
                     continue;
                 }
-                if modal.evaluate(omega, self.modal_slopes, table, interrupt)? {
+                if modal.evaluate((omega, self.modal_slopes), work, table, interrupt)? {
                     continue;
                 }
             }
             interrupt.check()?;
             let interpolates = self.interpolated[i] && is_quick && !is_constant;
-            let done = interpolates && interpolate(shared, at, workspace, table, interrupt)?;
+            let done = interpolates && interpolate(shared, at, (work, workspace), table, interrupt)?;
             if !done {
                 // A derived clone_from would allocate at each frequency.
                 let slopes =
@@ -273,11 +282,11 @@ impl<'a> FrequencyCache<'a> {
     }
 }
 
-/// Interpolates a table between factorisations; `false` where that is not possible.
+/// Interpolates a table between factorisations, or sums over modes where these are known; `false` where that is not possible.
 fn interpolate(
-    (tables, range): (&SharedTables, (f64, f64)),
+    (tables, range, response): (&SharedTables, (f64, f64), usize),
     (condensed, i, omega): (&Condensed, usize, f64),
-    workspace: &mut Workspace,
+    (work, workspace): (&mut ModalWork, &mut Workspace),
     table: &mut Table,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
@@ -285,6 +294,14 @@ fn interpolate(
         let interpolation = match &mut kept.interpolation {
             Some(known) => known,
             none => {
+                if let Some(modes) = &condensed.blocks()[i].modes {
+                    let rows = ModalRows::new(condensed, i, response, (Arc::clone(modes), 0.0))?;
+                    let modal = ModalTable::new(condensed, i, Arc::new(rows))?;
+                    let at = (condensed, i, omega);
+                    if agrees(&modal, at, &mut false, (work, workspace, table), interrupt)? {
+                        kept.modal = Some(boxed(|| Ok(modal))?);
+                    }
+                }
                 let resonances = resonance_poles::near(condensed, workspace, i, range, modes, interrupt)?;
                 none.insert(FrequencyInterpolation::new(
                     kind(condensed, i),
@@ -294,8 +311,19 @@ fn interpolate(
                 )?)
             }
         };
+        let outputs = condensed.coordinates() + 1;
+        let mut sample = Table::of_size(if kept.modal.is_some() { outputs * outputs } else { 0 })?;
         interpolation.evaluate((omega, true), table, |w, values| {
-            values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
+            let by_modes = match &kept.modal {
+                Some(modal) => modal.evaluate((w, false), work, &mut sample, interrupt)?,
+                None => false,
+            };
+            let found = if by_modes {
+                &sample.value
+            } else {
+                &workspace.evaluate(condensed, i, w, false, interrupt)?.value
+            };
+            values.copy_from_slice(found);
             Ok(())
         })
     })
@@ -306,7 +334,8 @@ fn interpolate(
 fn interpolate_sums(
     tables: &EstimateTables<'_>,
     (condensed, i, omega): (&Condensed, usize, f64),
-    (modal, workspace, sample): (&mut ModalTable, &mut Workspace, &mut Table),
+    modal: &ModalTable,
+    (work, workspace, sample): (&mut ModalWork, &mut Workspace, &mut Table),
     table: &mut Table,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
@@ -331,7 +360,7 @@ fn interpolate_sums(
             }
         };
         let mut sum = |w: f64, sample: &mut Table| -> Result<()> {
-            if !modal.evaluate(w, false, sample, interrupt)? {
+            if !modal.evaluate((w, false), work, sample, interrupt)? {
                 let found = workspace.evaluate(condensed, i, w, false, interrupt)?;
                 sample.value.copy_from_slice(&found.value);
             }
@@ -362,50 +391,63 @@ fn kind(condensed: &Condensed, i: usize) -> (usize, bool) {
 /// The table of the i-th carried harmonic from the modes of its wave, where it has them and they agree with a factorisation
 /// at the ends of the range; at one, where an earlier harmonic of the wave has shown its modes to be right.
 fn of_wave(
-    condensed: &Condensed,
-    i: usize,
-    response: usize,
-    ((start, end), workspace): ((f64, f64), &mut Workspace),
+    (condensed, i, response): (&Condensed, usize, usize),
+    (start, end): (f64, f64),
+    (waves, work, workspace): (&mut Vec<Arc<ModalRows>>, &mut ModalWork, &mut Workspace),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<ModalTable>> {
     let Some(modes) = &condensed.blocks()[i].modes else {
         return Ok(None);
     };
-    let mut modal = ModalTable::new(condensed, i, response, Arc::clone(modes))?;
+    let is_known = waves.iter().any(|known| known.are_of(modes));
+    let rows = ModalRows::shared((condensed, i, response), (modes, 0.0), waves)?;
+    let modal = ModalTable::new(condensed, i, rows)?;
     let mut table = Table::new(condensed.coordinates())?;
-    let outputs = condensed.coordinates() + 1;
-    let shares = |block: &HarmonicBlock| block.modes.as_ref().is_some_and(|known| Arc::ptr_eq(known, modes));
-    let is_known = condensed.blocks()[..i].iter().any(shares);
     // The slope is made of the same modes: once shows that it is right.
     let mut checks_slope = true;
     for omega in [start, end].into_iter().skip(usize::from(is_known)) {
-        if !modal.evaluate(omega, true, &mut table, interrupt)? {
-            continue;
-        }
-        let exact = workspace.evaluate(condensed, i, omega, checks_slope, interrupt)?;
-        let slope = if checks_slope {
-            deviation(&table.slope, &exact.slope, outputs)
-        } else {
-            0.0
-        };
-        let value = deviation(&table.value, &exact.value, outputs);
-        checks_slope = false;
-        if value.max(slope) <= TOLERANCE {
-            continue;
-        }
-        if condensed.ndof() <= INTERPOLATE_ABOVE {
-            return Ok(None);
-        }
-        // A factorisation of a stiff structure may be no better.
-        let factorised = try_copy(&exact.value, "the contact flexibility")?;
-        let refined = workspace.refined(condensed, i, omega, interrupt)?;
-        let own = deviation(&factorised, refined, outputs);
-        let by_modes = deviation(&table.value, refined, outputs);
-        if by_modes > TOLERANCE.max(own) || slope > TOLERANCE.max(SLOPE * own) || !(slope + by_modes).is_finite() {
+        let memory = (&mut *work, &mut *workspace, &mut table);
+        if !agrees(&modal, (condensed, i, omega), &mut checks_slope, memory, interrupt)? {
             return Ok(None);
         }
     }
     Ok(Some(modal))
+}
+
+/// Whether a table from modes agrees with a factorisation at a frequency, in its slope too where that is to be checked: then
+/// nothing more of it is.
+fn agrees(
+    modal: &ModalTable,
+    (condensed, i, omega): (&Condensed, usize, f64),
+    checks_slope: &mut bool,
+    (work, workspace, table): (&mut ModalWork, &mut Workspace, &mut Table),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let outputs = condensed.coordinates() + 1;
+    if !modal.evaluate((omega, *checks_slope), work, table, interrupt)? {
+        return Ok(true);
+    }
+    let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;
+    let slope = if *checks_slope {
+        deviation(&table.slope, &exact.slope, outputs)
+    } else {
+        0.0
+    };
+    let value = deviation(&table.value, &exact.value, outputs);
+    *checks_slope = false;
+    if value.max(slope) <= TOLERANCE {
+        return Ok(true);
+    }
+    if condensed.ndof() <= INTERPOLATE_ABOVE {
+        return Ok(false);
+    }
+    // A factorisation of a stiff structure may be no better.
+    let factorised = try_copy(&exact.value, "the contact flexibility")?;
+    let refined = workspace.refined(condensed, i, omega, interrupt)?;
+    let own = deviation(&factorised, refined, outputs);
+    let by_modes = deviation(&table.value, refined, outputs);
+    let are_close = by_modes <= TOLERANCE.max(own) && slope <= TOLERANCE.max(SLOPE * own);
+    Ok(are_close && (slope + by_modes).is_finite())
 }
 
 /// Largest relative deviation of a column of a table from that of another one.

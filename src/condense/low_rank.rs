@@ -36,16 +36,19 @@ pub struct Plain<'a> {
 
 /// Stiffness of B for one harmonic: of the coordinates, then of the springs; and Im κ, 0 for springs.
 pub struct Coefficients {
+    coordinates: usize,
     stiffness: Vec<f64>,
     imaginary: Vec<f64>,
+    /// Whether the term is not 0: with damping by stiffness, or with imaginary κ.
+    pub counts: bool,
 }
 
 impl Coefficients {
-    /// Those of the i-th carried harmonic.
+    /// Those of the i-th carried harmonic, which stiffness damps or not.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, i: usize, springs: &[(MotionRow, f64)]) -> Result<Self> {
+    pub fn new(condensed: &Condensed, i: usize, springs: &[(MotionRow, f64)], damped: bool) -> Result<Self> {
         let coordinates = condensed.coordinates();
         let mut stiffness = try_vec(coordinates + springs.len(), 0.0, CONTEXT)?;
         let mut imaginary = try_vec(stiffness.len(), 0.0, CONTEXT)?;
@@ -56,7 +59,12 @@ impl Coefficients {
         for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
             *k = *spring;
         }
-        Ok(Self { stiffness, imaginary })
+        Ok(Self {
+            coordinates,
+            counts: damped || imaginary.iter().any(|&im| im != 0.0),
+            stiffness,
+            imaginary,
+        })
     }
 
     /// Rows of B.
@@ -73,12 +81,16 @@ impl Coefficients {
     pub fn d_entry(&self, b: usize, d_c: Complex64) -> Complex64 {
         d_c * self.stiffness[b]
     }
+
+    /// Row of B number b in T′: the response lies between contacts and springs.
+    pub fn row_of(&self, b: usize) -> usize {
+        if b < self.coordinates { b } else { b + 1 }
+    }
 }
 
-/// Work space of the term for one harmonic.
+/// Work space of the term, for one harmonic after the other.
 pub struct LowRank {
     coordinates: usize,
-    coefficients: Coefficients,
     lu: Lu<Complex64>,
     /// X and ∂X, e X and ∂(e X), one column for each contact and for the excitation.
     inner: Vec<Complex64>,
@@ -88,16 +100,11 @@ pub struct LowRank {
 }
 
 impl LowRank {
-    /// The term with these coefficients; of order 0 without damping by stiffness (`damped`) and without imaginary κ.
+    /// For terms with so many rows of B.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(coordinates: usize, coefficients: Coefficients, damped: bool) -> Result<Self> {
-        let order = if damped || coefficients.imaginary.iter().any(|&im| im != 0.0) {
-            coefficients.len()
-        } else {
-            0
-        };
+    pub fn new(coordinates: usize, order: usize) -> Result<Self> {
         let columns = || try_vec(order * (coordinates + 1), Complex64::ZERO, CONTEXT);
         Ok(Self {
             coordinates,
@@ -106,7 +113,6 @@ impl LowRank {
             d_inner: columns()?,
             force: columns()?,
             d_force: columns()?,
-            coefficients,
         })
     }
 
@@ -115,82 +121,73 @@ impl LowRank {
         self.lu.order()
     }
 
-    /// e of row b of B.
-    pub fn entry(&self, b: usize, at: Frequency) -> Complex64 {
-        self.coefficients.entry(b, at.c)
-    }
-
-    /// ∂e/∂ω of row b of B.
-    pub fn d_entry(&self, b: usize, at: Frequency) -> Complex64 {
-        self.coefficients.d_entry(b, at.d_c)
-    }
-
     /// Adds the term to a table that holds T′, and to its slope if `slopes`.
     ///
     /// # Errors
     /// `Singular` where 1 − G′ e is; `StoppedByCaller`.
     pub fn add(
         &mut self,
+        of: &Coefficients,
         plain: &Plain<'_>,
-        at: Frequency,
-        slopes: bool,
+        (at, slopes): (Frequency, bool),
         table: &mut Table,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        if self.order() == 0 {
+        if !of.counts || self.order() == 0 {
             return Ok(());
         }
-        self.solve(plain, at, interrupt)?;
+        self.solve(of, plain, at, interrupt)?;
         self.copy_rows(&self.inner, &mut table.value);
-        self.add_response(plain.value, plain.rows, &self.force, &mut table.value);
+        self.add_response(of, (plain.value, plain.rows), &self.force, &mut table.value);
         if slopes {
-            self.differentiate(plain, at, interrupt)?;
+            self.differentiate(of, plain, at, interrupt)?;
             self.copy_rows(&self.d_inner, &mut table.slope);
-            self.add_response(plain.slope, plain.rows, &self.force, &mut table.slope);
-            self.add_response(plain.value, plain.rows, &self.d_force, &mut table.slope);
+            self.add_response(of, (plain.slope, plain.rows), &self.force, &mut table.slope);
+            self.add_response(of, (plain.value, plain.rows), &self.d_force, &mut table.slope);
         }
         Ok(())
     }
 
-    /// Row of B number b in T′: the response lies between contacts and springs.
-    pub fn row_of(&self, b: usize) -> usize {
-        if b < self.coordinates { b } else { b + 1 }
-    }
-
     /// X and e X
-    fn solve(&mut self, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn solve(&mut self, of: &Coefficients, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
         for q in 0..order {
-            let (e, from) = (self.entry(q, at), self.row_of(q) * rows);
+            let (e, from) = (of.entry(q, at.c), of.row_of(q) * rows);
             for p in 0..order {
-                let entry = -e * plain.value[from + self.row_of(p)];
+                let entry = -e * plain.value[from + of.row_of(p)];
                 self.lu.matrix()[q * order + p] = if p == q { entry + 1.0 } else { entry };
             }
         }
         self.lu.factor(interrupt)?;
         for (k, from) in plain.value.chunks_exact(rows).take(self.coordinates + 1).enumerate() {
             for p in 0..order {
-                self.inner[k * order + p] = from[self.row_of(p)];
+                self.inner[k * order + p] = from[of.row_of(p)];
             }
         }
         self.lu.solve_columns(&mut self.inner, false, interrupt)?;
         for k in 0..=self.coordinates {
             for p in 0..order {
-                self.force[k * order + p] = self.entry(p, at) * self.inner[k * order + p];
+                self.force[k * order + p] = of.entry(p, at.c) * self.inner[k * order + p];
             }
         }
         Ok(())
     }
 
     /// ∂X and ∂(e X), after [`Self::solve`].
-    fn differentiate(&mut self, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn differentiate(
+        &mut self,
+        of: &Coefficients,
+        plain: &Plain<'_>,
+        at: Frequency,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
         for k in 0..=self.coordinates {
             for p in 0..order {
-                let mut sum = plain.slope[k * rows + self.row_of(p)];
+                let mut sum = plain.slope[k * rows + of.row_of(p)];
                 for q in 0..order {
-                    let entry = self.row_of(q) * rows + self.row_of(p);
-                    let d_e_x = self.d_entry(q, at) * self.inner[k * order + q];
+                    let entry = of.row_of(q) * rows + of.row_of(p);
+                    let d_e_x = of.d_entry(q, at.d_c) * self.inner[k * order + q];
                     sum += plain.slope[entry] * self.force[k * order + q] + plain.value[entry] * d_e_x;
                 }
                 self.d_inner[k * order + p] = sum;
@@ -201,7 +198,7 @@ impl LowRank {
             for p in 0..order {
                 let x = self.inner[k * order + p];
                 let d_x = self.d_inner[k * order + p];
-                self.d_force[k * order + p] = self.entry(p, at) * d_x + self.d_entry(p, at) * x;
+                self.d_force[k * order + p] = of.entry(p, at.c) * d_x + of.d_entry(p, at.d_c) * x;
             }
         }
         Ok(())
@@ -216,11 +213,17 @@ impl LowRank {
     }
 
     /// Adds T′_B x to the row of the response.
-    fn add_response(&self, plain: &[Complex64], rows: usize, x: &[Complex64], table: &mut [Complex64]) {
+    fn add_response(
+        &self,
+        of: &Coefficients,
+        (plain, rows): (&[Complex64], usize),
+        x: &[Complex64],
+        table: &mut [Complex64],
+    ) {
         let (order, outputs) = (self.order(), self.coordinates + 1);
         for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
             for (q, x) in x.iter().enumerate() {
-                to[self.coordinates] += plain[self.row_of(q) * rows + self.coordinates] * x;
+                to[self.coordinates] += plain[of.row_of(q) * rows + self.coordinates] * x;
             }
         }
     }

@@ -15,6 +15,7 @@ mod low_rank;
 pub(crate) mod memory_limit;
 pub mod modal_flexibility;
 mod modal_motion;
+pub mod modal_rows;
 mod modal_solution;
 pub mod modal_table;
 mod model_cache;

@@ -66,7 +66,7 @@ impl ModalMotion {
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
         let is_damped = modes.is_damped_by_stiffness() || !is_mass_type;
         let springs = if is_damped { &modes.springs } else { &[][..] };
-        let coefficients = Coefficients::new(condensed, i, springs)?;
+        let coefficients = Coefficients::new(condensed, i, springs, is_damped)?;
         let order = coefficients.len();
         let mut seen = try_vec(order * n, Complex64::ZERO, CONTEXT)?;
         for (mode, shape) in modes.vectors.chunks_exact(n).enumerate() {

@@ -73,6 +73,12 @@ impl ModelCache {
         self.slots.iter().find_map(|slot| slot.1.get())
     }
 
+    /// The model with the most harmonics that was made for a slot below one.
+    #[must_use]
+    pub fn below(&self, slot: usize) -> Option<&Resolution> {
+        self.slots[..slot].iter().rev().find_map(|slot| slot.1.get())
+    }
+
     /// The model of a slot, made with its number of harmonics when it is first asked for.
     ///
     /// # Errors

@@ -6,7 +6,7 @@
 
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, Status, try_push};
+use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen::Pairs;
 use crate::linalg::lanczos;
@@ -61,6 +61,23 @@ pub fn near(
     }
     let (low, high) = (range.0.min(range.1), range.0.max(range.1));
     let width = high - low;
+    let mut add = |omega: f64, shape: Vec<Complex64>| -> Result<()> {
+        let pole = refine(condensed, workspace, i, (omega.into(), shape), interrupt)?;
+        if let Some(p) = pole.filter(|p| p.re > low - 2.0 * width && p.re < high + 2.0 * width) {
+            let known = found.iter().any(|q: &Complex64| (q - p).norm() <= 1e-6 * p.norm());
+            if !known {
+                try_push(&mut found, p, "the resonances")?;
+            }
+        }
+        Ok(())
+    };
+    let is_near = |omega: f64| omega >= low - width && omega <= high + width;
+    if let Some(modes) = &block.modes {
+        for (omega, shape) in modes.frequencies().filter(|(nu, _)| is_near(nu / h)) {
+            add(omega / h, try_copy(shape, "the resonances")?)?;
+        }
+        return Ok(found);
+    }
     let highest = h * (high + width);
     // Each basis has its own coordinates.
     let mut of_basis = KnownModes::default();
@@ -76,17 +93,12 @@ pub fn near(
     };
     for (mode, lambda) in modes.values.iter().enumerate() {
         let omega = lambda.max(0.0).sqrt() / h;
-        if omega < low - width || omega > high + width {
-            continue;
-        }
-        let column = modes.vectors.column(mode);
-        let shape: Vec<Complex64> = column.iter().map(|z| if conjugated { z.conj() } else { *z }).collect();
-        let pole = refine(condensed, workspace, i, (omega.into(), shape), interrupt)?;
-        if let Some(p) = pole.filter(|p| p.re > low - 2.0 * width && p.re < high + 2.0 * width) {
-            let known = found.iter().any(|q: &Complex64| (q - p).norm() <= 1e-6 * p.norm());
-            if !known {
-                try_push(&mut found, p, "the resonances")?;
-            }
+        if is_near(omega) {
+            let column = modes.vectors.column(mode);
+            add(
+                omega,
+                column.iter().map(|z| if conjugated { z.conj() } else { *z }).collect(),
+            )?;
         }
     }
     Ok(found)

@@ -4,6 +4,7 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
+use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles::KnownModes;
 use crate::error::{Result, try_push, try_room};
 use core::cell::Cell;
@@ -34,6 +35,8 @@ pub(super) struct KeptTable {
     /// Frequencies at which the table was requested before there was an interpolation.
     pub requests: usize,
     pub interpolation: Option<FrequencyInterpolation>,
+    /// The table from modes, where its samples are sums over them.
+    pub modal: Option<Box<ModalTable>>,
     /// Whether it is not exact somewhere, so that the table is made at each frequency.
     pub rejected: bool,
 }
@@ -88,6 +91,7 @@ impl Kept {
             kappa: try_room(condensed.coordinates(), CONTEXT)?,
             requests: 0,
             interpolation: None,
+            modal: None,
             rejected: false,
         };
         new.kappa.extend(kappa);
@@ -102,6 +106,7 @@ mod tests {
     use crate::condense::flexibility::Workspace;
     use crate::condense::frequency_cache::{EstimateTables, FrequencyCache};
     use crate::condense::frequency_interpolation::FrequencyInterpolation;
+    use crate::condense::modal_rows::ModalRows;
     use crate::condense::modal_table::ModalTable;
     use crate::condense::wave_cache::WaveCache;
     use crate::condense::{Condensed, Reference};
@@ -178,10 +183,11 @@ mod tests {
 
     /// The tables of all harmonics from modes.
     fn by_modes(model: &Model, condensed: &Condensed) -> Vec<Option<ModalTable>> {
-        let mut waves = WaveCache::default();
+        let (mut waves, mut known) = (WaveCache::default(), Vec::new());
         let table = |i| {
-            let modes = waves.of(model, condensed, i, &Interrupt::none()).unwrap();
-            modes.map(|modes| ModalTable::new(condensed, i, RESPONSE, modes).unwrap())
+            let modes = waves.of(model, condensed, i, &Interrupt::none()).unwrap()?;
+            let rows = ModalRows::shared((condensed, i, RESPONSE), (&modes, 0.0), &mut known);
+            Some(ModalTable::new(condensed, i, rows.unwrap()).unwrap())
         };
         (0..condensed.blocks().len()).map(table).collect()
     }

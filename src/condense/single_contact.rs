@@ -43,14 +43,14 @@ pub struct Denominators {
 }
 
 impl SingleContact {
-    /// From μ, and from outputs and inputs of each mode: two numbers a mode, of the contact and of the response or the
-    /// excitation.
+    /// From μ, the outputs of each mode, two numbers of contact and response, and the excitation seen by each, if there is one.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(values: &[f64], left: &[Complex64], right: &[Complex64]) -> Result<Self> {
+    pub fn new(values: &[f64], left: &[Complex64], force: &[Complex64]) -> Result<Self> {
         let mut modes = try_room(values.len(), "the flexibility from modes")?;
-        for ((value, l), r) in values.iter().zip(left.chunks_exact(2)).zip(right.chunks_exact(2)) {
+        for (k, (value, l)) in values.iter().zip(left.chunks_exact(2)).enumerate() {
+            let r = [l[0].conj(), force.get(k).copied().unwrap_or_default()];
             let products = [l[0] * r[0], l[1] * r[0], l[0] * r[1], l[1] * r[1]];
             let mode = Mode {
                 value: *value,
@@ -61,7 +61,7 @@ impl SingleContact {
         Ok(Self {
             arch: Arch::new(),
             modes,
-            is_forced: right.chunks_exact(2).any(|r| r[1] != Complex64::ZERO),
+            is_forced: force.iter().any(|f| *f != Complex64::ZERO),
         })
     }
 

@@ -359,6 +359,8 @@ impl Lanes {
 mod tests {
     use super::*;
     use crate::condense::Condensed;
+    use crate::condense::modal_rows::ModalRows;
+    use crate::condense::modal_table::ModalWork;
     use crate::condense::test_chains::{DAMPED, structure};
     use crate::condense::wave_cache::SharedWaves;
     use crate::contact::Contact;
@@ -381,7 +383,8 @@ mod tests {
             .unwrap();
         let table = |i: usize| {
             let modes = condensed.blocks()[i].modes.as_ref()?;
-            ModalTable::new(&condensed, i, 8, Arc::clone(modes)).ok()
+            let rows = ModalRows::new(&condensed, i, 8, (Arc::clone(modes), 0.0)).ok()?;
+            ModalTable::new(&condensed, i, Arc::new(rows)).ok()
         };
         (0..condensed.blocks().len()).map(table).collect()
     }
@@ -394,6 +397,7 @@ mod tests {
                 for harmonics in [1, 5, 9, 17] {
                     let mut single = tables(sectors, damping, loss_factor, harmonics);
                     let lanes = SingleContactLanes::new(&single).unwrap().unwrap();
+                    let mut work = ModalWork::default();
                     let make = || (0..single.len()).map(|_| Table::new(1).unwrap()).collect::<Vec<_>>();
                     let (mut found, mut expected) = (make(), make());
                     for k in 0..40 {
@@ -401,7 +405,10 @@ mod tests {
                         let each = single.iter_mut().zip(&mut expected);
                         let clear = each.fold(true, |clear, (table, to)| {
                             let table = table.as_mut().unwrap();
-                            clear & table.evaluate(omega, true, to, &Interrupt::none()).unwrap()
+                            clear
+                                & table
+                                    .evaluate((omega, true), &mut work, to, &Interrupt::none())
+                                    .unwrap()
                         });
                         assert_eq!(lanes.evaluate(omega, &mut found), clear);
                         for (a, b) in found.iter().zip(&expected).filter(|_| clear) {

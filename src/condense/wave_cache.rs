@@ -3,9 +3,9 @@
 use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_modes::{WaveModes, proportional};
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, Status, try_extend, try_push};
+use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::eigen;
+use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::MotionRow;
@@ -43,7 +43,7 @@ pub struct SharedWaves {
 }
 
 impl SharedWaves {
-    /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`].
+    /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`]: a large one with those that are known.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -106,8 +106,19 @@ impl WaveCache {
         i: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
+        self.find(model, condensed, (i, true), interrupt)
+    }
+
+    /// The same, without new ones unless they are `wanted`.
+    pub(super) fn find(
+        &mut self,
+        model: &Model,
+        condensed: &Condensed,
+        (i, wanted): (usize, bool),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
-        if self.refused || block.number == 0 {
+        if self.refused || block.number == 0 || !(wanted || !self.waves.is_empty()) {
             return Ok(None);
         }
         let reference = real_reference(condensed, i)?;
@@ -115,7 +126,14 @@ impl WaveCache {
         if let Some(known) = self.waves.iter().find(is_known) {
             return Ok(Some(Arc::clone(known)));
         }
-        let Some(found) = modes_of(model, condensed, (i, reference), interrupt)? else {
+        let other = self
+            .waves
+            .iter()
+            .find(|known| known.is_conjugate_of(&reference, &block.mass));
+        if other.is_none() && !wanted {
+            return Ok(None);
+        }
+        let Some(found) = modes_of(model, condensed, (i, reference), other, interrupt)? else {
             self.refused = true;
             return Ok(None);
         };
@@ -153,11 +171,12 @@ fn has_other_terms(model: &Model) -> bool {
     structure.has_structural_matrix() || structure.has_aero() || structure.is_rotating()
 }
 
-/// The modes of the i-th carried harmonic with this K_κ.
+/// The modes of the i-th carried harmonic with this K_κ; from those of the wave that travels the other way where they are known.
 fn modes_of(
     model: &Model,
     condensed: &Condensed,
     (i, reference): (usize, Csc),
+    other: Option<&Arc<WaveModes>>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<WaveModes>> {
     let block = &condensed.blocks()[i];
@@ -178,40 +197,46 @@ fn modes_of(
     let Some(proportional) = proportional([&block.mass, own, &block.damping]) else {
         return Ok(None);
     };
-    interrupt.check()?;
-    let pattern = &reference;
-    let dense = |values: &[Complex64]| {
-        let mut a = DMatrix::<Complex64>::zeros(n, n);
-        for j in 0..n {
-            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                a[(pattern.row_idx[at], j)] = values[at];
-            }
+    let mass = try_copy(&block.mass, CONTEXT)?;
+    let (values, vectors) = if let Some(other) = other {
+        let mut vectors = try_copy(&other.vectors, CONTEXT)?;
+        for z in &mut vectors {
+            *z = z.conj();
         }
-        a
+        (try_copy(&other.values, CONTEXT)?, vectors)
+    } else {
+        match eigenpairs(&reference, &mass, interrupt) {
+            Ok(pairs) if pairs.values.len() == n => (pairs.values, pairs.vectors.data.into()),
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+            _ => return Ok(None),
+        }
     };
-    // The pencil turned round: the lowest modes, which matter most, are the most accurate.
-    let stiffness = dense(&pattern.values);
-    let pairs = match eigen::generalised(&dense(&block.mass), &stiffness, interrupt) {
-        Ok(pairs) => pairs,
-        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
-        Err(_) => return Ok(None),
-    };
-    if pairs.values.len() < n {
-        return Ok(None);
-    }
-    let mut mass = Vec::new();
-    try_extend(&mut mass, &block.mass, CONTEXT)?;
-    let mut vectors = Vec::new();
-    try_extend(&mut vectors, pairs.vectors.as_slice(), CONTEXT)?;
     Ok(Some(WaveModes {
         reference,
         mass,
-        values: pairs.values,
+        values,
         vectors,
         proportional,
         loss_factor: model.structure().loss_factor(),
         springs,
     }))
+}
+
+/// μ and φ of M φ = μ K φ, with the masses on the pattern of K. The pencil turned round: the lowest modes, which matter most, are
+/// the most accurate.
+fn eigenpairs(reference: &Csc, mass: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    interrupt.check()?;
+    let n = reference.rows;
+    let dense = |values: &[Complex64]| {
+        let mut a = DMatrix::<Complex64>::zeros(n, n);
+        for j in 0..n {
+            for at in reference.col_ptr[j]..reference.col_ptr[j + 1] {
+                a[(reference.row_idx[at], j)] = values[at];
+            }
+        }
+        a
+    };
+    eigen::generalised(&dense(mass), &dense(&reference.values), interrupt)
 }
 
 /// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.

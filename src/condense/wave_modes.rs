@@ -49,6 +49,15 @@ impl WaveModes {
         least > NEAR_RESONANCE * NEAR_RESONANCE
     }
 
+    /// Natural frequencies with their shapes.
+    pub(super) fn frequencies(&self) -> impl Iterator<Item = (f64, &[Complex64])> {
+        let shapes = self.vectors.chunks_exact(self.values.len().max(1));
+        self.values
+            .iter()
+            .zip(shapes)
+            .filter_map(|(mu, shape)| (*mu > 0.0).then(|| (mu.sqrt().recip(), shape)))
+    }
+
     /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
     pub(super) fn is_damped_by_stiffness(&self) -> bool {
         self.proportional.1 != 0.0 || self.loss_factor != 0.0
@@ -56,10 +65,20 @@ impl WaveModes {
 
     /// Whether these are the modes of a wave with this K_κ and M.
     pub(super) fn is_of(&self, reference: &Csc, mass: &[Complex64]) -> bool {
-        self.reference.col_ptr == reference.col_ptr
-            && self.reference.row_idx == reference.row_idx
-            && self.reference.values == reference.values
-            && self.mass == mass
+        self.has_pattern(reference) && self.reference.values == reference.values && self.mass == mass
+    }
+
+    /// Whether the wave with this K_κ and M travels the other way.
+    pub(super) fn is_conjugate_of(&self, reference: &Csc, mass: &[Complex64]) -> bool {
+        let are_conjugate =
+            |a: &[Complex64], b: &[Complex64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| *a == b.conj());
+        self.has_pattern(reference)
+            && are_conjugate(&self.reference.values, &reference.values)
+            && are_conjugate(&self.mass, mass)
+    }
+
+    fn has_pattern(&self, reference: &Csc) -> bool {
+        self.reference.col_ptr == reference.col_ptr && self.reference.row_idx == reference.row_idx
     }
 }
 

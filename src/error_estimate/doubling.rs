@@ -12,7 +12,10 @@ const SETTLED: f64 = 0.2;
 const SUFFICIENT: f64 = 0.6;
 
 /// Largest change, relative to the tolerance, that is harmless after one extension and after more.
-const HARMLESS: (f64, f64) = (0.05, 0.3);
+const HARMLESS: (f64, f64) = (0.05, 0.5);
+
+/// Least and largest change that may be missing behind the last one, over that.
+const MISSING: (f64, f64) = (0.5, 2.0);
 
 /// Responses of a point and of its extensions.
 #[derive(Clone, Debug)]
@@ -48,6 +51,11 @@ impl Doubling {
         self.extensions += 1;
     }
 
+    /// Number of extensions.
+    pub fn extensions(&self) -> usize {
+        self.extensions
+    }
+
     /// The next change, relative to the whole one; infinite where it is not known.
     fn next(&self) -> f64 {
         let [before, last] = self.changes;
@@ -72,24 +80,30 @@ impl Doubling {
         self.next() <= SUFFICIENT
     }
 
-    /// Whether the whole change stays far below a tolerance even if the next changes are as large as the last one. One
-    /// extension alone shows less than two.
+    /// The change that may be missing: d q/(1 − q) with q as found last, all further changes falling like the last one.
+    fn missing(&self) -> f64 {
+        let [before, last] = self.changes;
+        let q = last / before;
+        let share = if q < 1.0 { q / (1.0 - q) } else { f64::INFINITY };
+        last * share.clamp(MISSING.0, MISSING.1)
+    }
+
+    /// Whether the whole change stays well below a tolerance with all that may be missing. One extension alone shows less than
+    /// two.
     pub fn is_harmless(&self, tolerance: f64) -> bool {
         let whole = (self.last - self.point).norm();
-        let [_, last] = self.changes;
         let size = self.last.norm();
         match self.extensions {
             0 => false,
             1 => whole <= HARMLESS.0 * tolerance * size,
-            _ => whole + 2.0 * last <= HARMLESS.1 * tolerance * size,
+            _ => whole + self.missing() <= HARMLESS.1 * tolerance * size,
         }
     }
 
-    /// The estimate of the last extension, with another change like the last one.
+    /// The estimate of the last extension, with the change that may be missing.
     pub fn bounded(&self, mut estimate: Estimate) -> Estimate {
-        let [_, last] = self.changes;
         if self.extensions > 1 {
-            estimate.response += relative(last, self.last);
+            estimate.response += relative(self.missing(), self.last);
         }
         estimate
     }
@@ -99,11 +113,10 @@ impl Doubling {
         (self.last - self.point).norm() * (1.0 + self.next()) / self.first
     }
 
-    /// The same with another change like the last one; `None` where one extension shows no change after the first.
+    /// The same with the change that may be missing; `None` where one extension shows no change after the first.
     pub fn bounded_ratio(&self) -> Option<f64> {
-        let [_, last] = self.changes;
         let whole = (self.last - self.point).norm();
-        (self.extensions > 1 && self.first > 0.0).then(|| (whole + last) / self.first)
+        (self.extensions > 1 && self.first > 0.0).then(|| (whole + self.missing()) / self.first)
     }
 
     /// The estimate of the last extension with the change that is missing.

@@ -16,8 +16,24 @@ const SHORT: f64 = 0.1;
 /// Size of a first step, relative to the change, up to which a guess is as good as a point that a step has reached.
 const CLOSE: f64 = 0.3;
 
+/// Share of the residual of the start above which the next step is not yet the last one, and need not be found exactly, and the
+/// damping factor up to which that is so: a shorter one changes the step too little.
+const FAR: f64 = 0.3;
+const LONG: f64 = 0.25;
+
 /// Damping factor below which a step is accepted without the monotonicity test.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
+
+/// Whether a short first step is returned as δ, the next one being far shorter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FirstStep {
+    /// The next one shows that it is right.
+    Checked,
+    /// It is where the extended harmonics are known to be weak, kt|G_h| < ½.
+    Suffices,
+    /// The same, found roughly: where it shows no more than that what is missing is small.
+    SufficesRoughly,
+}
 
 /// The result of the damped Newton method.
 pub(super) struct ExtendedSolution {
@@ -66,16 +82,13 @@ fn change_from(point: &[f64], (z, next): (&[f64], &[f64]), change: &mut [f64]) {
 ///
 /// A start other than W is a guess: the first step from it may be δ.
 ///
-/// Where the extended harmonics are known to be `weak`, kt|G_h| < ½, and the first step is short, that step is
-/// returned as δ: the next one would be far shorter.
-///
 /// # Errors
 /// Those of the system, except for singular matrices and laws that another motion may not fail.
 pub(super) fn extend<P: Problem>(
     system: &mut ExtendedSystem<P>,
     (start, point): (&[f64], &[f64]),
     enough: impl Fn(&P, &[f64], &[f64], &[f64]) -> bool,
-    weak: bool,
+    first_step: FirstStep,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<ExtendedSolution>> {
     let n = start.len();
@@ -85,14 +98,16 @@ pub(super) fn extend<P: Problem>(
     let mut change = try_vec(n, 0.0, CONTEXT)?;
     let mut trial = try_vec(n, 0.0, CONTEXT)?;
     let is_guess = start != point;
+    let first = system.residual();
     let mut damping = 1.0_f64;
     for steps in 1..=MOST_STEPS {
         interrupt.part(Phase::Estimate, steps - 1, MOST_STEPS)?;
-        if !system.factor(interrupt)? || !system.step(&mut step, is_guess && steps == 1, interrupt)? {
+        let is_rough = steps == 1 && first_step == FirstStep::SufficesRoughly;
+        if !system.factor(interrupt)? || !system.step(&mut step, is_rough, interrupt)? {
             return Ok(None);
         }
         let size = norm(&step);
-        if weak && steps == 1 && size <= SHORT * norm(start) {
+        if first_step != FirstStep::Checked && steps == 1 && size <= SHORT * norm(start) {
             return Ok(Some(ExtendedSolution {
                 at: z,
                 next: with_parameter(step)?,
@@ -115,13 +130,15 @@ pub(super) fn extend<P: Problem>(
             }
         }
         damping = (4.0 * damping).min(1.0);
+        let mut is_rough;
         loop {
             for ((t, z), d) in trial.iter_mut().zip(&z).zip(&step) {
                 *t = z + damping * d;
             }
             let last = damping <= SMALLEST_DAMPING;
             if system.evaluate(&trial)? {
-                if !system.step(&mut next[..n], false, interrupt)? {
+                is_rough = damping >= LONG && system.residual() > FAR * first;
+                if !system.step(&mut next[..n], is_rough, interrupt)? {
                     return Ok(None);
                 }
                 if last || norm(&next) <= (1.0 - 0.25 * damping) * size {
@@ -137,7 +154,14 @@ pub(super) fn extend<P: Problem>(
         if !change.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
-        let certified = enough(&system.problem, &z, &change, &next);
+        let mut certified = enough(&system.problem, &z, &change, &next);
+        if certified && is_rough {
+            if !system.step(&mut next[..n], false, interrupt)? {
+                return Ok(None);
+            }
+            change_from(point, (&z, &next), &mut change);
+            certified = enough(&system.problem, &z, &change, &next);
+        }
         if certified || steps == MOST_STEPS {
             return Ok(Some(ExtendedSolution {
                 at: z,

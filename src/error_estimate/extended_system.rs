@@ -7,15 +7,18 @@ use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::krylov::KrylovSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
+use crate::linalg::norm;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::newton_products::packed_up_to;
 use crate::problem::{Problem, Residual};
 
-/// Relative residual of a step that is found by iteration: a hundredth of the share that decides.
+/// Residual of steps that are found by iteration over that of the point: a hundredth of the share that decides; and the same
+/// for a point that was extended before, whose further change is a part of the whole.
 const TOLERANCE: f64 = 1e-3;
+const OF_EXTENDED: f64 = 1e-2;
 
-/// The same for a step from a guess, which is a small part of the change.
-const FROM_GUESS: f64 = 1e-2;
+/// Largest residual of a step over that of its start.
+const COARSEST: f64 = 0.1;
 
 /// Unknowns up to which factoring the whole matrix is faster than iterating with factors of the compliant harmonics.
 const DENSE_UP_TO: usize = 24;
@@ -42,6 +45,8 @@ pub(super) struct ExtendedSystem<P> {
     factored: Factored,
     /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
     pub stalled: bool,
+    /// Residual that steps may leave.
+    goal: f64,
     sizes: Sizes,
     work: Work,
     /// Border of a fixed parameter: no column, and the row (0, …, 0, 1).
@@ -78,6 +83,7 @@ impl<P: Problem> ExtendedSystem<P> {
             system,
             factored,
             stalled: false,
+            goal: 0.0,
             sizes,
             work,
             column: try_vec(n, 0.0, CONTEXT)?,
@@ -116,10 +122,26 @@ impl<P: Problem> ExtendedSystem<P> {
         }
     }
 
-    /// −J⁻¹R with the matrix factored last and R as evaluated last; `false` where the iteration did not converge with
-    /// the work that is left.
-    pub fn step(&mut self, step: &mut [f64], from_guess: bool, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let tolerance = if from_guess { FROM_GUESS } else { TOLERANCE };
+    /// Takes the residual evaluated last for that of the point, by which the following steps are measured: each later one is
+    /// smaller, and need not be found to as many digits.
+    pub fn measure_by_point(&mut self, extended_before: bool) {
+        let share = if extended_before { OF_EXTENDED } else { TOLERANCE };
+        self.goal = share * self.residual();
+    }
+
+    /// ‖R‖ as evaluated last.
+    pub fn residual(&self) -> f64 {
+        norm(&self.at.values)
+    }
+
+    /// −J⁻¹R with the matrix factored last and R as evaluated last, found roughly or to the digits that count; `false` where the
+    /// iteration did not converge with the work that is left.
+    pub fn step(&mut self, step: &mut [f64], roughly: bool, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let tolerance = if roughly {
+            COARSEST
+        } else {
+            (self.goal / self.residual()).clamp(TOLERANCE, COARSEST)
+        };
         let n = step.len();
         let (packed, pairs) = self.factored_numbers();
         let each = self.sizes.product(packed, pairs);

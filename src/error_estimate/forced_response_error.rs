@@ -1,6 +1,7 @@
 //! The error of a point of a forced response.
 
 use crate::condense::frequency_cache::EstimateTables;
+use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
@@ -10,7 +11,7 @@ use crate::error_estimate::doubling::Doubling;
 use crate::error_estimate::estimate::{
     CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
-use crate::error_estimate::extended_newton::extend;
+use crate::error_estimate::extended_newton::{FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::factored_harmonics::{factored, whole};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
@@ -28,8 +29,9 @@ use std::sync::Arc;
 /// Evaluations, each with a product, for which the work must suffice.
 const EVALUATIONS: f64 = 6.0;
 
-/// Flexibility tables by factorisation that cost about as much as all modes of a structure.
-const TABLES: usize = 24;
+/// Flexibility tables by factorisation, half of those that cost about as much as all modes of a structure, after which these are
+/// expected to pay.
+const TABLES: usize = 12;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
 const SMALL: usize = 32;
@@ -68,6 +70,7 @@ pub struct ForcedEstimator<'a> {
     most: f64,
     /// Modes of the waves, and the flexibility tables made so far.
     waves: &'a SharedWaves,
+    rows: Vec<Arc<ModalRows>>,
     tables: usize,
     /// Range of the frequencies of the points.
     range: Option<(f64, f64)>,
@@ -98,6 +101,7 @@ impl<'a> ForcedEstimator<'a> {
             allowed: 0.0,
             most: f64::INFINITY,
             waves,
+            rows: Vec::new(),
             tables: 0,
             range: None,
         }
@@ -171,7 +175,11 @@ impl<'a> ForcedEstimator<'a> {
             core,
             highest: core.max(least),
             least,
-            weak: core <= own,
+            first_step: if core <= own {
+                FirstStep::Suffices
+            } else {
+                FirstStep::Checked
+            },
             short: core >= most,
             by_doubling: false,
         }))
@@ -211,7 +219,12 @@ impl<'a> ForcedEstimator<'a> {
             let stage = Extent {
                 core: extent.core.min(highest),
                 highest,
-                weak: false,
+                // The first two extensions tell the error, a further one whether much of it is missing.
+                first_step: if series.extensions() < 2 {
+                    FirstStep::Checked
+                } else {
+                    FirstStep::SufficesRoughly
+                },
                 short: false,
                 by_doubling: true,
                 ..extent
@@ -266,17 +279,25 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// The table of each harmonic from modes, where it has them.
-    fn modal_tables(&mut self, condensed: &Condensed) -> Result<Vec<Option<ModalTable>>> {
+    /// The table of each harmonic from modes, where it has them, within a tolerance.
+    fn modal_tables(&mut self, condensed: &Condensed, tolerance: f64) -> Result<Vec<Option<ModalTable>>> {
         let mut tables: Vec<Option<ModalTable>> = Vec::new();
         let blocks = condensed.blocks();
         for (i, block) in blocks.iter().enumerate() {
             let known = blocks[..i].iter().position(|known| known.shares_matrices(block));
-            let modes = match known.and_then(|known| tables[known].as_ref()) {
-                Some(table) => Some(table.modes()),
-                None => self.waves.of(self.model, condensed, i, self.interrupt)?,
+            let of_earlier = || self.rows.iter().find(|rows| rows.are_of_block(block));
+            let rows = match known.and_then(|known| tables[known].as_ref()) {
+                Some(table) => Some(table.rows()),
+                None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
+                None => match self.waves.of(self.model, condensed, i, self.interrupt)? {
+                    Some(modes) => {
+                        let at = (condensed, i, self.response);
+                        Some(ModalRows::shared(at, (&modes, tolerance), &mut self.rows)?)
+                    }
+                    None => None,
+                },
             };
-            let table = modes.map(|modes| ModalTable::new(condensed, i, self.response, modes));
+            let table = rows.map(|rows| ModalTable::new(condensed, i, rows));
             try_push(&mut tables, table.transpose()?, CONTEXT)?;
         }
         Ok(tables)
@@ -352,12 +373,13 @@ impl<'a> ForcedEstimator<'a> {
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
         if by_modes && !system.problem.has_modes() {
-            let modal = self.modal_tables(condensed)?;
+            let tolerance = (OF_TABLES * self.options.tolerance).clamp(EXACTEST.0, EXACTEST.1);
+            let modal = self.modal_tables(condensed, tolerance)?;
             let shared = self.range.map(|range| EstimateTables {
                 range,
                 solved: &self.waves.tables,
                 estimated: &self.waves.estimated,
-                tolerance: (OF_TABLES * self.options.tolerance).clamp(EXACTEST.0, EXACTEST.1),
+                tolerance,
             });
             system.problem.set_modes(modal, shared)?;
         }
@@ -426,6 +448,7 @@ fn on(
     if omits_nothing(residual, set, solved.condensed.set(), tolerance) {
         return solved.exact(0.0).map(Some);
     }
+    system.measure_by_point(from.is_some());
     let length = condensed.length();
     let enough = |problem: &HarmonicBalance<'_>, at: &[f64], change: &[f64], next: &[f64]| {
         if !extent.by_doubling {
@@ -450,7 +473,7 @@ fn on(
     if let Some(guess) = guess {
         let residual = norm(&system.at.values);
         if system.evaluate(&guess)? && norm(&system.at.values) <= CLOSER * residual {
-            let found = extend(system, (&guess, &before), enough, extent.weak, interrupt)?;
+            let found = extend(system, (&guess, &before), enough, extent.first_step, interrupt)?;
             extended = found.filter(|found| found.certified);
         }
         if extended.is_none() && !system.evaluate(&before)? {
@@ -458,7 +481,7 @@ fn on(
         }
     }
     if extended.is_none() {
-        extended = extend(system, (&before, &before), enough, extent.weak, interrupt)?;
+        extended = extend(system, (&before, &before), enough, extent.first_step, interrupt)?;
     }
     let Some(extended) = extended else {
         return Ok(None);
@@ -511,8 +534,8 @@ struct Extent {
     highest: usize,
     /// The least one to which a point may be extended.
     least: usize,
-    /// Whether the structure is compliant in none of the harmonics that the point omits.
-    weak: bool,
+    /// Whether a short first step suffices, as where the structure is compliant in none of the harmonics that the point omits.
+    first_step: FirstStep,
     /// Whether the structure may be compliant beyond the core, where the problem would be too large.
     short: bool,
     /// Whether this is one of several extensions, each of which ends as soon as the response has converged.

@@ -6,7 +6,7 @@ use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
     CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
-use crate::error_estimate::extended_newton::extend;
+use crate::error_estimate::extended_newton::{FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::work::{OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
@@ -161,7 +161,14 @@ impl<'a> ModeEstimator<'a> {
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
-        let Some(extended) = extend(&mut system, (&start, &start), enough, false, self.interrupt)? else {
+        let Some(extended) = extend(
+            &mut system,
+            (&start, &start),
+            enough,
+            FirstStep::Checked,
+            self.interrupt,
+        )?
+        else {
             return Ok(None);
         };
         let z = extended.corrected()?;
