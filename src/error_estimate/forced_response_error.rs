@@ -29,9 +29,9 @@ use std::sync::Arc;
 /// Evaluations, each with a product, for which the work must suffice.
 const EVALUATIONS: f64 = 6.0;
 
-/// Flexibility tables by factorisation, half of those that cost about as much as all modes of a structure, after which these are
-/// expected to pay.
-const TABLES: usize = 12;
+/// Flexibility tables by factorisation of a full matrix after which all modes of a structure are expected to pay: they cost about
+/// 24 of them.
+const TABLES: usize = 4;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
 const SMALL: usize = 32;
@@ -271,7 +271,13 @@ impl<'a> ForcedEstimator<'a> {
     /// Whether modes are known, or so many tables were made that they pay.
     fn modes_pay(&mut self, condensed: &Condensed) -> bool {
         self.tables += condensed.set().numbers().len();
-        let pay = self.tables > TABLES;
+        // Factors of a sparse matrix cost less, modes do not.
+        let n = condensed.ndof();
+        let stored = condensed
+            .blocks()
+            .first()
+            .map_or(1, |block| block.reference.values.len());
+        let pay = self.tables > TABLES * (n * n / stored.max(1));
         match self.waves.some_have_modes() {
             // Few small factorisations cost no more.
             Some(known) => known && (pay || condensed.ndof() > SMALL),

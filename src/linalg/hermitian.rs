@@ -7,12 +7,19 @@
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::{complex_columns, inner, remove};
+use faer::linalg::matmul::matmul;
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
 /// Iterations for one eigenvalue; two or three suffice.
 const MOST_ITERATIONS: usize = 60;
+
+/// Rows of a triangular system up to which plain loops solve it, and columns of a product between two checks of the interrupt.
+const BLOCK: usize = 24;
+const AT_ONCE: usize = 64;
 
 /// Shares of the work in the reduction, the iteration and the vectors, for the progress.
 const REDUCED: f64 = 0.4;
@@ -214,7 +221,7 @@ pub fn cholesky(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Res
     Ok(true)
 }
 
-/// B ← L⁻¹ B, or L⁻ᴴ B, column by column.
+/// B ← L⁻¹ B in blocks of rows, or L⁻ᴴ B, column by column.
 ///
 /// # Errors
 /// `StoppedByCaller`.
@@ -225,25 +232,49 @@ pub fn solve_triangular(
     b: &mut [Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
+    if !adjoint {
+        let columns = b.len() / n.max(1);
+        let l = MatRef::from_column_major_slice(l, n, n);
+        return forward(l, MatMut::from_column_major_slice_mut(b, n, columns), interrupt);
+    }
     for x in b.chunks_exact_mut(n.max(1)) {
         interrupt.check_before((4 * n * n) as u64)?;
-        if adjoint {
-            for k in (0..n).rev() {
-                let column = &l[k * n + k + 1..(k + 1) * n];
-                let known: Complex64 = column.iter().zip(&x[k + 1..]).map(|(l, x)| l.conj() * x).sum();
-                x[k] = (x[k] - known) / l[k * n + k].re;
-            }
-        } else {
-            for k in 0..n {
-                let (head, rest) = x[k..].split_at_mut(1);
-                head[0] /= l[k * n + k].re;
-                for (x, l) in rest.iter_mut().zip(&l[k * n + k + 1..(k + 1) * n]) {
-                    *x -= head[0] * l;
-                }
-            }
+        for k in (0..n).rev() {
+            let column = &l[k * n + k + 1..(k + 1) * n];
+            let known: Complex64 = column.iter().zip(&x[k + 1..]).map(|(l, x)| l.conj() * x).sum();
+            x[k] = (x[k] - known) / l[k * n + k].re;
         }
     }
     Ok(())
+}
+
+/// B ← L⁻¹ B: the first half of the rows, their product with L below them, and the other half.
+fn forward(l: MatRef<'_, Complex64>, mut b: MatMut<'_, Complex64>, interrupt: &Interrupt<'_>) -> Result<()> {
+    let (n, columns) = (b.nrows(), b.ncols());
+    interrupt.check_before((4 * n * n * columns.min(AT_ONCE)) as u64)?;
+    if n <= BLOCK {
+        for j in 0..columns {
+            for k in 0..n {
+                let x = b[(k, j)] / l[(k, k)].re;
+                b[(k, j)] = x;
+                for i in k + 1..n {
+                    b[(i, j)] -= x * l[(i, k)];
+                }
+            }
+        }
+        return Ok(());
+    }
+    let half = n / 2;
+    let (first, _, below, second) = l.split_at(half, half);
+    let (mut head, mut rest) = b.split_at_row_mut(half);
+    forward(first, head.rb_mut(), interrupt)?;
+    for from in (0..columns).step_by(AT_ONCE) {
+        let count = AT_ONCE.min(columns - from);
+        interrupt.check_before((8 * half * n * count) as u64)?;
+        let (head, rest) = (head.rb().subcols(from, count), rest.rb_mut().subcols_mut(from, count));
+        matmul(rest, Accum::Add, below, head, -Complex64::ONE, Par::Seq);
+    }
+    forward(second, rest, interrupt)
 }
 
 #[cfg(test)]
