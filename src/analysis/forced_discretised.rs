@@ -192,7 +192,7 @@ impl<'a> ForcedDiscretised<'a> {
             ..
         } = &mut *self.resolutions.current;
         let condensed = &resolution.condensed;
-        problem.response(point.unknowns(), response);
+        problem.response(point.unknowns(), point.parameter(), response);
         let solved = Solved {
             condensed,
             motion: point.unknowns(),

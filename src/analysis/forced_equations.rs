@@ -63,7 +63,7 @@ impl<'a> Equations<'a> {
     /// The record of the point at which the problem was evaluated last.
     pub fn record<'b>(&'b mut self, point: &'b Point, error: f64) -> Result<Record<'b>> {
         let (u, omega) = (point.unknowns(), point.parameter());
-        self.problem.response(u, &mut self.response);
+        self.problem.response(u, omega, &mut self.response);
         let sampling_error = self.problem.sampling_error(u, omega)?;
         Ok(Record {
             resolution: self.resolution,

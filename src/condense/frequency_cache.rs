@@ -222,6 +222,12 @@ impl<'a> FrequencyCache<'a> {
         &self.current
     }
 
+    /// Their frequency; `None` before the first ones.
+    #[must_use]
+    pub fn frequency(&self) -> Option<f64> {
+        self.tabulated.map(|(omega, _)| omega)
+    }
+
     /// Makes the tables at `omega`, unless they are current.
     ///
     /// # Errors

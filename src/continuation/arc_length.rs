@@ -1,7 +1,7 @@
 //! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
 //!
 //! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times its present size,
-//! p in units of the range. A step predicts by the polynomial through the last two to seven points and tangents, corrects in the
+//! p in units of the range. A step predicts by the polynomial through the last two to five points and tangents, corrects in the
 //! plane orthogonal to the tangent (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
@@ -45,6 +45,9 @@ pub struct Continuation {
     corrector: Corrector,
     history: History,
     current: Point,
+    /// Size of its unknowns, and length of its tangent in the metric of the last prediction.
+    size: f64,
+    length: f64,
     /// A point whose memory the next one takes.
     unused: Option<Point>,
     /// Largest motion and amplitude so far.
@@ -131,6 +134,8 @@ impl Continuation {
             settings,
             steps: settings.steps,
             corrector: corrector(n, &settings)?,
+            size: norm(first.unknowns()),
+            length: 0.0,
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             history: History::new(n + 1)?,
             current: first,
@@ -164,8 +169,7 @@ impl Continuation {
             self.row = try_vec(n + 1, 0.0, CONTEXT)?;
             self.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
         }
-        self.largest.0 = self.largest.0.max(norm(current.unknowns()));
-        self.largest.1 = self.largest.1.max(current.amplitude.norm());
+        self.note_size(&current);
         self.history = History::new(n + 1)?;
         if let Some(previous) = previous {
             self.history.push(previous);
@@ -256,7 +260,7 @@ impl Continuation {
                     }
                     self.steps
                         .accepted(length, error, self.history.order(), point.iterations);
-                    self.steps.turns_at_most(kept.acos() / length);
+                    self.steps.keep_direction(kept, length);
                     self.last_error = error;
                     return self.accept(point, fixed);
                 }
@@ -286,8 +290,7 @@ impl Continuation {
     }
 
     fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
-        self.largest.0 = self.largest.0.max(norm(point.unknowns()));
-        self.largest.1 = self.largest.1.max(point.amplitude.norm());
+        self.note_size(&point);
         self.left_surface &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
         self.stationary = if change <= ROUNDING * point.parameter().abs() && point.step > TINY {
@@ -307,23 +310,32 @@ impl Continuation {
         })
     }
 
+    /// Takes the size of the point that becomes the current one.
+    fn note_size(&mut self, point: &Point) {
+        self.size = norm(point.unknowns());
+        self.largest.0 = self.largest.0.max(self.size);
+        self.largest.1 = self.largest.1.max(point.amplitude.norm());
+    }
+
     /// Units for the step that starts at the current point.
     fn metric(&self) -> Metric {
-        Metric::along(
-            norm(self.current.unknowns()).max(FLOOR * self.largest.0),
-            &self.settings,
-        )
+        Metric::along(self.size.max(FLOOR * self.largest.0), &self.settings)
     }
 
     /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
-        metric.unit(&self.current.tangent, &mut self.row);
+        self.length = metric.unit(&self.current.tangent, &mut self.row);
         let mut v = core::mem::take(&mut self.prediction);
         v.clear();
         try_extend(&mut v, &self.row, CONTEXT)?;
-        let is_smooth = self.last_error <= SMOOTH && self.steps.is_bounded_by_caller();
+        let is_smooth = self.is_smooth();
         let amplitude = self.history.predict(&self.current, metric, (step, is_smooth), &mut v);
         Ok((v, amplitude))
+    }
+
+    /// Whether the branch is far better predicted than its steps, which the caller bounds, require.
+    fn is_smooth(&self) -> bool {
+        self.last_error <= SMOOTH && self.steps.is_bounded_by_caller()
     }
 
     /// The bound of the range that a parameter value lies beyond, and the share of the distance to it.
@@ -358,6 +370,7 @@ impl Continuation {
             self.row.fill(0.0);
             self.row[n] = 1.0;
         }
+        self.corrector.set_may_foresee(self.is_smooth());
         let corrected = match self
             .corrector
             .correct(problem, &mut v, &self.row, metric, false, interrupt)?
@@ -377,7 +390,7 @@ impl Continuation {
         let chord = metric.distance(&point.v, &here.v);
         let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
         let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
-        let lengths = (metric.norm(&here.tangent), metric.norm(&point.tangent));
+        let lengths = (self.length, metric.norm(&point.tangent));
         let kept = cosine(metric.dot(&point.tangent, &here.tangent), lengths.0, lengths.1);
         let turned = kept < STRAIGHT;
         // A change of sense is a jump over corners. Only where other branches cross this one does it belong to the
@@ -385,7 +398,8 @@ impl Continuation {
         let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < same_line(step));
         let back = cosine(along, chord, lengths.0) < STRAIGHT;
         let far = chord > 3.0 * step;
-        let error = self.prediction_error(&self.scratch, &point, amplitude);
+        let size = norm(point.unknowns());
+        let error = self.prediction_error(&self.scratch, (&point, size), amplitude);
         self.history.judge(&self.scratch, &point, &self.row, metric);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
@@ -394,7 +408,11 @@ impl Continuation {
             return Ok(Attempt::Poor { error });
         }
         if step > self.steps.smallest().max(CORNER_STEP)
-            && let Some(share) = problem.resonance_between(&here.as_end(metric), &point.as_end(metric), chord)
+            && let Some(share) = problem.resonance_between(
+                &here.as_end(self.size, lengths.0),
+                &point.as_end(size, lengths.1),
+                chord,
+            )
         {
             return Ok(Attempt::Passed { share });
         }
@@ -402,12 +420,12 @@ impl Continuation {
     }
 
     /// Relative error of the prediction in the motion and in the observed amplitude.
-    fn prediction_error(&self, predicted: &[f64], point: &Point, amplitude: Complex64) -> f64 {
+    fn prediction_error(&self, predicted: &[f64], (point, size): (&Point, f64), amplitude: Complex64) -> f64 {
         let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
         let n = predicted.len() - 1;
         let squares = predicted[..n].iter().zip(&point.v).map(|(a, b)| (a - b) * (a - b));
         let difference = squares.sum::<f64>().sqrt();
-        let motion = relative(difference, norm(point.unknowns()).max(FLOOR * self.largest.0));
+        let motion = relative(difference, size.max(FLOOR * self.largest.0));
         let observed = relative(
             (amplitude - point.amplitude).norm(),
             point.amplitude.norm().max(FLOOR * self.largest.1),

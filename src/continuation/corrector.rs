@@ -1,10 +1,13 @@
 //! Newton's method on R(u, p) = 0 with one linear condition on (u, p): the corrector of the continuation, and with
 //! damping the solver of the first point.
 
+mod contraction;
+mod damped_step;
 mod last_evaluation;
 mod moved_tangent;
 
 use crate::continuation::Metric;
+use crate::continuation::corrector::contraction::{Contraction, Sizes};
 use crate::error::{Error, Result, Status, try_extend, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::automatic::AutomaticSystem;
@@ -18,7 +21,7 @@ use num_complex::Complex64;
 pub struct Corrected {
     /// Newton iterations taken.
     pub iterations: usize,
-    /// Residual relative to the problem's scale, before the last correction.
+    /// Residual relative to the problem's scale, before the last correction; or a bound of that behind it, where it foresees it.
     pub residual: f64,
     /// Whether round-off stopped the residual above the requested tolerance.
     pub stalled: bool,
@@ -73,6 +76,9 @@ pub struct Corrector {
     failure: Option<Error>,
     /// Whether a correction may end with the factors of the iteration before.
     may_end_early: bool,
+    /// That of the corrections before, and whether those that follow are of the same smooth branch.
+    contraction: Contraction,
+    may_foresee: bool,
 }
 
 /// Relative size of a Newton step that is round-off: no further progress is possible.
@@ -114,6 +120,8 @@ impl Corrector {
             steps_taken: 0,
             failure: None,
             may_end_early: true,
+            contraction: Contraction::UNKNOWN,
+            may_foresee: false,
         })
     }
 
@@ -126,6 +134,11 @@ impl Corrector {
     /// Counts the steps of another corrector, which prepared a correction of this one.
     pub fn count_steps(&mut self, of_other: usize) {
         self.steps_taken += of_other;
+    }
+
+    /// Tells whether the next correction is of a smooth branch whose points were corrected before.
+    pub fn set_may_foresee(&mut self, may_foresee: bool) {
+        self.may_foresee = may_foresee;
     }
 
     /// Takes memory that is no longer used for the next tangent.
@@ -165,11 +178,27 @@ impl Corrector {
         interrupt: &Interrupt<'_>,
     ) -> Result<Outcome> {
         self.failure = None;
+        let outcome = self.iterate(problem, v, row, metric, damped, interrupt)?;
+        if matches!(outcome, Outcome::Failed) {
+            self.contraction = Contraction::UNKNOWN;
+        }
+        Ok(outcome)
+    }
+
+    fn iterate(
+        &mut self,
+        problem: &mut dyn Problem,
+        v: &mut [f64],
+        row: &[f64],
+        metric: Metric,
+        damped: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Outcome> {
         if !self.evaluates(problem, v)? {
             return Ok(Outcome::Failed);
         }
         let mut damping = 1.0;
-        let (mut last_size, mut last_residual, mut last_relative) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        let (mut last_size, mut last) = (f64::INFINITY, [f64::INFINITY; 2]);
         let n = v.len() - 1;
         for iteration in 0..=self.max_iterations {
             interrupt.check()?;
@@ -177,8 +206,12 @@ impl Corrector {
             let is_last = iteration > self.min_iterations && residual <= self.attainable();
             if is_last
                 && self.may_end_early
-                && self.ends_by_earlier_factors(problem, (v, last_relative), (metric, row), interrupt)?
+                && self.ends_by_earlier_factors(problem, (v, last[1]), (metric, row), interrupt)?
             {
+                if iteration == 1 {
+                    let sizes = [residual, self.step_length(metric) / norm(&v[..n])];
+                    self.contraction.measure(last, sizes);
+                }
                 return self.finish(problem, v, metric, (iteration, residual));
             }
             // The damping test compares steps by one matrix, that of the iteration.
@@ -191,12 +224,24 @@ impl Corrector {
             if !size.is_finite() {
                 return Ok(Outcome::Failed);
             }
-            let round_off = self.is_round_off(v, metric);
-            let (length, motion) = (norm(&self.step[..n]) * metric.u, norm(&v[..n]));
+            let (length, motion) = (self.step_length(metric), norm(&v[..n]));
+            // The metric does not measure that: its unit may be far above unknowns that were large elsewhere on the branch.
+            let round_off =
+                length <= ROUND_OFF * motion && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p);
             let near = length <= NEAR * motion;
+            let sizes = [residual, length / motion];
+            let foreseen = if iteration == 0 && residual > self.tolerance && !damped {
+                self.foresee(problem, sizes)
+            } else {
+                None
+            };
+            if iteration == 1 {
+                self.contraction.measure(last, sizes);
+            }
             // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
             let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
-            let converged = (residual <= self.attainable() && near) || (round_off && !shrinks);
+            let met = residual <= self.attainable() || foreseen.is_some();
+            let converged = (met && near) || (round_off && !shrinks);
             if converged && iteration >= self.min_iterations {
                 let slope = if iteration == 0 && !problem.has_kinks() {
                     self.slope_weights(metric, row)
@@ -206,14 +251,14 @@ impl Corrector {
                 if !self.solve_for_tangent(problem, (metric, row), slope, interrupt)? {
                     return Ok(Outcome::Failed);
                 }
-                return self.finish(problem, v, metric, (iteration, residual));
+                return self.finish(problem, v, metric, (iteration, foreseen.unwrap_or(residual)));
             }
             // Where a near-rigid contact begins to close, the residual falls while small steps are dominated by rounding.
-            let falls = self.at.rounding > 0.0 && near && residual < 0.5 * last_residual;
+            let falls = self.at.rounding > 0.0 && near && residual < 0.5 * last[0];
             if iteration == self.max_iterations || (!damped && size > last_size && !falls) {
                 break;
             }
-            (last_size, last_residual, last_relative) = (size, residual, length / motion);
+            (last_size, last) = (size, sizes);
             self.steps_taken += 1;
             if damped {
                 match self.damped_step(problem, v, metric, (size, damping), interrupt)? {
@@ -265,14 +310,6 @@ impl Corrector {
         }
     }
 
-    /// Whether the current Newton step is round-off of `v`. The metric does not measure that: its unit may be far
-    /// above unknowns that were large elsewhere on the branch.
-    fn is_round_off(&self, v: &[f64], metric: Metric) -> bool {
-        let n = v.len() - 1;
-        norm(&self.step[..n]) * metric.u <= ROUND_OFF * norm(&v[..n])
-            && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p)
-    }
-
     /// Updates the linear system with Newton's matrix at the point evaluated last.
     fn update(
         &mut self,
@@ -297,6 +334,20 @@ impl Corrector {
         let factored = tolerate(self.system.factor(problem, interrupt))?;
         self.factors = if factored { Factors::Own } else { Factors::None };
         Ok(factored)
+    }
+
+    /// Length of the unknowns of the step.
+    fn step_length(&self, metric: Metric) -> f64 {
+        norm(&self.step[..self.step.len() - 1]) * metric.u
+    }
+
+    /// Bound of the residual behind a first step of these sizes, where that leads to a solution.
+    fn foresee(&mut self, problem: &mut dyn Problem, sizes: Sizes) -> Option<f64> {
+        // Iterative solutions and near-rigid contacts leave other residuals, and sampled laws have other matrices everywhere.
+        let is_smooth = self.may_foresee && self.system.is_direct() && !problem.has_kinks() && self.at.rounding == 0.0;
+        is_smooth
+            .then(|| self.contraction.foresee(sizes, self.tolerance))
+            .flatten()
     }
 
     /// step = −(R, 0)
@@ -351,46 +402,6 @@ impl Corrector {
         }
         self.update(problem, metric, row, interrupt)?;
         Ok(self.factor(problem, interrupt)? && self.system.solve(problem, error, &mut self.step, interrupt)?)
-    }
-
-    /// Tries λ = min(1, 4·last), halving; returns the accepted λ.
-    fn damped_step(
-        &mut self,
-        problem: &mut dyn Problem,
-        v: &mut [f64],
-        metric: Metric,
-        (size, last): (f64, f64),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<f64>> {
-        let n = v.len() - 1;
-        let mut damping = (4.0 * last).min(1.0);
-        while damping >= SMALLEST_DAMPING {
-            interrupt.check()?;
-            self.trial.copy_from_slice(v);
-            metric.add(&mut self.trial, damping, &self.step);
-            let finite = self.trial.iter().all(|x| x.is_finite());
-            let evaluated = if finite {
-                let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
-                self.failure = outcome.as_ref().err().filter(|e| e.recoverable).cloned();
-                tolerate(outcome)?
-            } else {
-                false
-            };
-            if evaluated {
-                for (s, r) in self.next.iter_mut().zip(&self.at.values) {
-                    *s = -r;
-                }
-                self.next[n] = 0.0;
-                let solved = self.system.solve(problem, STEP_ERROR, &mut self.next, interrupt)?;
-                let shrunk = solved && norm(&self.next) <= (1.0 - 0.25 * damping) * size;
-                if shrunk || self.relative_residual() <= self.attainable() {
-                    v.copy_from_slice(&self.trial);
-                    return Ok(Some(damping));
-                }
-            }
-            damping *= 0.5;
-        }
-        Ok(None)
     }
 
     /// Applies the last Newton step, in `step`, without another evaluation (its error is the square of a residual already
@@ -453,9 +464,9 @@ impl Corrector {
 
     /// The unit tangent in unscaled numbers from the one in `next`.
     fn unit_tangent(&self, metric: Metric, tangent: &mut [f64]) {
-        let length = norm(&self.next);
+        let inverse = 1.0 / norm(&self.next);
         for (t, s) in tangent.iter_mut().zip(&self.next) {
-            *t = s / length;
+            *t = s * inverse;
         }
         metric.unscale(tangent);
     }

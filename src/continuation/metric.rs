@@ -125,8 +125,8 @@ impl Metric {
         v[n] *= self.p;
     }
 
-    /// Turns a direction in unscaled numbers into a scaled vector of length 1.
-    pub fn unit(self, direction: &[f64], row: &mut [f64]) {
+    /// Turns a direction in unscaled numbers into a scaled vector of length 1; returns the length that it had.
+    pub fn unit(self, direction: &[f64], row: &mut [f64]) -> f64 {
         let n = row.len() - 1;
         let length = self.norm(direction);
         let (u, p) = (1.0 / (self.u * length), 1.0 / (self.p * length));
@@ -134,6 +134,7 @@ impl Metric {
             row[i] = direction[i] * u;
         }
         row[n] = direction[n] * p;
+        length
     }
 
     /// Units for unknowns of the given size and the range of `settings`.

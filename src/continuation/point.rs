@@ -1,7 +1,6 @@
 //! A solved point of a branch with its tangent.
 
 use crate::continuation::corrector::Corrected;
-use crate::continuation::metric::Metric;
 use crate::error::{Result, try_copy, try_extend};
 use crate::problem::End;
 use num_complex::Complex64;
@@ -89,13 +88,14 @@ impl Point {
         &self.v[..self.v.len() - 1]
     }
 
-    /// The point as the end of a step.
+    /// The point as the end of a step, with the size of its unknowns and the length of its tangent.
     #[must_use]
-    pub fn as_end(&self, metric: Metric) -> End<'_> {
+    pub fn as_end(&self, size: f64, length: f64) -> End<'_> {
         End {
             unknowns: self.unknowns(),
             tangent: &self.tangent,
-            unit: 1.0 / metric.norm(&self.tangent),
+            size,
+            unit: 1.0 / length,
         }
     }
 

@@ -1,5 +1,7 @@
 //! The arc-length step, controlled by the error of the predictor.
 
+use std::f64::consts::FRAC_PI_2;
+
 /// Purpose of the points of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
@@ -52,6 +54,10 @@ pub struct StepControl {
 
 /// Angle in radians by which the branch may turn in a step as foreseen. Steps in which it turns by more than π/3 are rejected.
 const MOST_TURN: f64 = 0.8;
+
+/// Largest growth of a step, and the share of it that the error allows.
+const GROWTH: f64 = 2.5;
+const SAFETY: f64 = 0.8;
 
 /// Iterations above which the step is reduced at any error.
 const MANY_ITERATIONS: usize = 6;
@@ -138,17 +144,24 @@ impl StepControl {
     /// Chooses the next step after a point was accepted; the error of the predictor grows with the step to the power
     /// `order`.
     pub fn accepted(&mut self, used: f64, error: f64, order: f64, iterations: usize) {
-        let mut factor = (0.8 * (self.detail.target() / error.max(1e-12)).powf(1.0 / order)).clamp(0.3, 2.5);
+        let margin = self.detail.target() / error.max(1e-12);
+        let mut factor = if margin >= (GROWTH / SAFETY).powi(order as i32) {
+            GROWTH
+        } else {
+            (SAFETY * margin.powf(1.0 / order)).clamp(0.3, GROWTH)
+        };
         if iterations > MANY_ITERATIONS {
             factor = factor.min(0.7);
         }
         self.step = (used * factor).clamp(self.min, self.max);
     }
 
-    /// Shortens the next step so that the branch, which turns by `rate` radians per length, keeps its direction, about.
-    pub fn turns_at_most(&mut self, rate: f64) {
-        if rate > 0.0 {
-            self.at_most(MOST_TURN / rate);
+    /// Shortens the next step so that the branch, which turned by an angle of this cosine over a length, keeps its direction, about.
+    pub fn keep_direction(&mut self, cosine: f64, length: f64) {
+        let allowed = MOST_TURN * length / self.step;
+        // An angle is at most π/2 times its chord.
+        if FRAC_PI_2 * (2.0 * (1.0 - cosine)).sqrt() > allowed {
+            self.at_most(MOST_TURN * length / cosine.acos());
         }
     }
 

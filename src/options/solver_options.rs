@@ -42,7 +42,8 @@ pub struct SolverOptions {
     /// Largest step; `0`: automatic.
     pub step_max: f64,
     /// Residual, relative to the contact motion, at which a point counts as converged. A last Newton correction
-    /// follows, so that the error of the solution is far below this value.
+    /// follows, so that the error of the solution is far below this value. Where short steps follow a smooth branch,
+    /// the residual behind that correction counts, if a hundred times what is foreseen of it is below this value.
     pub tol_residual: f64,
     /// Largest number of Newton iterations per point.
     pub max_newton: usize,

@@ -363,6 +363,12 @@ impl<'a> ContactForces<'a> {
         self.rounding[coordinate]
     }
 
+    /// Packed motions evaluated last, over the scale.
+    #[must_use]
+    pub fn motion(&self) -> &[f64] {
+        &self.scaled
+    }
+
     /// Packed forces, coordinate after coordinate.
     #[must_use]
     #[inline]

@@ -40,7 +40,7 @@ pub struct HarmonicBalance<'a> {
     /// G in the layout of [`ContactForces::couple_all`].
     flexibility: Vec<Complex64>,
     /// One packed signal.
-    change: Vec<f64>,
+    pub(super) change: Vec<f64>,
     pub(super) products: ProductMemory,
 }
 
@@ -319,19 +319,6 @@ impl<'a> HarmonicBalance<'a> {
     #[must_use]
     pub fn forces(&self) -> &ContactForces<'a> {
         &self.forces
-    }
-
-    /// Harmonics of the response degree of freedom at the point last evaluated, in the order in which they are
-    /// carried.
-    pub fn response(&self, u: &[f64], x: &mut [Complex64]) {
-        for (i, (x, table)) in x.iter_mut().zip(self.tables.current()).enumerate() {
-            let coordinates = self.condensed.coordinates();
-            let outputs = coordinates + 1;
-            *x = table.value[coordinates * outputs + coordinates];
-            for c in 0..coordinates {
-                *x -= table.value[c * outputs + coordinates] * self.forces.minus_reference(u, c, i);
-            }
-        }
     }
 }
 

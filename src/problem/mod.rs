@@ -9,6 +9,7 @@ mod contact_jacobian;
 pub mod epmc;
 pub mod harmonic_balance;
 pub mod homotopy;
+mod nearby_response;
 pub mod newton_products;
 mod parametric_problem;
 mod passed_resonance;

@@ -59,8 +59,9 @@ pub struct Homotopy<'a> {
 
 /// One end of a step along the branch.
 pub struct End<'a> {
-    /// u
+    /// u, and its norm.
     pub unknowns: &'a [f64],
+    pub size: f64,
     /// Direction of the branch in (u, p).
     pub tangent: &'a [f64],
     /// Factor that makes this direction the derivative by the arc length.

@@ -14,7 +14,6 @@
 //! are seen in the time of that one, in which e^{−ihφ} takes a shift φ out.
 
 use crate::fourier::HarmonicSet;
-use crate::linalg::norm;
 use crate::problem::parametric_problem::End;
 use num_complex::Complex64;
 use std::f64::consts::FRAC_PI_2;
@@ -30,7 +29,7 @@ const ALIKE: f64 = 2.0;
 
 /// Share of the step, of this length, from `a` to `b` at which a harmonic resonates between them; that of the first one.
 pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) -> Option<f64> {
-    let least = RELEVANT * norm(a.unknowns).max(norm(b.unknowns));
+    let least = RELEVANT * a.size.max(b.size);
     let mut base: Option<(usize, usize)> = None;
     let mut shift: Option<Shift> = None;
     let mut first: Option<f64> = None;
@@ -109,7 +108,7 @@ impl Shift {
             -Complex64::I * if rate.is_finite() { rate } else { 0.0 }
         };
         let both = product(a.unknowns, b.unknowns);
-        let length = both.norm();
+        let length = both.norm_sqr().sqrt();
         let turn = if length > 0.0 {
             both.conj() / length
         } else {
@@ -118,7 +117,7 @@ impl Shift {
         Self {
             turn,
             // An arc is shorter than π/2 of its chord.
-            angle: FRAC_PI_2 * (turn - 1.0).norm(),
+            angle: FRAC_PI_2 * (turn - 1.0).norm_sqr().sqrt(),
             rates: (rate(a), rate(b)),
         }
     }
@@ -195,6 +194,7 @@ impl Passage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::norm;
 
     /// A motion of two coordinates in harmonics 1, 3, 5 along s, and its derivative: harmonic 3 has a pole at 0.37 + iδ, of
     /// strength R in the first coordinate, and all are shifted in time by 3s.
@@ -228,6 +228,7 @@ mod tests {
         let tangents = [&ends[0], &ends[1]].map(|end| end[1].iter().map(|t| 7.0 * t).collect::<Vec<_>>());
         let end = |i: usize| End {
             unknowns: &ends[i][0],
+            size: norm(&ends[i][0]),
             tangent: &tangents[i],
             unit: 1.0 / 7.0,
         };

@@ -118,7 +118,7 @@ impl Branch {
         self.amplitude.get(point).copied().unwrap_or(f64::NAN)
     }
 
-    /// Relative residual of each point.
+    /// Relative residual of each point, before a last Newton correction; a bound of that behind it where it is foreseen.
     #[must_use]
     pub fn residual(&self) -> &[f64] {
         &self.residual[..self.curve]

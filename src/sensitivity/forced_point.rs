@@ -215,7 +215,7 @@ impl<'a> ForcedPoint<'a> {
     /// As [`Self::adjoint`].
     pub fn response(&mut self, u: &[f64], omega: f64, x: &mut [Complex64]) -> Result<Vec<f64>> {
         self.problem.evaluate(u, omega, &mut self.at)?;
-        self.problem.response(u, x);
+        self.problem.response(u, omega, x);
         try_copy(self.problem.slip_fractions(), CONTEXT)
     }
 

@@ -20,8 +20,10 @@ const ALONG: f64 = 0.9;
 /// Least ratio of the way between the two points before to that from the last one.
 const APART: f64 = 0.1;
 
-/// Largest step over the way from the last point: the branch may have had a corner there.
+/// Largest step over the way from the last point: the branch may have had a corner there. Below the least one tangents are exact
+/// enough to predict residuals far below those from which a step is foreseen.
 const SMALL: f64 = 1e-6;
+const NEGLIGIBLE: f64 = 1e-9;
 
 impl Corrector {
     /// Weights of the matrix here and of those at the points before in K′; `None` where they are not of one branch.
@@ -32,7 +34,8 @@ impl Corrector {
             (way > ALONG * metric.distance(from, to)).then_some(way)
         };
         // Near-rigid contacts have matrices whose rounding would be amplified.
-        let last = way(before, here).filter(|last| norm(&self.step) <= SMALL * last && self.at.rounding == 0.0)?;
+        let is_small = |last: &f64| (NEGLIGIBLE * last..=SMALL * last).contains(&norm(&self.step));
+        let last = way(before, here).filter(|last| is_small(last) && self.at.rounding == 0.0)?;
         let slope = [1.0 / last, -1.0 / last, 0.0];
         let Some(first) = way(oldest, before).filter(|first| *first > APART * last) else {
             return Some(slope);

@@ -95,6 +95,19 @@ impl ContactForces<'_> {
         }
     }
 
+    /// Force of a coordinate behind a change of the motion and of ω, to first order.
+    pub fn behind(&self, (change, along): (&[f64], f64), coordinate: usize, force: &mut [f64]) {
+        let m = force.len();
+        let here = coordinate * m..(coordinate + 1) * m;
+        let numbers = self.force[here.clone()].iter().zip(&self.by_omega[here]);
+        for (to, (force, by_omega)) in force.iter_mut().zip(numbers) {
+            *to = force + by_omega * along;
+        }
+        for (by, block) in self.jacobians.of_force(coordinate) {
+            add_product(1.0, block, &change[by * m..(by + 1) * m], force);
+        }
+    }
+
     /// Term that is added to the diagonal of a mean in Newton's matrix.
     #[must_use]
     pub fn mean_floor(&self, coordinate: usize) -> f64 {

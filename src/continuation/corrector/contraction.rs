@@ -1,0 +1,149 @@
+//! The end of a correction without an evaluation, foreseen from the corrections before.
+//!
+//! Near a solution Newton's method leaves of the relative residual r₀, and of the step s₀ over the motion,
+//!
+//! > r₁ ≤ q r₀²,  s₁ ≤ p s₀²
+//!
+//! (Deuflhard, Newton Methods for Nonlinear Problems, 2004, §2.1 and §2.2), where p and q hardly change from one point of a branch
+//! to the next. They are measured wherever a first step is followed by an evaluation. Where both bounds, with a margin, are within
+//! the tolerance, the point behind the step is a solution, and need not be evaluated: residuals alone are small far from solutions,
+//! too, where a resonance has little damping. Where contacts begin to slip or to lift off, the matrix changes with the square root
+//! of the motion, and r₁ with r₀ to the power 3/2: residuals from which a step is foreseen are small enough for that, too.
+
+use core::array::from_fn;
+
+/// Margin of the bounds.
+const MARGIN: f64 = 100.0;
+
+/// Largest residual over the tolerance from which the end is foreseen.
+const LARGEST: f64 = 100.0;
+
+/// Ends in a row that are foreseen, after which the contraction is measured again.
+const MOST_FORESEEN: usize = 20;
+
+/// Relative residual, and length of the step from there over the motion.
+pub(super) type Sizes = [f64; 2];
+
+/// Contraction of Newton's method along a branch.
+#[derive(Clone, Copy)]
+pub(super) struct Contraction {
+    /// q and p as measured last.
+    rates: Sizes,
+    /// Ends foreseen since.
+    foreseen: usize,
+}
+
+impl Contraction {
+    /// That of a branch of which nothing is known.
+    pub const UNKNOWN: Self = Self {
+        rates: [f64::INFINITY; 2],
+        foreseen: 0,
+    };
+
+    /// Takes the sizes before and behind a step.
+    pub fn measure(&mut self, before: Sizes, behind: Sizes) {
+        *self = Self {
+            rates: from_fn(|i| behind[i] / (before[i] * before[i])),
+            foreseen: 0,
+        };
+    }
+
+    /// Bound of the residual behind a step; `None` where it is not known to be within the tolerance, or not the step from there.
+    pub fn foresee(&mut self, sizes: Sizes, tolerance: f64) -> Option<f64> {
+        let bounds: Sizes = from_fn(|i| MARGIN * self.rates[i].max(1.0) * sizes[i] * sizes[i]);
+        // A comparison with NaN is false.
+        let is_known = bounds.iter().all(|bound| *bound <= tolerance)
+            && sizes[0] <= LARGEST * tolerance
+            && self.foreseen < MOST_FORESEEN;
+        self.foreseen += usize::from(is_known);
+        is_known.then_some(bounds[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::condense::Condensed;
+    use crate::condense::test_chains::structure;
+    use crate::contact::Contact;
+    use crate::continuation::Metric;
+    use crate::continuation::corrector::{Corrector, Outcome};
+    use crate::interrupt::Interrupt;
+    use crate::linalg::norm;
+    use crate::model::Model;
+    use crate::options::SolverOptions;
+    use crate::problem::harmonic_balance::HarmonicBalance;
+
+    const TOLERANCE: f64 = 1e-10;
+    const METRIC: Metric = Metric { u: 1.0, p: 0.5 };
+
+    /// Numbers of points of a branch, met from beside it, and of those that were foreseen.
+    fn followed(model: &Model, samples: usize) -> (usize, usize) {
+        let interrupt = Interrupt::none();
+        let options = SolverOptions {
+            harmonics: 5,
+            samples,
+            ..SolverOptions::default()
+        };
+        let range = (0.1, 0.6);
+        let condensed = Condensed::new(model, &options, range, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, range, samples, None, &interrupt).unwrap();
+        let n = problem.unknowns();
+        let mut exact = Corrector::new(n, TOLERANCE, 30).unwrap();
+        let mut quick = Corrector::new(n, TOLERANCE, 30).unwrap();
+        quick.set_may_foresee(true);
+        let mut row = vec![0.0; n + 1];
+        row[n] = 1.0;
+        let (mut v, mut met, mut foreseen) = (vec![0.0; n + 1], 0, 0);
+        for k in 0..400_usize {
+            v[n] = 0.1 + 0.00125 * k as f64;
+            match exact
+                .correct(&mut problem, &mut v, &row, METRIC, false, &interrupt)
+                .unwrap()
+            {
+                Outcome::Converged(_) => {}
+                Outcome::Failed => {
+                    v.fill(0.0);
+                    continue;
+                }
+            }
+            let mut near = v.clone();
+            let size = norm(&v[..n]) * 10.0_f64.powi(-6 - (k % 5) as i32);
+            for (i, x) in near[..n].iter_mut().enumerate() {
+                *x += size * ((i * 7 + k * 3) as f64).sin();
+            }
+            let known = quick.contraction;
+            let outcome = quick.correct(&mut problem, &mut near, &row, METRIC, false, &interrupt);
+            let Outcome::Converged(found) = outcome.unwrap() else {
+                assert!(quick.contraction.rates[0].is_infinite());
+                continue;
+            };
+            assert!(found.residual <= TOLERANCE);
+            met += 1;
+            if quick.contraction.foreseen > known.foreseen {
+                assert_eq!(found.iterations, 0);
+                assert!(known.rates[0].is_finite() && known.foreseen < MOST_FORESEEN);
+                foreseen += 1;
+            }
+            exact.evaluate(&mut problem, &near).unwrap();
+            assert!(exact.relative_residual() <= found.residual.max(1e-14), "{k}");
+        }
+        (met, foreseen)
+    }
+
+    #[test]
+    fn residuals_behind_steps_are_within_their_bounds() {
+        let mut single = structure(1, (0.0, 2e-3));
+        single
+            .add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0))
+            .unwrap();
+        let mut stop = structure(1, (0.0, 2e-2));
+        stop.add_contact(&Contact::unilateral(Some(1), Some(4), 9.0, 0.2))
+            .unwrap();
+        for model in [single, stop] {
+            let (met, foreseen) = followed(&model, 0);
+            assert!(foreseen > 100 && 2 * foreseen < met, "{foreseen} of {met}");
+            assert_eq!(followed(&model, 64).1, 0);
+        }
+    }
+}
