@@ -14,18 +14,21 @@ use crate::continuation::{Metric, Point};
 /// Angle between two tangents, over 1 the difference of its cosine from 1, below which the branch is straight.
 const STRAIGHT: f64 = 1e-14;
 
+/// φ at a point, and the factor that makes its tangent the derivative by φ.
+pub(super) type Place = (f64, f64);
+
 /// The circle through the newest point with its tangent and, about, the point before.
-pub(super) struct CurvatureCircle<'p> {
-    here: &'p Point,
-    /// Factor that makes its tangent one of unit length.
+#[derive(Clone, Copy)]
+pub(super) struct CurvatureCircle {
+    /// Factor that makes the tangent of the newest point one of unit length.
     unit: f64,
     metric: Metric,
-    bend: Option<Bend<'p>>,
+    bend: Option<Bend>,
 }
 
 /// The plane of the circle, which the tangent of the point before spans, too.
-struct Bend<'p> {
-    tangent: &'p [f64],
+#[derive(Clone, Copy)]
+struct Bend {
     /// Factor that makes this one of unit length.
     unit: f64,
     /// Those of the angle between the tangents.
@@ -36,11 +39,10 @@ struct Bend<'p> {
     across: f64,
 }
 
-impl<'p> CurvatureCircle<'p> {
+impl CurvatureCircle {
     /// The circle at `here`; a straight line where there is no point before.
-    pub fn new(here: &'p Point, before: Option<&'p Point>, metric: Metric) -> Self {
+    pub fn new(here: &Point, before: Option<&Point>, metric: Metric) -> Self {
         let mut circle = Self {
-            here,
             unit: 1.0 / metric.norm(&here.tangent),
             metric,
             bend: None,
@@ -53,7 +55,6 @@ impl<'p> CurvatureCircle<'p> {
                 // Twice the sine of half the angle.
                 let curvature = (2.0 * (1.0 - cosine)).sqrt() / chord;
                 circle.bend = Some(Bend {
-                    tangent: &before.tangent,
                     unit,
                     cosine,
                     curvature,
@@ -65,17 +66,12 @@ impl<'p> CurvatureCircle<'p> {
         circle
     }
 
-    /// Factor that makes the tangent of the newest point the derivative by φ there.
-    pub fn unit(&self) -> f64 {
-        self.unit
-    }
-
-    /// φ at a point, and the factor that makes its tangent the derivative by φ; `None` where φ does not grow along it.
-    pub fn place(&self, point: &Point) -> Option<(f64, f64)> {
-        let own = &self.here.tangent[..];
-        let other = self.bend.as_ref().map_or(own, |bend| bend.tangent);
+    /// The place of a point on the circle of these two; `None` where φ does not grow along it.
+    pub fn place(&self, (here, before): (&Point, Option<&Point>), point: &Point) -> Option<Place> {
+        let own = &here.tangent[..];
+        let other = before.map_or(own, |before| &before.tangent);
         let to = (&point.v[..], &point.tangent[..]);
-        let [along, beside] = self.metric.products(&self.here.v, to, [own, other]);
+        let [along, beside] = self.metric.products(&here.v, to, [own, other]);
         let [x, dx] = along.map(|z| z * self.unit);
         let Some(bend) = &self.bend else {
             return (dx > 0.0).then(|| (x, 1.0 / dx));

@@ -4,6 +4,7 @@
 //! or one more, that which would have predicted the last step better predicts the next one. More than three points are used
 //! where the branch is far better predicted than its steps, which the caller bounds, require.
 
+use crate::continuation::curvature_circle::{CurvatureCircle, Place};
 use crate::continuation::predictor::{MOST_POINTS, Predictor, Weights};
 use crate::continuation::{Metric, Point};
 use crate::error::{Error, Result, try_vec};
@@ -30,6 +31,58 @@ pub(super) struct History {
     other_count: usize,
     /// Whether the last prediction was a solution, so that fewer points need not be tried.
     is_met: bool,
+    places: Places,
+}
+
+/// Places of the current point and of those before it by one circle of curvature, which serves for a few points.
+struct Places {
+    /// The newest one first; none where there is no circle.
+    found: [Option<Place>; MOST_POINTS],
+    circle: Option<CurvatureCircle>,
+    /// Points since its newest one; whether the current one has a place.
+    age: usize,
+    is_current: bool,
+}
+
+/// Points for which a circle serves, its own among them, both of which must be kept.
+const MOST_PLACED: usize = MOST_POINTS - 1;
+
+impl Places {
+    const NONE: Self = Self {
+        found: [None; MOST_POINTS],
+        circle: None,
+        age: 0,
+        is_current: false,
+    };
+
+    /// Adds a point, whose place is found later.
+    fn push(&mut self) {
+        self.circle = self.circle.filter(|_| self.is_current && self.age + 1 < MOST_PLACED);
+        self.age += 1;
+        self.is_current = false;
+        self.found.rotate_right(1);
+    }
+
+    /// Finds the places that are missing.
+    fn complete(&mut self, here: &Point, before: &[Point], metric: Metric) {
+        if self.is_current {
+            return;
+        }
+        self.is_current = true;
+        if let (Some(circle), [.., own]) = (&self.circle, &before[..self.age.min(before.len())]) {
+            self.found[0] = circle.place((own, before.get(self.age)), here);
+            if self.found[0].is_some() {
+                return;
+            }
+        }
+        self.age = 0;
+        let circle = self.circle.insert(CurvatureCircle::new(here, before.first(), metric));
+        let points = core::iter::once(here).chain(before);
+        self.found = [None; MOST_POINTS];
+        for (to, point) in self.found.iter_mut().zip(points) {
+            *to = circle.place((here, before.first()), point);
+        }
+    }
 }
 
 impl History {
@@ -52,6 +105,7 @@ impl History {
             other,
             other_count: 1,
             is_met: false,
+            places: Places::NONE,
         })
     }
 
@@ -67,6 +121,7 @@ impl History {
         } else {
             self.before.pop()
         };
+        self.places.push();
         self.before.insert(0, point);
         oldest
     }
@@ -85,7 +140,8 @@ impl History {
         v: &mut [f64],
     ) -> Complex64 {
         let predictor = if is_smooth {
-            Predictor::by_circle(here, &self.before, metric)
+            self.places.complete(here, &self.before, metric);
+            Predictor::by_circle(here, &self.before, &self.places.found, metric)
         } else {
             Predictor::by_arcs(here, &self.before[..self.before.len().min(FEW_POINTS - 1)], metric)
         };

@@ -8,7 +8,7 @@
 //! parameter: the arc on the circle of curvature, see `continuation::curvature_circle`.
 
 use crate::continuation::arc_cubic::arc_length;
-use crate::continuation::curvature_circle::CurvatureCircle;
+use crate::continuation::curvature_circle::Place;
 use crate::continuation::{Metric, Point};
 use num_complex::Complex64;
 
@@ -24,6 +24,8 @@ pub struct Predictor<'p> {
     inverses: [[f64; MOST_POINTS]; MOST_POINTS],
     /// Factors that turn the stored tangents into derivatives by the parameter.
     scales: [f64; MOST_POINTS],
+    /// Derivative of the parameter by the length at the newest point.
+    per_length: f64,
     count: usize,
 }
 
@@ -35,17 +37,18 @@ pub struct Weights {
 }
 
 impl<'p> Predictor<'p> {
-    /// The point `here` and those before it, the newest one first, with places by the circle of curvature, up to one that
+    /// The point `here` and those before it, the newest one first, with their places by a circle of curvature, up to one that
     /// coincides with its neighbour or lies in another direction.
     #[must_use]
-    pub fn by_circle(here: &'p Point, before: &'p [Point], metric: Metric) -> Self {
-        let circle = CurvatureCircle::new(here, before.first(), metric);
-        let mut predictor = Self::alone(here, circle.unit());
-        for point in before.iter().take(MOST_POINTS - 1) {
-            let Some((place, scale)) = circle.place(point) else {
-                break;
-            };
-            if !predictor.add(point, place, scale) {
+    pub fn by_circle(here: &'p Point, before: &'p [Point], places: &[Option<Place>], metric: Metric) -> Self {
+        let [Some((newest, scale)), others @ ..] = places else {
+            return Self::alone(here, 1.0 / metric.norm(&here.tangent));
+        };
+        let mut predictor = Self::alone(here, *scale);
+        predictor.per_length = 1.0 / (scale * metric.norm(&here.tangent));
+        for (point, place) in before.iter().zip(others) {
+            let Some((place, scale)) = *place else { break };
+            if !predictor.add(point, place - newest, scale) {
                 break;
             }
         }
@@ -76,6 +79,7 @@ impl<'p> Predictor<'p> {
             places: [0.0; MOST_POINTS],
             inverses: [[0.0; MOST_POINTS]; MOST_POINTS],
             scales: [scale; MOST_POINTS],
+            per_length: 1.0,
             count: 1,
         }
     }
@@ -102,9 +106,10 @@ impl<'p> Predictor<'p> {
         self.count
     }
 
-    /// The weights at the parameter t beyond the newest point, from the newest `count` points.
+    /// The weights a step beyond the newest point, from the newest `count` points.
     #[must_use]
-    pub fn weights(&self, t: f64, count: usize) -> Weights {
+    pub fn weights(&self, step: f64, count: usize) -> Weights {
+        let t = step * self.per_length;
         let (mut values, mut tangents) = ([0.0; MOST_POINTS], [0.0; MOST_POINTS]);
         for i in 0..count {
             let (mut lagrange, mut slope) = (1.0, 0.0);
@@ -158,6 +163,7 @@ impl<'p> Predictor<'p> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::continuation::curvature_circle::CurvatureCircle;
 
     /// A point of a curve, whose stored tangent has the length of the derivative.
     fn point(v: [f64; 3], tangent: [f64; 3]) -> Point {
@@ -172,6 +178,15 @@ mod tests {
             stalled: false,
             positive: true,
         }
+    }
+
+    /// The prediction by the circle of the newest points.
+    fn by_circle<'p>(here: &'p Point, before: &'p [Point], metric: Metric) -> Predictor<'p> {
+        let own = (here, before.first());
+        let circle = CurvatureCircle::new(own.0, own.1, metric);
+        let points = core::iter::once(here).chain(before);
+        let places: Vec<_> = points.map(|point| circle.place(own, point)).collect();
+        Predictor::by_circle(here, before, &places, metric)
     }
 
     fn on_circle(angle: f64) -> Point {
@@ -192,7 +207,7 @@ mod tests {
         let metric = Metric { u: 1.0, p: 1.0 };
         let here = curve(0.4);
         let before = [1.0, 2.2, 3.1, 4.0].map(|steps| curve(0.4 - steps * step));
-        let predictor = Predictor::by_circle(&here, &before, metric);
+        let predictor = by_circle(&here, &before, metric);
         assert_eq!(predictor.count(), MOST_POINTS);
         let mut v = [0.0; 3];
         let weights = predictor.weights(step, count);
@@ -232,8 +247,10 @@ mod tests {
         let before = [on_circle(0.2), on_circle(-0.1)];
         let here = on_circle(0.4);
         let (mut v, truth) = ([0.0; 3], on_circle(0.5).v);
-        for make in [Predictor::by_circle, Predictor::by_arcs] {
-            let predictor = make(&here, &before, metric);
+        for predictor in [
+            by_circle(&here, &before, metric),
+            Predictor::by_arcs(&here, &before, metric),
+        ] {
             for (place, angle) in predictor.places[..3].iter().zip([0.0, -0.2, -0.5]) {
                 assert!((place - 2.0 * angle).abs() < 1e-14, "{place}");
             }
@@ -249,12 +266,12 @@ mod tests {
         let mut reversed = on_circle(0.9);
         reversed.reverse();
         for before in [on_circle(1.0), reversed, on_circle(1.2)] {
-            assert_eq!(Predictor::by_circle(&here, &[before], metric).count(), 1);
+            assert_eq!(by_circle(&here, &[before], metric).count(), 1);
         }
         let same = [on_circle(1.0)];
-        for make in [Predictor::by_circle, Predictor::by_arcs] {
-            assert_eq!(make(&here, &[], metric).count(), 1);
-            assert_eq!(make(&here, &same, metric).count(), 1);
+        for before in [&[][..], &same] {
+            assert_eq!(by_circle(&here, before, metric).count(), 1);
+            assert_eq!(Predictor::by_arcs(&here, before, metric).count(), 1);
         }
     }
 }
