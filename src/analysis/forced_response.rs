@@ -111,10 +111,8 @@ fn follow(
         condensed((model, &options), sweep, (reference, fewer), &waves, interrupt)
     };
     let levels = HarmonicLevels::new(model, solver, &forced, |highest, fewer| condensed(highest, None, fewer))?;
-    let stuck = Some(Reference::Stuck);
-    let stuck = HarmonicLevels::new(model, solver, &forced, |highest, fewer| {
-        condensed(highest, stuck, fewer)
-    })?;
+    let stuck = |highest, fewer: Option<&Condensed>| condensed(highest, Some(Reference::Stuck), fewer);
+    let stuck = HarmonicLevels::new(model, solver, &forced, stuck)?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = if levels.is_automatic() && range.guess.is_none() {
         0

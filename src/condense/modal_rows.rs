@@ -166,12 +166,12 @@ impl ModalRows {
             return Ok(0);
         };
         let first = n - SOFT[split];
-        let sums = match self.stiff[split].get() {
-            Some(known) => known,
-            None => {
-                let made = self.stiff_sums(first)?;
-                self.stiff[split].get_or_init(|| made)
-            }
+        let known = &self.stiff[split];
+        let sums = if let Some(sums) = known.get() {
+            sums
+        } else {
+            let made = self.stiff_sums(first)?;
+            known.get_or_init(|| made)
         };
         let mut factor = stiffness.inv();
         for sum in sums {

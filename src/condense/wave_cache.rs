@@ -118,7 +118,7 @@ impl WaveCache {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
-        if self.refused || block.number == 0 || !(wanted || !self.waves.is_empty()) {
+        if self.refused || block.number == 0 || (!wanted && self.waves.is_empty()) {
             return Ok(None);
         }
         let reference = real_reference(condensed, i)?;

@@ -52,10 +52,8 @@ impl WaveModes {
     /// Natural frequencies with their shapes.
     pub(super) fn frequencies(&self) -> impl Iterator<Item = (f64, &[Complex64])> {
         let shapes = self.vectors.chunks_exact(self.values.len().max(1));
-        self.values
-            .iter()
-            .zip(shapes)
-            .filter_map(|(mu, shape)| (*mu > 0.0).then(|| (mu.sqrt().recip(), shape)))
+        let modes = self.values.iter().zip(shapes).filter(|(mu, _)| **mu > 0.0);
+        modes.map(|(mu, shape)| (mu.sqrt().recip(), shape))
     }
 
     /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
