@@ -137,7 +137,7 @@ pub(super) fn extend<P: Problem>(
             }
             let last = damping <= SMALLEST_DAMPING;
             if system.evaluate(&trial)? {
-                is_rough = damping >= LONG && system.residual() > FAR * first;
+                is_rough = damping >= LONG && system.iterates_long() && system.residual() > FAR * first;
                 if !system.step(&mut next[..n], is_rough, interrupt)? {
                     return Ok(None);
                 }

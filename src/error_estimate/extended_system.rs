@@ -137,7 +137,10 @@ impl<P: Problem> ExtendedSystem<P> {
     /// −J⁻¹R with the matrix factored last and R as evaluated last, found roughly or to the digits that count; `false` where the
     /// iteration did not converge with the work that is left.
     pub fn step(&mut self, step: &mut [f64], roughly: bool, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let tolerance = if roughly {
+        // Where a step takes few products, digits that are left out save little.
+        let tolerance = if !self.iterates_long() {
+            TOLERANCE
+        } else if roughly {
             COARSEST
         } else {
             (self.goal / self.residual()).clamp(TOLERANCE, COARSEST)

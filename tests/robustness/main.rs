@@ -12,6 +12,7 @@ mod interrupts;
 mod linear_stretches;
 mod near_rigid;
 mod passed_resonances;
+mod random_chains;
 mod random_points;
 mod random_problems;
 mod saved_models;
