@@ -5,24 +5,21 @@ use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
-use crate::error::{Result, boxed, try_copy, try_push, try_vec};
+use crate::error::{Result, boxed, try_push};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
-use crate::error_estimate::estimate::{
-    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
-};
-use crate::error_estimate::extended_newton::{FirstStep, extend};
+use crate::error_estimate::estimate::{CONTEXT, extended_options, or_unknown};
+use crate::error_estimate::extended_newton::FirstStep;
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::factored_harmonics::{factored, whole};
-use crate::error_estimate::kept_changes::{Extension, KeptChanges};
+use crate::error_estimate::kept_changes::KeptChanges;
 use crate::error_estimate::kept_ratio::KeptRatio;
+use crate::error_estimate::one_extension::{Extent, extend_once};
 use crate::error_estimate::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::SolverOptions;
-use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use std::sync::Arc;
 
@@ -35,9 +32,6 @@ const TABLES: usize = 4;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
 const SMALL: usize = 32;
-
-/// Share of the residual that a guess from another point may leave.
-const CLOSER: f64 = 0.5;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 const SHARED: f64 = 0.5;
@@ -392,7 +386,7 @@ impl<'a> ForcedEstimator<'a> {
         let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
         let run = |system: &mut _, changes: &mut _| {
             let kept = (changes, tolerance);
-            on(system, condensed, (solved, from), (extent, slot), kept, interrupt)
+            extend_once(system, condensed, (solved, from), (extent, slot), kept, interrupt)
         };
         let mut found = run(&mut system, &mut self.changes);
         let mut left = system.work();
@@ -426,124 +420,4 @@ impl<'a> ForcedEstimator<'a> {
             self.extended.remove(oldest);
         }
     }
-}
-
-fn on(
-    system: &mut ExtendedSystem<HarmonicBalance<'_>>,
-    condensed: &Condensed,
-    (solved, from): (&Solved<'_>, Option<&Corrected>),
-    (extent, slot): (Extent, usize),
-    (changes, tolerance): (&mut KeptChanges, f64),
-    interrupt: &Interrupt<'_>,
-) -> Result<Option<Estimate>> {
-    let (omega, set) = (solved.omega, condensed.set());
-    if set.numbers().len() == solved.condensed.set().numbers().len() {
-        // Constant forces act alone: nothing vibrates.
-        return solved.exact(0.0).map(Some);
-    }
-    let n = system.problem.unknowns();
-    let point = solved.extended(condensed, n, 1.0)?;
-    let mut before = try_copy(&point, CONTEXT)?;
-    if let Some(from) = from {
-        set.transfer(&from.set, &from.motion, 1.0 / condensed.length(), &mut before);
-    }
-    if !system.evaluate(&before)? {
-        return Ok(None);
-    }
-    let residual = (&system.at.values[..], system.at.scale);
-    if omits_nothing(residual, set, solved.condensed.set(), tolerance) {
-        return solved.exact(0.0).map(Some);
-    }
-    system.measure_by_point(from.is_some());
-    let length = condensed.length();
-    let enough = |problem: &HarmonicBalance<'_>, at: &[f64], change: &[f64], next: &[f64]| {
-        if !extent.by_doubling {
-            let next = norm(&next[..n]);
-            return next <= SHARE * norm(change) || next <= ROUNDING * norm(&before);
-        }
-        let (x, dx) = problem.observe(at, next);
-        dx.norm() <= SHARE * (x + dx - solved.response / length).norm() || dx.norm() <= ROUNDING * x.norm()
-    };
-    let below = from.map_or(solved.condensed.set(), |from| &from.set);
-    let extension = Extension {
-        highest: below.numbers().last().copied().unwrap_or(0),
-        slot,
-    };
-    // Elsewhere a step costs less than the evaluation of a guess.
-    let guess = if system.iterates_long() {
-        changes.guess(extension, set, &before)?
-    } else {
-        None
-    };
-    let mut extended = None;
-    if let Some(guess) = guess {
-        let residual = norm(&system.at.values);
-        if system.evaluate(&guess)? && norm(&system.at.values) <= CLOSER * residual {
-            let found = extend(system, (&guess, &before), enough, extent.first_step, interrupt)?;
-            extended = found.filter(|found| found.certified);
-        }
-        if extended.is_none() && !system.evaluate(&before)? {
-            return Ok(None);
-        }
-    }
-    if extended.is_none() {
-        extended = extend(system, (&before, &before), enough, extent.first_step, interrupt)?;
-    }
-    let Some(extended) = extended else {
-        return Ok(None);
-    };
-    let mut z = extended.corrected()?;
-    if extended.certified && system.iterates_long() {
-        changes.keep(extension, set, (&before, &z))?;
-    }
-    let size = norm(&z);
-    let mut change = try_vec(n, 0.0, CONTEXT)?;
-    for ((c, z), s) in change.iter_mut().zip(&z).zip(&point) {
-        *c = z - s;
-    }
-    let change = norm(&change) / size;
-    let (x, dx) = system.problem.observe(&extended.at, &extended.next);
-    let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
-    let tail = tail(set, solved.condensed.set(), &z)?;
-    let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
-    let known = |x: f64| if certified { x } else { f64::NAN };
-    for z in &mut z {
-        *z *= length;
-    }
-    Ok(Some(Estimate {
-        certified,
-        too_large: !certified && extent.short,
-        motion: known(change + extended.missing * norm(&extended.next[..n]) / size),
-        response: known(relative((response - solved.response).norm() + next, response)),
-        frequency: known(0.0),
-        damping: known(0.0),
-        harmonics: set.numbers().last().copied().unwrap_or(0),
-        steps: extended.steps,
-        change,
-        tail,
-        corrected: Corrected {
-            set: set.try_clone()?,
-            motion: z,
-            response,
-            omega,
-            damping: 0.0,
-        },
-    }))
-}
-
-/// The harmonics to which a point is extended.
-#[derive(Clone, Copy)]
-struct Extent {
-    /// Highest harmonic of the core, in which the structure is compliant.
-    core: usize,
-    /// Highest harmonic of all.
-    highest: usize,
-    /// The least one to which a point may be extended.
-    least: usize,
-    /// Whether a short first step suffices, as where the structure is compliant in none of the harmonics that the point omits.
-    first_step: FirstStep,
-    /// Whether the structure may be compliant beyond the core, where the problem would be too large.
-    short: bool,
-    /// Whether this is one of several extensions, each of which ends as soon as the response has converged.
-    by_doubling: bool,
 }

@@ -10,6 +10,7 @@ pub mod forced_response_error;
 mod kept_changes;
 mod kept_ratio;
 pub mod mode_error;
+mod one_extension;
 mod work;
 
 pub(crate) use cutoff_harmonic::affordable;
