@@ -21,12 +21,7 @@ program threads
    !$omp do schedule(dynamic)
    do i = 1, runs
       refusal(i) = model%set_preload(i + 1, 1._dp)
-      ! While another thread solves, the model is in use: that is what the error then tells.
-      if (refusal(i) == HBVIB_E_BUSY) then
-         told(i) = index(hbvib_error_text(), 'in use') > 0
-      else
-         told(i) = index(hbvib_error_text(), numbered(i + 1)) > 0
-      end if
+      told(i) = tells(refusal(i), i + 1)
       status(i) = solve(model, found(i))
    end do
    !$omp end do
@@ -42,12 +37,22 @@ program threads
 
 contains
 
-   function numbered(i) result(text)
-      integer, intent(in) :: i
-      character(:), allocatable :: text
-      character(24) :: buffer
-      write (buffer, '("id = ", i0)') i
-      text = trim(buffer)
-   end function numbered
+   ! Whether the sentence is that of the error. It is copied into text of fixed length: where a function returns text of any
+   ! length, gfortran keeps the length in memory that threads share.
+   function tells(status, id)
+      integer(c_int32_t), intent(in) :: status
+      integer, intent(in) :: id
+      logical :: tells
+      integer, parameter :: length = 200
+      character(kind=c_char, len=length) :: sentence
+      character(24) :: number
+      integer(c_size_t) :: size_of_text
+      sentence = ''
+      size_of_text = hbvib_last_error_copy(sentence, int(length, c_size_t))
+      write (number, '("id = ", i0)') id
+      ! While another thread solves, the model may be in use.
+      if (status == HBVIB_E_BUSY) number = 'in use'
+      tells = size_of_text > 1 .and. index(sentence, trim(number)) > 0
+   end function tells
 
 end program threads
