@@ -317,19 +317,20 @@ fn interpolate(
                 )?)
             }
         };
-        let outputs = condensed.coordinates() + 1;
-        let mut sample = Table::of_size(if kept.modal.is_some() { outputs * outputs } else { 0 })?;
+        let Some(modal) = &kept.modal else {
+            return interpolation.evaluate((omega, true), table, |w, values| {
+                values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
+                Ok(())
+            });
+        };
+        // Only a new panel takes memory for samples.
+        if interpolation.evaluate_known((omega, true), table) {
+            return Ok(true);
+        }
+        let mut sample = Table::new(condensed.coordinates())?;
         interpolation.evaluate((omega, true), table, |w, values| {
-            let by_modes = match &kept.modal {
-                Some(modal) => modal.evaluate((w, false), work, &mut sample, interrupt)?,
-                None => false,
-            };
-            let found = if by_modes {
-                &sample.value
-            } else {
-                &workspace.evaluate(condensed, i, w, false, interrupt)?.value
-            };
-            values.copy_from_slice(found);
+            sample_by_modes(modal, (condensed, i, w), (work, workspace, &mut sample), interrupt)?;
+            values.copy_from_slice(&sample.value);
             Ok(())
         })
     })
@@ -365,12 +366,9 @@ fn interpolate_sums(
                 none.insert(FrequencyInterpolation::new(kind, range, resonances, tables.tolerance)?)
             }
         };
-        let mut sum = |w: f64, sample: &mut Table| -> Result<()> {
-            if !modal.evaluate((w, false), work, sample, interrupt)? {
-                let found = workspace.evaluate(condensed, i, w, false, interrupt)?;
-                sample.value.copy_from_slice(&found.value);
-            }
-            Ok(())
+        let mut sum = |w: f64, sample: &mut Table| {
+            let at = (condensed, i, w);
+            sample_by_modes(modal, at, (&mut *work, &mut *workspace, sample), interrupt)
         };
         let sums = interpolation.evaluations();
         let mut done = interpolation.evaluate((omega, false), table, |w, values| {
@@ -387,6 +385,20 @@ fn interpolate_sums(
         kept.rejected = !done;
         Ok(done)
     })
+}
+
+/// A sample of a table: the sum over modes, or by factorisation where that would lose digits.
+fn sample_by_modes(
+    modal: &ModalTable,
+    (condensed, i, omega): (&Condensed, usize, f64),
+    (work, workspace, sample): (&mut ModalWork, &mut Workspace, &mut Table),
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    if !modal.evaluate((omega, false), work, sample, interrupt)? {
+        let found = workspace.evaluate(condensed, i, omega, false, interrupt)?;
+        sample.value.copy_from_slice(&found.value);
+    }
+    Ok(())
 }
 
 /// Relative motions, and whether tables are symmetric.

@@ -83,8 +83,8 @@ pub(super) fn extend_once(
     };
     let mut extended = None;
     if let Some(guess) = guess {
-        let residual = norm(&system.at.values);
-        if system.evaluate(&guess)? && norm(&system.at.values) <= CLOSER * residual {
+        let residual = system.residual();
+        if system.evaluate(&guess)? && system.residual() <= CLOSER * residual {
             let found = extend(system, (&guess, &before), enough, extent.first_step, interrupt)?;
             extended = found.filter(|found| found.certified);
         }
