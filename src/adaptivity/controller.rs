@@ -14,13 +14,10 @@ use crate::adaptivity::discretised::{Assessment, Discretised};
 use crate::adaptivity::estimate_spacing::{EstimateSpacing, Signs};
 use crate::continuation::Point;
 use crate::error::Result;
-use crate::error_estimate::Estimate;
+use crate::error_estimate::{Estimate, MARGIN};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
-
-/// Largest ratio of an error to its estimate for which the controller allows.
-const MARGIN: f64 = 1.5;
 
 /// Target of the error as a share of the tolerance, where harmonics cost little and where they cost much.
 const AIM: (f64, f64) = (0.5, 0.7);

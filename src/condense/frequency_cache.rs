@@ -35,8 +35,8 @@ const MOST_RESONANCES: usize = 8;
 /// Relative error of a column of an interpolated sum that shows that it must not be used.
 const CLOSE: f64 = 1e-4;
 
-/// Frequencies at which sums over modes are made before they are interpolated.
-const POINTWISE: usize = 6;
+/// Frequencies without a panel at which sums over modes are made before they are interpolated: a panel takes about as many.
+const POINTWISE: usize = 10;
 
 /// Relative error of a slope by factorisation over that of its table.
 const SLOPE: f64 = 10.0;
@@ -348,10 +348,18 @@ fn interpolate_sums(
 ) -> Result<bool> {
     let range = tables.range;
     tables.estimated.with(condensed, i, |kept, _| {
-        kept.requests += 1;
-        if kept.requests <= POINTWISE || kept.rejected {
+        if kept.rejected {
             return Ok(false);
         }
+        let known = kept.interpolation.as_mut();
+        if known.is_some_and(|known| known.evaluate_known((omega, false), table)) {
+            return Ok(true);
+        }
+        kept.requests += 1;
+        if kept.requests <= POINTWISE {
+            return Ok(false);
+        }
+        kept.requests = 0;
         let interpolation = match &mut kept.interpolation {
             Some(known) => known,
             none => {

@@ -262,7 +262,7 @@ mod tests {
                 let form = (form, false);
                 let (direct, _) = Condensed::for_mode(&model, &options, form, &shape, &Interrupt::none()).unwrap();
                 let quick = SharedWaves::default()
-                    .attach(&model, direct.clone(), &Interrupt::none())
+                    .attach(&model, (direct.clone(), 0), &Interrupt::none())
                     .unwrap();
                 assert!(quick.blocks().iter().all(|b| b.modes.is_some()));
                 let [mut by_modes, mut exact] = [&quick, &direct].map(|c| Modal::new(c).unwrap());

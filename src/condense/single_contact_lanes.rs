@@ -379,7 +379,7 @@ mod tests {
         };
         let condensed = Condensed::with_reference(&model, &options, (0.3, 2.0), None, &Interrupt::none()).unwrap();
         let condensed = SharedWaves::default()
-            .attach(&model, condensed, &Interrupt::none())
+            .attach(&model, (condensed, 0), &Interrupt::none())
             .unwrap();
         let table = |i: usize| {
             let modes = condensed.blocks()[i].modes.as_ref()?;

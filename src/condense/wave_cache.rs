@@ -43,13 +43,18 @@ pub struct SharedWaves {
 }
 
 impl SharedWaves {
-    /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`]: a large one with those that are known.
+    /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`].
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn attach(&self, model: &Model, mut condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Condensed> {
+    pub fn attach(
+        &self,
+        model: &Model,
+        (mut condensed, factorisations): (Condensed, usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Condensed> {
         let mut waves = self.waves.take();
-        condensed.attach_modes(model, &mut waves, interrupt)?;
+        condensed.attach_modes(model, (&mut waves, factorisations), interrupt)?;
         self.waves.set(waves);
         Ok(condensed)
     }

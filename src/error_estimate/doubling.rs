@@ -3,7 +3,7 @@
 //! With X₀ the response of the point, Xₖ that of the k-th extension and dₖ = |Xₖ − Xₖ₋₁| the next change is about
 //! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q.
 
-use crate::error_estimate::estimate::{Estimate, relative};
+use crate::error_estimate::estimate::{Estimate, MARGIN, relative};
 use num_complex::Complex64;
 
 /// The next change, relative to the whole, at which the response has settled, and at which it will do where no further
@@ -11,8 +11,8 @@ use num_complex::Complex64;
 const SETTLED: f64 = 0.2;
 const SUFFICIENT: f64 = 0.6;
 
-/// Largest change, relative to the tolerance, that is harmless after one extension and after more.
-const HARMLESS: (f64, f64) = (0.05, 0.5);
+/// Largest change, relative to the tolerance, that is harmless after one extension.
+const HARMLESS: f64 = 0.05;
 
 /// Least and largest change that may be missing behind the last one, over that.
 const MISSING: (f64, f64) = (0.5, 2.0);
@@ -88,16 +88,21 @@ impl Doubling {
         last * share.clamp(MISSING.0, MISSING.1)
     }
 
-    /// Whether the whole change stays well below a tolerance with all that may be missing. One extension alone shows less than
-    /// two.
+    /// Whether the whole change meets a tolerance with all that may be missing. One extension alone shows less than two.
     pub fn is_harmless(&self, tolerance: f64) -> bool {
         let whole = (self.last - self.point).norm();
         let size = self.last.norm();
         match self.extensions {
             0 => false,
-            1 => whole <= HARMLESS.0 * tolerance * size,
-            _ => whole + self.missing() <= HARMLESS.1 * tolerance * size,
+            1 => whole <= HARMLESS * tolerance * size,
+            _ => MARGIN * (whole + self.missing()) <= tolerance * size,
         }
+    }
+
+    /// Whether the whole change is known well enough and misses a tolerance: a further extension would not change what follows.
+    pub fn misses(&self, tolerance: f64) -> bool {
+        let whole = (self.last - self.point).norm() * (1.0 + self.next());
+        tolerance > 0.0 && self.suffices() && MARGIN * whole > tolerance * self.last.norm()
     }
 
     /// The estimate of the last extension, with the change that may be missing.

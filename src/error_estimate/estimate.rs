@@ -29,6 +29,9 @@ pub(super) const CONTEXT: &str = "the error estimate";
 /// Largest size of the next step relative to the change: 0.1 costs about one step more than 0.3.
 pub(super) const SHARE: f64 = 0.1;
 
+/// Largest ratio of an error to its estimate for which the selection of harmonics allows.
+pub(crate) const MARGIN: f64 = 1.5;
+
 /// Unknowns of an extended problem above which no estimate is made.
 pub(super) const MOST_EXTENDED: usize = 30_000;
 

@@ -21,6 +21,10 @@ const CLOSE: f64 = 0.3;
 const FAR: f64 = 0.3;
 const LONG: f64 = 0.25;
 
+/// Share of the residual before a step that shows it to be right, whatever the next one is: where a contact grazes, the matrix
+/// changes with the side, and the simplified step is long on both.
+const FALLEN: f64 = 0.25;
+
 /// Damping factor below which a step is accepted without the monotonicity test.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
@@ -107,6 +111,7 @@ pub(super) fn extend<P: Problem>(
             return Ok(None);
         }
         let size = norm(&step);
+        let before = system.residual();
         if first_step != FirstStep::Checked && steps == 1 && size <= SHORT * norm(start) {
             return Ok(Some(ExtendedSolution {
                 at: z,
@@ -141,7 +146,8 @@ pub(super) fn extend<P: Problem>(
                 if !system.step(&mut next[..n], is_rough, interrupt)? {
                     return Ok(None);
                 }
-                if last || norm(&next) <= (1.0 - 0.25 * damping) * size {
+                let falls = norm(&next) <= (1.0 - 0.25 * damping) * size || system.residual() <= FALLEN * before;
+                if last || falls {
                     break;
                 }
             } else if last {

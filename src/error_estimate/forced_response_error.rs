@@ -257,6 +257,9 @@ impl<'a> ForcedEstimator<'a> {
             if ends {
                 return solved.unknown(0.0, false).map(Some);
             }
+            if series.misses(self.options.tolerance) {
+                return Ok(Some(series.completed(found)));
+            }
             highest = next;
             last = Some(found);
         }

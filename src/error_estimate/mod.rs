@@ -14,5 +14,6 @@ mod one_extension;
 mod work;
 
 pub(crate) use cutoff_harmonic::affordable;
+pub(crate) use estimate::MARGIN;
 pub use estimate::{Corrected, Estimate, Solved};
 pub(crate) use work::{allow_point, is_allowed};

@@ -11,10 +11,10 @@ use crate::linalg::linear_system::krylov::KrylovSystem;
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
 
 /// Columns up to which a direct solution is quicker.
-const DIRECT_UP_TO: usize = 480;
+const DIRECT_UP_TO: usize = 240;
 
 /// Unknowns of the factored block, unless the first numbers of the groups are more.
-const BLOCK: usize = 300;
+const BLOCK: usize = 200;
 
 /// Most products of an iteration.
 const MOST_PRODUCTS: usize = 240;
