@@ -1,24 +1,21 @@
 //! Eigenvalues and eigenvectors of a large dense Hermitian matrix, column by column, so that the caller may interrupt.
 //!
-//! Householder's reflections make the matrix real and tridiagonal, A = Q T Qᴴ; implicit QL iteration diagonalises T
-//! (Bowdler, Martin, Reinsch & Wilkinson 1968, doi:10.1007/BF02219771); the reflections turn its vectors into those
-//! of A (Golub & Van Loan, Matrix Computations, 2013, §8.3).
+//! Householder's reflections make the matrix real and tridiagonal, A = Q T Qᴴ; implicit QL iteration diagonalises T; the
+//! reflections turn its vectors into those of A (Golub & Van Loan, Matrix Computations, 2013, §8.3).
 
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::{complex_columns, inner, remove};
+use crate::linalg::{complex_columns, inner, reflections, tridiagonal};
 use faer::linalg::matmul::matmul;
-use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::reborrow::Reborrow;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
+use std::ops::Range;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
-/// Iterations for one eigenvalue; two or three suffice.
-const MOST_ITERATIONS: usize = 60;
-
-/// Rows of a triangular system up to which plain loops solve it, and columns of a product between two checks of the interrupt.
-const BLOCK: usize = 24;
+/// Rows of a triangular system up to which plain loops solve it, and its columns between two checks of the interrupt.
+const BLOCK: usize = 16;
 const AT_ONCE: usize = 64;
 
 /// Shares of the work in the reduction, the iteration and the vectors, for the progress.
@@ -39,7 +36,13 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
     for i in 0..n {
         z[i * n + i] = 1.0;
     }
-    diagonalise((&mut values, &mut beside), &mut z, interrupt)?;
+    let between = |low: f64, high: f64| move |share: f64| interrupt.phase(Phase::Modes, low + (high - low) * share);
+    tridiagonal::diagonalise(
+        (&mut values, &mut beside),
+        &mut z,
+        interrupt,
+        between(REDUCED, ITERATED),
+    )?;
     let mut order = try_vec(n, 0, CONTEXT)?;
     for (i, o) in order.iter_mut().enumerate() {
         *o = i;
@@ -47,25 +50,14 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
     order.sort_unstable_by(|&i, &j| values[i].total_cmp(&values[j]));
     let mut vectors = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     let mut sorted = try_vec(n, 0.0, CONTEXT)?;
-    for (k, &i) in order.iter().enumerate() {
-        interrupt.phase(Phase::Modes, ITERATED + (1.0 - ITERATED) * k as f64 / n as f64)?;
-        interrupt.check_before((8 * n * n) as u64)?;
-        sorted[k] = values[i];
-        let x = &mut vectors[k * n..(k + 1) * n];
+    for ((x, sorted), &i) in vectors.chunks_exact_mut(n.max(1)).zip(&mut sorted).zip(&order) {
+        *sorted = values[i];
         for (x, z) in x.iter_mut().zip(&z[i * n..(i + 1) * n]) {
             *x = (*z).into();
         }
-        for j in (0..n.saturating_sub(1)).rev() {
-            let v = &a[j * n + j + 1..(j + 1) * n];
-            reflect(v, factors[j], &mut x[j + 1..]);
-        }
     }
+    reflections::apply((a, &factors, n), &mut vectors, interrupt, between(ITERATED, 1.0))?;
     Ok((sorted, vectors))
-}
-
-/// x ← (I − τ v vᴴ) x
-fn reflect(v: &[Complex64], factor: Complex64, x: &mut [Complex64]) {
-    remove(x, v, factor * inner(v, x));
 }
 
 /// Reduces A to T: its diagonal and the entries beside it. The vectors v of the reflections I − τ v vᴴ remain below
@@ -127,60 +119,6 @@ fn tridiagonalise(
     Ok(())
 }
 
-/// Eigenvalues of T in place of its diagonal; the rotations are applied to the columns of z.
-fn diagonalise((d, e): (&mut [f64], &mut [f64]), z: &mut [f64], interrupt: &Interrupt<'_>) -> Result<()> {
-    let n = d.len();
-    for l in 0..n {
-        for iteration in 0.. {
-            interrupt.phase(Phase::Modes, REDUCED + (ITERATED - REDUCED) * l as f64 / n as f64)?;
-            interrupt.check_before((6 * n * (n - l)) as u64)?;
-            let negligible = |m: &usize| e[*m].abs() <= f64::EPSILON * (d[*m].abs() + d[*m + 1].abs());
-            let m = (l..n - 1).find(negligible).unwrap_or(n - 1);
-            if m == l {
-                break;
-            }
-            if iteration == MOST_ITERATIONS || !e[l].is_finite() {
-                return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
-            }
-            let g = (d[l + 1] - d[l]) / (2.0 * e[l]);
-            let r = g.hypot(1.0);
-            let mut g = d[m] - d[l] + e[l] / (g + r.copysign(g));
-            let (mut s, mut c, mut p) = (1.0, 1.0, 0.0);
-            let mut early = false;
-            for i in (l..m).rev() {
-                let (f, b) = (s * e[i], c * e[i]);
-                let r = f.hypot(g);
-                e[i + 1] = r;
-                if r == 0.0 {
-                    // The matrix has split.
-                    d[i + 1] -= p;
-                    e[m] = 0.0;
-                    early = true;
-                    break;
-                }
-                (s, c) = (f / r, g / r);
-                g = d[i + 1] - p;
-                let r = (d[i] - g) * s + 2.0 * c * b;
-                p = s * r;
-                d[i + 1] = g + p;
-                g = c * r - b;
-                let (first, second) = z[i * n..(i + 2) * n].split_at_mut(n);
-                for (x, y) in first.iter_mut().zip(second) {
-                    let f = *y;
-                    *y = s * *x + c * f;
-                    *x = c * *x - s * f;
-                }
-            }
-            if !early {
-                d[l] -= p;
-                e[l] = g;
-                e[m] = 0.0;
-            }
-        }
-    }
-    Ok(())
-}
-
 /// A ← Aᴴ of order n.
 pub fn adjoint_in_place(a: &mut [Complex64], n: usize) {
     for j in 0..n {
@@ -221,10 +159,10 @@ pub fn cholesky(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Res
     Ok(true)
 }
 
-/// B ← L⁻¹ B in blocks of rows, or L⁻ᴴ B, column by column.
+/// B ← L⁻¹ B, or L⁻ᴴ B.
 ///
 /// # Errors
-/// `StoppedByCaller`.
+/// `OutOfMemory`; `StoppedByCaller`.
 pub fn solve_triangular(
     l: &[Complex64],
     n: usize,
@@ -232,49 +170,54 @@ pub fn solve_triangular(
     b: &mut [Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
-    if !adjoint {
-        let columns = b.len() / n.max(1);
-        let l = MatRef::from_column_major_slice(l, n, n);
-        return forward(l, MatMut::from_column_major_slice_mut(b, n, columns), interrupt);
+    // Where the left factor of a product is not by columns, faer copies it to the stack, which may be small.
+    let mut by_columns = Vec::new();
+    if adjoint {
+        by_columns = try_copy(l, CONTEXT)?;
+        adjoint_in_place(&mut by_columns, n);
     }
-    for x in b.chunks_exact_mut(n.max(1)) {
-        interrupt.check_before((4 * n * n) as u64)?;
-        for k in (0..n).rev() {
-            let column = &l[k * n + k + 1..(k + 1) * n];
-            let known: Complex64 = column.iter().zip(&x[k + 1..]).map(|(l, x)| l.conj() * x).sum();
-            x[k] = (x[k] - known) / l[k * n + k].re;
-        }
+    let triangle = if adjoint { &by_columns } else { l };
+    for b in b.chunks_mut(AT_ONCE * n.max(1)) {
+        interrupt.check_before((4 * n * b.len()) as u64)?;
+        solve_rows((triangle, n), adjoint, 0..n, b);
     }
     Ok(())
 }
 
-/// B ← L⁻¹ B: the first half of the rows, their product with L below them, and the other half.
-fn forward(l: MatRef<'_, Complex64>, mut b: MatMut<'_, Complex64>, interrupt: &Interrupt<'_>) -> Result<()> {
-    let (n, columns) = (b.nrows(), b.ncols());
-    interrupt.check_before((4 * n * n * columns.min(AT_ONCE)) as u64)?;
-    if n <= BLOCK {
-        for j in 0..columns {
-            for k in 0..n {
-                let x = b[(k, j)] / l[(k, k)].re;
-                b[(k, j)] = x;
-                for i in k + 1..n {
-                    b[(i, j)] -= x * l[(i, k)];
-                }
-            }
+/// Solves for some rows of B: the first half of them, their product with the triangle below them, and the other half; with an
+/// upper triangle from the last half on.
+fn solve_rows((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, b: &mut [Complex64]) {
+    if rows.len() <= BLOCK {
+        for x in b.chunks_exact_mut(n) {
+            solve_column((a, n), upper, rows.clone(), x);
         }
-        return Ok(());
+        return;
     }
-    let half = n / 2;
-    let (first, _, below, second) = l.split_at(half, half);
-    let (mut head, mut rest) = b.split_at_row_mut(half);
-    forward(first, head.rb_mut(), interrupt)?;
-    for from in (0..columns).step_by(AT_ONCE) {
-        let count = AT_ONCE.min(columns - from);
-        interrupt.check_before((8 * half * n * count) as u64)?;
-        let (head, rest) = (head.rb().subcols(from, count), rest.rb_mut().subcols_mut(from, count));
-        matmul(rest, Accum::Add, below, head, -Complex64::ONE, Par::Seq);
+    let middle = rows.start + rows.len() / 2;
+    let (head, rest) = (rows.start..middle, middle..rows.end);
+    let (first, last) = if upper { (rest, head) } else { (head, rest) };
+    solve_rows((a, n), upper, first.clone(), b);
+    let between = MatRef::from_column_major_slice(a, n, n).submatrix(last.start, first.start, last.len(), first.len());
+    let columns = b.len() / n;
+    let b_rows = MatMut::from_column_major_slice_mut(b, n, columns).subrows_mut(rows.start, rows.len());
+    let (above, below) = b_rows.split_at_row_mut(middle - rows.start);
+    let (known, to) = if upper { (below, above) } else { (above, below) };
+    matmul(to, Accum::Add, between, known.rb(), -Complex64::ONE, Par::Seq);
+    solve_rows((a, n), upper, last, b);
+}
+
+/// The same for one column, entry after entry.
+fn solve_column((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, x: &mut [Complex64]) {
+    for i in 0..rows.len() {
+        let k = if upper { rows.end - 1 - i } else { rows.start + i };
+        let others = if upper { rows.start..k } else { k + 1..rows.end };
+        let column = &a[k * n..(k + 1) * n];
+        x[k] /= column[k].re;
+        let known = x[k];
+        for (x, a) in x[others.clone()].iter_mut().zip(&column[others]) {
+            *x -= known * a;
+        }
     }
-    forward(second, rest, interrupt)
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ pub mod lu;
 pub mod matrix_view;
 mod nested_dissection;
 pub mod quadratic;
+mod reflections;
 pub mod row_index;
 mod separator;
 pub mod small_lu;
@@ -27,6 +28,7 @@ mod small_sum;
 mod sorted_columns;
 pub mod sparse;
 pub mod triangle;
+mod tridiagonal;
 mod vectors;
 
 pub use vectors::{
