@@ -6,10 +6,12 @@
 
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
+
+const CONTEXT: &str = "the contact flexibility";
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
 /// the unit force of contact j, the last one the excitation; the last row is the response degree
@@ -37,15 +39,16 @@ impl Table {
     /// `OutOfMemory`.
     pub(super) fn of_size(size: usize) -> Result<Self> {
         Ok(Self {
-            value: try_vec(size, Complex64::ZERO, "the contact flexibility")?,
-            slope: try_vec(size, Complex64::ZERO, "the contact flexibility")?,
+            value: try_vec(size, Complex64::ZERO, CONTEXT)?,
+            slope: try_vec(size, Complex64::ZERO, CONTEXT)?,
         })
     }
 }
 
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct Workspace {
-    dynamic: DynamicStiffness,
+    /// Made, as the columns, when a factorisation first needs it: where all tables are from modes none does.
+    dynamic: Option<Box<DynamicStiffness>>,
     damping: f64,
     /// Row of the response degree of freedom per harmonic, empty without one.
     responses: Vec<MotionRow>,
@@ -65,20 +68,19 @@ impl Workspace {
     /// `OutOfMemory`.
     pub fn new(condensed: &Condensed, response: Option<usize>) -> Result<Self> {
         let n = condensed.ndof();
-        let outputs = condensed.coordinates() + 1;
         let mut responses = Vec::new();
         for i in 0..condensed.blocks().len() {
             let row = response.map_or(Ok(MotionRow::default()), |dof| condensed.motion_row(i, dof));
-            try_push(&mut responses, row?, "the contact flexibility")?;
+            try_push(&mut responses, row?, CONTEXT)?;
         }
         Ok(Self {
-            dynamic: DynamicStiffness::new(condensed, outputs)?,
+            dynamic: None,
             damping: 0.0,
             responses,
-            columns: try_vec(n.saturating_mul(outputs), Complex64::ZERO, "the contact flexibility")?,
+            columns: Vec::new(),
             rows: Vec::new(),
-            product: try_vec(n, Complex64::ZERO, "the contact flexibility")?,
-            load: try_vec(n, Complex64::ZERO, "the contact flexibility")?,
+            product: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            load: try_vec(n, Complex64::ZERO, CONTEXT)?,
             table: Table::new(condensed.coordinates())?,
         })
     }
@@ -98,7 +100,7 @@ impl Workspace {
         right: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.dynamic.factor(condensed, i, omega, 0.0, interrupt)?;
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega, 0.0, interrupt)?;
         for (v, transposed) in [(right, false), (left, true)] {
             self.product.fill(Complex64::ZERO);
             add_slope_product(
@@ -111,7 +113,7 @@ impl Workspace {
                 &mut self.product,
             );
             v.copy_from_slice(&self.product);
-            self.dynamic.solve(condensed, i, omega.re, v, transposed, interrupt)?;
+            made(&mut self.dynamic, condensed)?.solve(condensed, i, omega.re, v, transposed, interrupt)?;
             let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
             for z in v.iter_mut() {
                 *z /= size;
@@ -146,11 +148,14 @@ impl Workspace {
     /// Fills the columns Z⁻¹ B.
     fn solve_columns(&mut self, condensed: &Condensed, i: usize, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let block = &condensed.blocks()[i];
+        if self.columns.is_empty() {
+            let outputs = condensed.coordinates() + 1;
+            self.columns = try_vec(condensed.ndof().saturating_mul(outputs), Complex64::ZERO, CONTEXT)?;
+        }
         for (k, column) in self.columns.chunks_exact_mut(condensed.ndof()).enumerate() {
             fill_load(block, k, omega, column);
         }
-        self.dynamic
-            .solve(condensed, i, omega, &mut self.columns, false, interrupt)
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.columns, false, interrupt)
     }
 
     /// Z⁻¹ Wᴴ of the i-th carried harmonic at `omega` with its current factors, column after column.
@@ -180,8 +185,7 @@ impl Workspace {
         slopes: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<&Table> {
-        self.dynamic
-            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         self.solve_columns(condensed, i, omega, interrupt)?;
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
@@ -196,7 +200,7 @@ impl Workspace {
             return Ok(&self.table);
         }
         if self.rows.is_empty() {
-            self.rows = try_vec(self.columns.len(), Complex64::ZERO, "the contact flexibility")?;
+            self.rows = try_vec(self.columns.len(), Complex64::ZERO, CONTEXT)?;
         }
         self.rows.fill(Complex64::ZERO);
         for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
@@ -204,8 +208,7 @@ impl Workspace {
                 column[p] += a;
             }
         }
-        self.dynamic
-            .solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
         for (column, table) in self
             .columns
             .chunks_exact(n)
@@ -248,8 +251,14 @@ impl Workspace {
         let tables = self.table.value.chunks_exact_mut(outputs);
         for (k, (x, table)) in self.columns.chunks_exact_mut(n).zip(tables).enumerate() {
             fill_load(block, k, omega, &mut self.load);
-            self.dynamic
-                .refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
+            made(&mut self.dynamic, condensed)?.refine(
+                condensed,
+                i,
+                (omega, self.damping),
+                &self.load,
+                x,
+                interrupt,
+            )?;
             read(rows.clone(), x, table);
         }
         Ok(&self.table.value)
@@ -273,12 +282,11 @@ impl Workspace {
         b: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.dynamic
-            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         for z in b.iter_mut() {
             *z = z.conj();
         }
-        self.dynamic.solve(condensed, i, omega, b, true, interrupt)?;
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, b, true, interrupt)?;
         for z in b.iter_mut() {
             *z = z.conj();
         }
@@ -297,9 +305,8 @@ impl Workspace {
         b: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.dynamic
-            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
-        self.dynamic.solve(condensed, i, omega, b, false, interrupt)
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, b, false, interrupt)
     }
 
     /// y += ∂Z_κ/∂ω x in the i-th carried harmonic at `omega`.
@@ -329,8 +336,7 @@ impl Workspace {
         x: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.dynamic
-            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         let block = &condensed.blocks()[i];
         block.force_at(omega, &mut self.load);
         for (row, w) in block.rows.iter().zip(contact_force) {
@@ -340,9 +346,18 @@ impl Workspace {
         }
         let at = (omega, self.damping);
         x.copy_from_slice(&self.load);
-        self.dynamic.solve(condensed, i, omega, x, false, interrupt)?;
-        self.dynamic.refine(condensed, i, at, &self.load, x, interrupt)
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, x, false, interrupt)?;
+        made(&mut self.dynamic, condensed)?.refine(condensed, i, at, &self.load, x, interrupt)
     }
+}
+
+/// The matrix of the current harmonic with its factors.
+fn made<'a>(dynamic: &'a mut Option<Box<DynamicStiffness>>, condensed: &Condensed) -> Result<&'a mut DynamicStiffness> {
+    let known = match dynamic.take() {
+        Some(known) => known,
+        None => boxed(|| DynamicStiffness::new(condensed, condensed.coordinates() + 1))?,
+    };
+    Ok(dynamic.insert(known))
 }
 
 /// The k-th column of B: the unit force of a contact, the last one the excitation at `omega`.

@@ -296,19 +296,19 @@ fn interpolate(
     table: &mut Table,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
-    tables.with(condensed, i, |kept, modes| {
+    tables.with(condensed, i, |kept, waves| {
         let interpolation = match &mut kept.interpolation {
             Some(known) => known,
             none => {
                 if let Some(modes) = &condensed.blocks()[i].modes {
-                    let rows = ModalRows::new(condensed, i, response, (Arc::clone(modes), 0.0))?;
-                    let modal = ModalTable::new(condensed, i, Arc::new(rows))?;
+                    let rows = ModalRows::shared((condensed, i, response), modes, &mut waves.rows)?;
+                    let modal = ModalTable::new((condensed, i), rows, TOLERANCE)?;
                     let at = (condensed, i, omega);
                     if agrees(&modal, at, &mut false, (work, workspace, table), interrupt)? {
                         kept.modal = Some(boxed(|| Ok(modal))?);
                     }
                 }
-                let resonances = resonance_poles::near(condensed, workspace, i, range, modes, interrupt)?;
+                let resonances = resonance_poles::near(condensed, workspace, i, range, &mut waves.modes, interrupt)?;
                 none.insert(FrequencyInterpolation::new(
                     kind(condensed, i),
                     range,
@@ -426,8 +426,8 @@ fn of_wave(
         return Ok(None);
     };
     let is_known = waves.iter().any(|known| known.are_of(modes));
-    let rows = ModalRows::shared((condensed, i, response), (modes, 0.0), waves)?;
-    let modal = ModalTable::new(condensed, i, rows)?;
+    let rows = ModalRows::shared((condensed, i, response), modes, waves)?;
+    let modal = ModalTable::new((condensed, i), rows, 0.0)?;
     let mut table = Table::new(condensed.coordinates())?;
     // The slope is made of the same modes: once shows that it is right.
     let mut checks_slope = true;

@@ -6,7 +6,7 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
-use crate::condense::modal_rows::ModalRows;
+use crate::condense::modal_rows::{ModalRows, terms_within};
 use crate::condense::single_contact::{Denominators, SingleContact};
 use crate::condense::wave_modes::{NEAR_RESONANCE, WaveModes};
 use crate::error::{Result, boxed, try_push, try_vec};
@@ -23,6 +23,8 @@ const RESONANCE_ITERATIONS: usize = 3;
 pub struct ModalTable {
     rows: Arc<ModalRows>,
     number: f64,
+    /// Terms of the series over stiff modes; none where all are summed.
+    terms: usize,
     coefficients: Coefficients,
     /// The excitation seen by Φᴴ; none where there is none.
     force: Vec<Complex64>,
@@ -83,11 +85,11 @@ impl Work {
 }
 
 impl ModalTable {
-    /// The table of the i-th carried harmonic from the rows of its wave.
+    /// The table of the i-th carried harmonic from the rows of its wave, within a relative tolerance, 0: as exact as numbers are.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, i: usize, rows: Arc<ModalRows>) -> Result<Self> {
+    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>, tolerance: f64) -> Result<Self> {
         let block = &condensed.blocks()[i];
         let modes = rows.modes();
         let mut force = Vec::new();
@@ -104,6 +106,7 @@ impl ModalTable {
         };
         Ok(Self {
             number: block.number as f64,
+            terms: terms_within(tolerance),
             coefficients,
             force,
             single,
@@ -259,9 +262,10 @@ impl ModalTable {
 
     /// T′, and ∂T′ if `slopes`.
     fn sum(&self, work: &mut Work, (at, inertia): (Frequency, Complex64), slopes: bool) -> Result<()> {
+        let stiffness = 1.0 + at.c;
         let soft = self
             .rows
-            .add_stiff(inertia / (1.0 + at.c), 1.0 + at.c, &mut work.plain)?;
+            .add_stiff((inertia / stiffness, stiffness), self.terms, &mut work.plain)?;
         self.rows.add(soft, &work.inverse, &mut work.weighted, &mut work.plain);
         self.excite(&work.inverse, &mut work.plain);
         if slopes {
@@ -347,8 +351,8 @@ mod tests {
     }
 
     fn table_of(condensed: &Condensed, i: usize, modes: Arc<WaveModes>) -> ModalTable {
-        let rows = ModalRows::new(condensed, i, 4, (modes, 0.0)).unwrap();
-        ModalTable::new(condensed, i, Arc::new(rows)).unwrap()
+        let rows = ModalRows::new((condensed, i, 4), modes).unwrap();
+        ModalTable::new((condensed, i), Arc::new(rows), 0.0).unwrap()
     }
 
     #[test]

@@ -4,11 +4,14 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
+use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles::KnownModes;
+use crate::condense::wave_modes::WaveModes;
 use crate::error::{Result, try_push, try_room};
 use core::cell::Cell;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 const CONTEXT: &str = "the interpolated flexibility";
 
@@ -20,10 +23,18 @@ pub struct SharedTables {
 
 /// Tables and modes that are shared.
 #[derive(Default)]
-pub(super) struct Kept {
+struct Kept {
     tables: Vec<KeptTable>,
-    /// Undamped modes of the waves, from which their resonances are sought.
+    waves: KeptWaves,
+}
+
+/// What is known of the waves.
+#[derive(Default)]
+pub(super) struct KeptWaves {
+    /// Undamped modes from which resonances are sought.
     pub modes: KnownModes,
+    /// All modes as contacts see them.
+    pub rows: Vec<Arc<ModalRows>>,
 }
 
 /// Interpolation of one harmonic.
@@ -50,14 +61,25 @@ impl SharedTables {
         &self,
         condensed: &Condensed,
         i: usize,
-        with: impl FnOnce(&mut KeptTable, &mut KnownModes) -> Result<T>,
+        with: impl FnOnce(&mut KeptTable, &mut KeptWaves) -> Result<T>,
     ) -> Result<T> {
         let mut kept = self.kept.take();
         let found = kept
             .of(condensed, i)
-            .and_then(|at| with(&mut kept.tables[at], &mut kept.modes));
+            .and_then(|at| with(&mut kept.tables[at], &mut kept.waves));
         self.kept.set(kept);
         found
+    }
+
+    /// The rows of the modes of a wave, as [`ModalRows::shared`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn rows(&self, at: (&Condensed, usize, usize), modes: &Arc<WaveModes>) -> Result<Arc<ModalRows>> {
+        let mut kept = self.kept.take();
+        let rows = ModalRows::shared(at, modes, &mut kept.waves.rows);
+        self.kept.set(kept);
+        rows
     }
 
     /// Interpolates the table of the i-th carried harmonic at a frequency, without its slope; `false` where no panel is known.
@@ -186,8 +208,8 @@ mod tests {
         let (mut waves, mut known) = (WaveCache::default(), Vec::new());
         let table = |i| {
             let modes = waves.of(model, condensed, i, &Interrupt::none()).unwrap()?;
-            let rows = ModalRows::shared((condensed, i, RESPONSE), (&modes, 0.0), &mut known);
-            Some(ModalTable::new(condensed, i, rows.unwrap()).unwrap())
+            let rows = ModalRows::shared((condensed, i, RESPONSE), &modes, &mut known);
+            Some(ModalTable::new((condensed, i), rows.unwrap(), 0.0).unwrap())
         };
         (0..condensed.blocks().len()).map(table).collect()
     }

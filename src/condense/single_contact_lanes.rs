@@ -383,8 +383,8 @@ mod tests {
             .unwrap();
         let table = |i: usize| {
             let modes = condensed.blocks()[i].modes.as_ref()?;
-            let rows = ModalRows::new(&condensed, i, 8, (Arc::clone(modes), 0.0)).ok()?;
-            ModalTable::new(&condensed, i, Arc::new(rows)).ok()
+            let rows = ModalRows::new((&condensed, i, 8), Arc::clone(modes)).ok()?;
+            ModalTable::new((&condensed, i), Arc::new(rows), 0.0).ok()
         };
         (0..condensed.blocks().len()).map(table).collect()
     }

@@ -1,5 +1,6 @@
 //! Computes the modes of waves, each once; see [`crate::condense::wave_modes`].
 
+use crate::condense::harmonic_block::Values;
 use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_modes::{WaveModes, proportional};
 use crate::condense::{Condensed, HarmonicBlock};
@@ -28,8 +29,17 @@ const CONTEXT: &str = "the modes of the structure";
 #[derive(Default)]
 pub struct WaveCache {
     waves: Vec<Arc<WaveModes>>,
+    /// Matrices of blocks whose modes were asked for, which other blocks share.
+    blocks: Vec<KnownBlock>,
     /// Whether a wave without such modes was met: there are no others then.
     refused: bool,
+}
+
+/// Z_κ at rest and M of blocks, with the modes of their wave.
+struct KnownBlock {
+    reference: Arc<Csc>,
+    mass: Values,
+    modes: Arc<WaveModes>,
 }
 
 /// The waves of one model and their flexibilities over one range, for condensed models with different harmonics.
@@ -126,6 +136,33 @@ impl WaveCache {
         if self.refused || block.number == 0 || (!wanted && self.waves.is_empty()) {
             return Ok(None);
         }
+        let is_same = |known: &&KnownBlock| {
+            Arc::ptr_eq(&known.reference, &block.reference) && Arc::ptr_eq(&known.mass, &block.mass)
+        };
+        if let Some(known) = self.blocks.iter().find(is_same) {
+            return Ok(Some(Arc::clone(&known.modes)));
+        }
+        let found = self.find_by_values(model, condensed, (i, wanted), interrupt)?;
+        if let Some(modes) = &found {
+            let known = KnownBlock {
+                reference: Arc::clone(&block.reference),
+                mass: Arc::clone(&block.mass),
+                modes: Arc::clone(modes),
+            };
+            try_push(&mut self.blocks, known, CONTEXT)?;
+        }
+        Ok(found)
+    }
+
+    /// The modes of a block that shares its matrices with none before.
+    fn find_by_values(
+        &mut self,
+        model: &Model,
+        condensed: &Condensed,
+        (i, wanted): (usize, bool),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Arc<WaveModes>>> {
+        let block = &condensed.blocks()[i];
         let reference = real_reference(condensed, i)?;
         let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass);
         if let Some(known) = self.waves.iter().find(is_known) {

@@ -7,7 +7,7 @@ use crate::error_estimate::work::{Sizes, Work};
 const FACTORISATIONS: f64 = 5.0;
 
 /// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
-const BLOCK: f64 = 300.0;
+const BLOCK: f64 = 200.0;
 
 /// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
 /// each by itself.

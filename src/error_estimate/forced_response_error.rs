@@ -294,13 +294,16 @@ impl<'a> ForcedEstimator<'a> {
                 None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
                 None => match self.waves.of(self.model, condensed, i, self.interrupt)? {
                     Some(modes) => {
-                        let at = (condensed, i, self.response);
-                        Some(ModalRows::shared(at, (&modes, tolerance), &mut self.rows)?)
+                        let rows = self.waves.tables.rows((condensed, i, self.response), &modes)?;
+                        if !self.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
+                            try_push(&mut self.rows, Arc::clone(&rows), CONTEXT)?;
+                        }
+                        Some(rows)
                     }
                     None => None,
                 },
             };
-            let table = rows.map(|rows| ModalTable::new(condensed, i, rows));
+            let table = rows.map(|rows| ModalTable::new((condensed, i), rows, tolerance));
             try_push(&mut tables, table.transpose()?, CONTEXT)?;
         }
         Ok(tables)
@@ -314,9 +317,13 @@ impl<'a> ForcedEstimator<'a> {
         }
         let resolution = self.models.model(slot, |highest| {
             let options = extended_options(&self.options, highest);
-            let shared = solved
-                .condensed
-                .with_more_harmonics(self.model, &options, self.interrupt)?;
+            // Of the models with fewer harmonics the one with the most shares most matrices.
+            let own = solved.condensed.set().numbers().len();
+            let below = self.models.below(slot).map(|below| &*below.condensed);
+            let fewer = below
+                .filter(|below| below.set().numbers().len() > own)
+                .unwrap_or(solved.condensed);
+            let shared = fewer.with_more_harmonics(self.model, &options, self.interrupt)?;
             let condensed = if let Some(condensed) = shared {
                 condensed
             } else {
