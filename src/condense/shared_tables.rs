@@ -21,14 +21,13 @@ pub struct SharedTables {
     kept: Cell<Kept>,
 }
 
-/// Tables and modes that are shared.
 #[derive(Default)]
 struct Kept {
     tables: Vec<KeptTable>,
     waves: KeptWaves,
 }
 
-/// What is known of the waves.
+/// Modes of the waves.
 #[derive(Default)]
 pub(super) struct KeptWaves {
     /// Undamped modes from which resonances are sought.
