@@ -8,7 +8,8 @@
 !> waves, not indices, and keep their values. Index 0 is refused with HBVIB_E_INDEX and a sentence in numbers from 1.
 !>
 !> status     Every function called through a type returns it, integer(c_int32_t): HBVIB_OK, negative (error), positive (stopped
-!>            early, results are there). hbvib_error_text() is the sentence to it, this thread's own. Nothing stops or prints.
+!>            early, results are there). hbvib_error_text() is the sentence to it, this thread's own; in threads
+!>            call hbvib_read_error(text) instead. Nothing stops or prints.
 !>            hbvib_last_error_argument() counts the arguments of the C function that refused (hbvib_index_from_one for an
 !>            index). Entries of matrices and indices are reported from 1; positions within other arrays (entry 1,
 !>            spring[1], row_idx[1]) and contacts named by a solve count from 0.
@@ -1689,6 +1690,16 @@ contains
       character(:), allocatable :: text
       text = hbvib_text(hbvib_last_error())
    end function hbvib_error_text
+
+   !> The same sentence in a program with threads: gfortran keeps the length of a text that a function returns in memory that all
+   !> threads share, that of an argument in memory of the caller.
+   subroutine hbvib_read_error(text)
+      character(:), allocatable, intent(out) :: text
+      character(kind=c_char, len=256) :: sentence
+      integer(c_size_t) :: bytes
+      bytes = hbvib_last_error_copy(sentence, len(sentence, c_size_t))
+      text = sentence(:bytes - 1)
+   end subroutine hbvib_read_error
 
    !> A text of C (hbvib_status_name, hbvib_version_string, a line of the log) as a character string.
    function hbvib_text(c_text) result(text)

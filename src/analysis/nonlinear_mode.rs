@@ -26,9 +26,6 @@ use crate::problem::static_state::StaticState;
 use crate::results::Branch;
 use crate::results::mode_branch::{ModeData, ModeInfo};
 
-/// Factorisations that a harmonic is expected to take along a mode: one in each iteration.
-const FACTORISATIONS: usize = 200;
-
 /// Follows a nonlinear mode of `model` from `range.log10_start` to `range.log10_stop`.
 ///
 /// The mode vibrates about the static state under the constant forces of the model and the preload of its contacts;
@@ -147,7 +144,8 @@ fn on_wave(
         let options = SolverOptions { harmonics, ..*solver };
         let form = (range.damping_form, linear.rest.is_loaded());
         let (condensed, _) = Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?;
-        waves.attach(model, (condensed, FACTORISATIONS), interrupt)
+        // With many degrees of freedom sums over modes with their derivatives take no less time than factorisations.
+        waves.attach(model, (condensed, 0), interrupt)
     })?;
     let level = levels.first(solver.harmonics);
     let resolution = levels.at(level)?;

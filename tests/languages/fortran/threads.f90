@@ -37,22 +37,18 @@ program threads
 
 contains
 
-   ! Whether the sentence is that of the error. It is copied into text of fixed length: where a function returns text of any
-   ! length, gfortran keeps the length in memory that threads share.
+   ! Whether the sentence is that of the error.
    function tells(status, id)
       integer(c_int32_t), intent(in) :: status
       integer, intent(in) :: id
       logical :: tells
-      integer, parameter :: length = 200
-      character(kind=c_char, len=length) :: sentence
+      character(:), allocatable :: sentence
       character(24) :: number
-      integer(c_size_t) :: size_of_text
-      sentence = ''
-      size_of_text = hbvib_last_error_copy(sentence, int(length, c_size_t))
+      call hbvib_read_error(sentence)
       write (number, '("id = ", i0)') id
       ! While another thread solves, the model may be in use.
       if (status == HBVIB_E_BUSY) number = 'in use'
-      tells = size_of_text > 1 .and. index(sentence, trim(number)) > 0
+      tells = index(sentence, trim(number)) > 0
    end function tells
 
 end program threads
