@@ -32,6 +32,9 @@ const SOFT: [usize; 2] = [36, 108];
 /// Modes of a structure, over those, above which a series is quicker.
 const MANY: usize = 2;
 
+/// Rows up to which a series is used: the matrices of more would take too much memory.
+const MOST_ROWS: usize = 200;
+
 /// |σ μ| of the stiff modes.
 const STIFF: f64 = 0.125;
 
@@ -172,7 +175,7 @@ impl ModalRows {
     ) -> Result<usize> {
         out.fill(Complex64::ZERO);
         let (n, size) = (self.modes.values.len(), sigma.norm());
-        if terms == 0 {
+        if terms == 0 || self.rows > MOST_ROWS {
             return Ok(0);
         }
         // μ rises.
