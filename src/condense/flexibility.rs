@@ -100,7 +100,8 @@ impl Workspace {
         right: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega, 0.0, interrupt)?;
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        dynamic.factor(condensed, i, omega, 0.0, interrupt)?;
         for (v, transposed) in [(right, false), (left, true)] {
             self.product.fill(Complex64::ZERO);
             add_slope_product(
@@ -113,7 +114,7 @@ impl Workspace {
                 &mut self.product,
             );
             v.copy_from_slice(&self.product);
-            made(&mut self.dynamic, condensed)?.solve(condensed, i, omega.re, v, transposed, interrupt)?;
+            dynamic.solve(condensed, i, omega.re, v, transposed, interrupt)?;
             let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
             for z in v.iter_mut() {
                 *z /= size;
@@ -249,16 +250,10 @@ impl Workspace {
         let (n, outputs) = (condensed.ndof(), condensed.coordinates() + 1);
         let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
         let tables = self.table.value.chunks_exact_mut(outputs);
+        let dynamic = made(&mut self.dynamic, condensed)?;
         for (k, (x, table)) in self.columns.chunks_exact_mut(n).zip(tables).enumerate() {
             fill_load(block, k, omega, &mut self.load);
-            made(&mut self.dynamic, condensed)?.refine(
-                condensed,
-                i,
-                (omega, self.damping),
-                &self.load,
-                x,
-                interrupt,
-            )?;
+            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
             read(rows.clone(), x, table);
         }
         Ok(&self.table.value)
@@ -282,11 +277,12 @@ impl Workspace {
         b: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         for z in b.iter_mut() {
             *z = z.conj();
         }
-        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, b, true, interrupt)?;
+        dynamic.solve(condensed, i, omega, b, true, interrupt)?;
         for z in b.iter_mut() {
             *z = z.conj();
         }
@@ -305,8 +301,9 @@ impl Workspace {
         b: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
-        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, b, false, interrupt)
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        dynamic.solve(condensed, i, omega, b, false, interrupt)
     }
 
     /// y += ∂Z_κ/∂ω x in the i-th carried harmonic at `omega`.
@@ -336,7 +333,8 @@ impl Workspace {
         x: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         let block = &condensed.blocks()[i];
         block.force_at(omega, &mut self.load);
         for (row, w) in block.rows.iter().zip(contact_force) {
@@ -346,8 +344,8 @@ impl Workspace {
         }
         let at = (omega, self.damping);
         x.copy_from_slice(&self.load);
-        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, x, false, interrupt)?;
-        made(&mut self.dynamic, condensed)?.refine(condensed, i, at, &self.load, x, interrupt)
+        dynamic.solve(condensed, i, omega, x, false, interrupt)?;
+        dynamic.refine(condensed, i, at, &self.load, x, interrupt)
     }
 }
 

@@ -56,13 +56,18 @@ impl Doubling {
         self.extensions
     }
 
+    /// Size of the whole change so far.
+    fn whole(&self) -> f64 {
+        (self.last - self.point).norm()
+    }
+
     /// The next change, relative to the whole one; infinite where it is not known.
     fn next(&self) -> f64 {
         let [before, last] = self.changes;
         if self.extensions < 2 || before == 0.0 {
             return f64::INFINITY;
         }
-        let whole = (self.last - self.point).norm();
+        let whole = self.whole();
         if last == 0.0 {
             0.0
         } else {
@@ -90,7 +95,7 @@ impl Doubling {
 
     /// Whether the whole change meets a tolerance with all that may be missing. One extension alone shows less than two.
     pub fn is_harmless(&self, tolerance: f64) -> bool {
-        let whole = (self.last - self.point).norm();
+        let whole = self.whole();
         let size = self.last.norm();
         match self.extensions {
             0 => false,
@@ -101,7 +106,7 @@ impl Doubling {
 
     /// Whether the whole change is known well enough and misses a tolerance: a further extension would not change what follows.
     pub fn misses(&self, tolerance: f64) -> bool {
-        let whole = (self.last - self.point).norm() * (1.0 + self.next());
+        let whole = self.whole() * (1.0 + self.next());
         tolerance > 0.0 && self.suffices() && MARGIN * whole > tolerance * self.last.norm()
     }
 
@@ -115,12 +120,12 @@ impl Doubling {
 
     /// Ratio of the whole change to the first.
     pub fn ratio(&self) -> f64 {
-        (self.last - self.point).norm() * (1.0 + self.next()) / self.first
+        self.whole() * (1.0 + self.next()) / self.first
     }
 
     /// The same with the change that may be missing; `None` where one extension shows no change after the first.
     pub fn bounded_ratio(&self) -> Option<f64> {
-        let whole = (self.last - self.point).norm();
+        let whole = self.whole();
         (self.extensions > 1 && self.first > 0.0).then(|| (whole + self.missing()) / self.first)
     }
 
@@ -171,6 +176,17 @@ mod tests {
             let whole = 1.0 / (1.0 - q);
             assert!(ratio >= whole && ratio < 1.5 * whole, "{q}: {ratio}");
         }
+    }
+
+    #[test]
+    fn a_change_that_is_known_well_enough_misses_a_tolerance_or_meets_it() {
+        // The error is 1e-3 of √5, and 3/2 of it counts.
+        let two = series(0.3, 2);
+        let error = 1e-3 / 5.0_f64.sqrt();
+        assert!(two.misses(1.2 * error) && !two.is_harmless(1.2 * error));
+        assert!(!two.misses(2.0 * error) && two.is_harmless(2.0 * error));
+        // Without a tolerance, and where too much is missing, nothing is missed.
+        assert!(!two.misses(0.0) && !series(1.4, 2).misses(1e-9));
     }
 
     #[test]

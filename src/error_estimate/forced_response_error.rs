@@ -317,7 +317,7 @@ impl<'a> ForcedEstimator<'a> {
         }
         let resolution = self.models.model(slot, |highest| {
             let options = extended_options(&self.options, highest);
-            // Of the models with fewer harmonics the one with the most shares most matrices.
+            // The model with the most harmonics below these shares most matrices.
             let own = solved.condensed.set().numbers().len();
             let below = self.models.below(slot).map(|below| &*below.condensed);
             let fewer = below
