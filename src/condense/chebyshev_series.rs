@@ -69,9 +69,20 @@ impl Samples {
         Ok(())
     }
 
-    /// The samples.
-    pub fn iter(&self) -> impl Iterator<Item = &[Complex64]> {
-        self.tables.iter().map(Vec::as_slice)
+    /// The samples in the order of x, from 1 to −1.
+    pub fn in_order(&self) -> impl Iterator<Item = &[Complex64]> {
+        (0..=MOST_INTERVALS).filter_map(|angle| self.of_angle(angle))
+    }
+
+    /// The sample at the end x = 1 or x = −1.
+    #[must_use]
+    pub fn at(&self, end: f64) -> Option<&[Complex64]> {
+        self.of_angle(if end > 0.0 { 0 } else { MOST_INTERVALS })
+    }
+
+    fn of_angle(&self, angle: usize) -> Option<&[Complex64]> {
+        let at = self.angles.iter().position(|known| *known == angle)?;
+        Some(&self.tables[at])
     }
 
     /// The series through the samples on an interval.

@@ -9,12 +9,11 @@ use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::resonance_poles;
 use crate::condense::shared_tables::SharedTables;
 use crate::condense::single_contact_lanes::SingleContactLanes;
-use crate::condense::table_layout::is_symmetric;
+use crate::condense::table_layout::{deviation, is_symmetric};
 use crate::condense::wave_cache::ALL_UP_TO;
 use crate::error::{Result, boxed, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use core::ops::RangeInclusive;
-use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Degrees of freedom above which a sweep interpolates, and the same where a contact is near-rigid: the error of interpolated
@@ -474,20 +473,4 @@ fn agrees(
     let by_modes = deviation(&table.value, refined, outputs);
     let are_close = by_modes <= TOLERANCE.max(own) && slope <= TOLERANCE.max(SLOPE * own);
     Ok(are_close && (slope + by_modes).is_finite())
-}
-
-/// Largest relative deviation of a column of a table from that of another one.
-fn deviation(a: &[Complex64], b: &[Complex64], outputs: usize) -> f64 {
-    let mut largest = 0.0_f64;
-    for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
-        let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
-        let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
-        if off > 0.0 || off.is_nan() {
-            largest = largest.max((off / size).sqrt());
-            if off.is_nan() || size == 0.0 {
-                return f64::INFINITY;
-            }
-        }
-    }
-    largest
 }

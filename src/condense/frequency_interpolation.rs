@@ -1,26 +1,22 @@
 //! Interpolated flexibility of a large structure along a sweep: Chebyshev panels instead of a factorisation per
 //! iteration.
 //!
-//! The interpolated function is d(ω)·H(ω) with d = Π(ω − pₖ) over the resonances pₖ near the range, which removes
+//! The interpolated function is d(ω)·H(ω) with d = Π(ω − pₖ) over the resonances pₖ near the panel, which removes
 //! these poles. It is analytic away from the other resonances, so that on a panel that is short against its
 //! distance from them the Chebyshev series converges geometrically (Trefethen, Approximation Theory and
 //! Approximation Practice, 2013, ch. 8). Panels are added along the sweep, as wide as the tail of the series
-//! allows; the derivative is that of the series.
+//! allows; the derivative is that of the series. A panel is compared with H where it is used first and at its ends, and is
+//! not used where it deviates.
 
 use crate::condense::chebyshev_series::{ChebyshevSeries, MOST_INTERVALS, Samples};
 use crate::condense::flexibility::Table;
-use crate::condense::table_layout::TableLayout;
-use crate::error::{Result, try_push, try_vec};
+use crate::condense::series_decay::SeriesDecay;
+use crate::condense::table_layout::{TableLayout, deviation};
+use crate::error::{Result, try_push, try_room, try_vec};
 use num_complex::Complex64;
 
 /// Intervals between the samples with which a panel is tried, one after the other.
 const INTERVALS: [usize; 3] = [8, 16, MOST_INTERVALS];
-
-/// Last coefficients that must be small.
-const TAIL: usize = 2;
-
-/// Last coefficients that show whether the series still converges, against as many before them.
-const TREND: usize = 3;
 
 const CONTEXT: &str = "the interpolated flexibility";
 
@@ -31,14 +27,33 @@ const MAX_ATTEMPTS: usize = 24;
 const NARROW: f64 = 0.1 / f32::EPSILON as f64;
 
 /// Largest tail at which a panel is accepted whose convergence rounding prevents.
-const NOISE: f64 = 1e-8;
+const NOISE: f64 = 1e-10;
+
+/// Most resonances that are divided out on one panel: each takes one more term of the series.
+const MOST_RESONANCES: usize = 12;
+
+/// Distance from a panel, in its widths, up to which resonances are divided out.
+const NEAR: f64 = 0.5;
+
+/// Deviation of a panel from H, over the tolerance, with which it is used.
+const AGREES: f64 = 10.0;
+
+/// Panels that deviate until no more are made.
+const MOST_REFUSED: usize = 2;
+
+/// One panel: d·H, and the resonances in d.
+struct Panel {
+    series: ChebyshevSeries,
+    resonances: Vec<Complex64>,
+}
 
 /// The panels of one harmonic.
 pub struct FrequencyInterpolation {
     outputs: usize,
     layout: TableLayout,
-    /// A table of kept numbers, and a sample, where a half is left out.
+    /// A table of kept numbers, where a half is left out.
     packed: Table,
+    /// Numbers of a whole table.
     sample: Vec<Complex64>,
     tolerance: f64,
     resonances: Vec<Complex64>,
@@ -47,10 +62,11 @@ pub struct FrequencyInterpolation {
     /// Width of the panel added last.
     last_width: f64,
     rising: bool,
-    panels: Vec<ChebyshevSeries>,
+    panels: Vec<Panel>,
     samples: Samples,
-    /// Relative size of the coefficients of the series tried last.
-    decay: Vec<f64>,
+    decay: SeriesDecay,
+    /// Number of panels that were not used.
+    refused: usize,
     /// Number of factorisations.
     evaluations: usize,
 }
@@ -70,16 +86,12 @@ impl FrequencyInterpolation {
         let (start, end) = range;
         let outputs = coordinates + 1;
         let layout = TableLayout::new(coordinates, is_symmetric);
-        let (half, whole) = if is_symmetric {
-            (layout.size(), outputs * outputs)
-        } else {
-            (0, 0)
-        };
+        let half = if is_symmetric { layout.size() } else { 0 };
         Ok(Self {
             outputs,
             layout,
             packed: Table::of_size(half)?,
-            sample: try_vec(whole, Complex64::ZERO, CONTEXT)?,
+            sample: try_vec(outputs * outputs, Complex64::ZERO, CONTEXT)?,
             tolerance,
             resonances,
             // One panel over the whole range, with the margin behind its start.
@@ -88,7 +100,8 @@ impl FrequencyInterpolation {
             rising: end >= start,
             panels: Vec::new(),
             samples: Samples::default(),
-            decay: Vec::new(),
+            decay: SeriesDecay::new(layout),
+            refused: 0,
             evaluations: 0,
         })
     }
@@ -100,7 +113,7 @@ impl FrequencyInterpolation {
     }
 
     /// Fills `table` at `omega`, its slope if `slopes`; `sample` evaluates H by factorisation. Returns `false` if no panel
-    /// of acceptable width converged here.
+    /// of acceptable width converged here, or the one that did deviates from H.
     ///
     /// # Errors
     /// Those of `sample`, `OutOfMemory`.
@@ -113,39 +126,77 @@ impl FrequencyInterpolation {
         if self.evaluate_known((omega, slopes), table) {
             return Ok(true);
         }
+        if self.refused >= MOST_REFUSED {
+            return Ok(false);
+        }
         let Some(panel) = self.add_panel(omega, &mut sample)? else {
             return Ok(false);
         };
+        let (low, high) = panel.interval();
         try_push(&mut self.panels, panel, CONTEXT)?;
-        Ok(self.evaluate_known((omega, slopes), table))
+        // The samples at its ends are known.
+        let is_inside = low < omega && omega < high;
+        if self.gives_its_ends(table) && (!is_inside || self.gives(omega, table, &mut sample)?) {
+            return Ok(self.evaluate_known((omega, slopes), table));
+        }
+        self.panels.pop();
+        self.refused += 1;
+        Ok(false)
     }
 
     /// Fills `table` at `omega` where a panel is known; `false` elsewhere.
     pub fn evaluate_known(&mut self, (omega, slopes): (f64, bool), table: &mut Table) -> bool {
-        let denominator = self.denominator(omega);
-        let Some(panel) = self.panels.iter().rev().find(|panel| panel.holds(omega)) else {
+        let Some(panel) = self.panels.iter().rev().find(|panel| panel.series.holds(omega)) else {
             return false;
         };
+        let denominator = panel.denominator(omega);
         if self.layout.is_symmetric() {
-            panel.evaluate(omega, denominator, slopes, &mut self.packed);
+            panel.series.evaluate(omega, denominator, slopes, &mut self.packed);
             self.layout.unpack(&self.packed.value, &mut table.value);
             self.layout.unpack(&self.packed.slope, &mut table.slope);
         } else {
-            panel.evaluate(omega, denominator, slopes, table);
+            panel.series.evaluate(omega, denominator, slopes, table);
         }
         true
     }
 
-    /// d(ω), its factors scaled by the size of their resonances, and d′(ω).
-    fn denominator(&self, omega: f64) -> (Complex64, Complex64) {
-        let (mut d, mut slope) = (Complex64::ONE, Complex64::ZERO);
-        for p in &self.resonances {
-            let scale = 1.0 / p.norm();
-            let factor = (omega - p) * scale;
-            slope = slope * factor + d * scale;
-            d *= factor;
+    /// Whether the panel added last gives the samples at its ends.
+    fn gives_its_ends(&mut self, table: &mut Table) -> bool {
+        let Some((low, high)) = self.panels.last().map(Panel::interval) else {
+            return false;
+        };
+        for (omega, end) in [(low, -1.0), (high, 1.0)] {
+            let known = self.evaluate_known((omega, false), table);
+            let (Some(panel), Some(sample)) = (self.panels.last(), self.samples.at(end)) else {
+                return false;
+            };
+            let (d, _) = panel.denominator(omega);
+            if self.layout.is_symmetric() {
+                self.layout.unpack(sample, &mut self.sample);
+            } else {
+                self.sample.copy_from_slice(sample);
+            }
+            for z in &mut self.sample {
+                *z /= d;
+            }
+            if !known || deviation(&table.value, &self.sample, self.outputs) > AGREES * self.tolerance {
+                return false;
+            }
         }
-        (d, slope)
+        true
+    }
+
+    /// Whether the panel added last gives H at a frequency.
+    fn gives(
+        &mut self,
+        omega: f64,
+        table: &mut Table,
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<bool> {
+        self.evaluations += 1;
+        sample(omega, &mut self.sample)?;
+        let known = self.evaluate_known((omega, false), table);
+        Ok(known && deviation(&table.value, &self.sample, self.outputs) <= AGREES * self.tolerance)
     }
 
     /// Adds a panel over `omega`, beside its neighbours.
@@ -153,8 +204,8 @@ impl FrequencyInterpolation {
         &mut self,
         omega: f64,
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<Option<ChebyshevSeries>> {
-        let ends = self.panels.iter().map(ChebyshevSeries::interval);
+    ) -> Result<Option<Panel>> {
+        let ends = self.panels.iter().map(Panel::interval);
         let below = ends.clone().map(|(_, high)| high).filter(|&x| x < omega);
         let below = below.fold(0.0, f64::max);
         let above = ends.map(|(low, _)| low).filter(|&x| x > omega);
@@ -174,7 +225,11 @@ impl FrequencyInterpolation {
             if width <= 1e-9 * omega {
                 return Ok(None);
             }
-            if let Some(panel) = self.series((low, high), last_tail, sample)? {
+            let Some(resonances) = self.resonances_near((low, high))? else {
+                self.width = 0.6 * width;
+                continue;
+            };
+            if let Some(panel) = self.panel((low, high), resonances, last_tail, sample)? {
                 // Towards a resonance each panel is shorter than the one before.
                 let trend = if self.last_width > 0.0 {
                     width / self.last_width
@@ -185,122 +240,104 @@ impl FrequencyInterpolation {
                 self.last_width = width;
                 return Ok(Some(panel));
             }
-            last_tail = self.tail();
+            last_tail = self.decay.tail();
             let factor = 0.9 * (self.tolerance / last_tail).powf(1.0 / MOST_INTERVALS as f64);
             self.width = width * factor.clamp(0.1, 0.6);
         }
         Ok(None)
     }
 
-    /// The series on a panel, from as few samples as suffice; `None` where all do not. `last_tail`: that of the panel tried before.
-    fn series(
+    /// The resonances that are divided out of a panel; `None` where it has too many.
+    fn resonances_near(&self, (low, high): (f64, f64)) -> Result<Option<Vec<Complex64>>> {
+        let beside = NEAR * (high - low);
+        let mut found = try_room(MOST_RESONANCES, CONTEXT)?;
+        for p in &self.resonances {
+            if p.re >= low - beside && p.re <= high + beside {
+                if found.len() == MOST_RESONANCES {
+                    return Ok(None);
+                }
+                found.push(*p);
+            }
+        }
+        Ok(Some(found))
+    }
+
+    /// A panel from as few samples as suffice; `None` where all do not. `last_tail`: that of the panel tried before.
+    fn panel(
         &mut self,
-        panel: (f64, f64),
+        interval: (f64, f64),
+        resonances: Vec<Complex64>,
         last_tail: f64,
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<Option<ChebyshevSeries>> {
-        let (low, high) = panel;
+    ) -> Result<Option<Panel>> {
+        let (low, high) = interval;
         let size = self.layout.size();
-        let mut samples = core::mem::take(&mut self.samples);
-        samples.clear();
+        self.samples.clear();
         for intervals in INTERVALS {
-            samples.refine(intervals, size, |x, values| {
+            let (layout, whole, evaluations) = (self.layout, &mut self.sample, &mut self.evaluations);
+            self.samples.refine(intervals, size, |x, values| {
                 let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
-                if self.layout.is_symmetric() {
-                    sample(omega, &mut self.sample)?;
-                    self.layout.pack(&self.sample, values);
+                if layout.is_symmetric() {
+                    sample(omega, whole)?;
+                    layout.pack(whole, values);
                 } else {
                     sample(omega, values)?;
                 }
-                let (d, _) = self.denominator(omega);
+                let (d, _) = denominator(&resonances, high - low, omega);
                 for v in values {
                     *v *= d;
                 }
-                self.evaluations += 1;
+                *evaluations += 1;
                 Ok(())
             })?;
-            let mut series = samples.series(panel)?;
-            self.note_decay(&samples, &series)?;
-            let tail = self.tail();
-            let stalled = tail < NOISE && (tail > 0.3 * last_tail || self.is_level());
+            let mut series = self.samples.series(interval)?;
+            self.decay.note(self.samples.in_order(), series.coefficients())?;
+            let tail = self.decay.tail();
+            let stalled = tail < NOISE && (tail > 0.3 * last_tail || self.decay.is_level());
             if stalled {
                 // This is the rounding error of the factorisations: later panels cannot be better.
                 self.tolerance = self.tolerance.max(2.0 * tail);
             }
             if tail <= self.tolerance {
-                let wide = self.terms_above(NARROW * self.tolerance);
-                series.compress(wide, self.terms_above(self.tolerance) + 1)?;
-                self.samples = samples;
-                return Ok(Some(series));
+                let wide = self.decay.terms_above(NARROW * self.tolerance);
+                series.compress(wide, self.decay.terms_above(self.tolerance) + 1)?;
+                return Ok(Some(Panel { series, resonances }));
             }
         }
-        self.samples = samples;
         Ok(None)
-    }
-
-    /// Largest of the last coefficients of the series tried last.
-    fn tail(&self) -> f64 {
-        self.largest(0, TAIL)
-    }
-
-    /// Largest of so many coefficients behind which there are so many more.
-    fn largest(&self, behind: usize, count: usize) -> f64 {
-        let end = self.decay.len() - behind;
-        self.decay[end - count..end]
-            .iter()
-            .fold(0.0_f64, |most, d| most.max(*d))
-    }
-
-    /// Whether the last coefficients do not fall any more.
-    fn is_level(&self) -> bool {
-        self.largest(0, TREND) > 0.3 * self.largest(TREND, TREND)
-    }
-
-    /// Terms of the series tried last up to the last one whose coefficients are above `least`.
-    fn terms_above(&self, least: f64) -> usize {
-        let last = self.decay.iter().rposition(|d| *d > least);
-        last.map_or(1, |last| last + 1)
     }
 
     /// Factor by which a panel could have been wider. Its series reached the tolerance t at degree k, so that it
     /// converges like t^(1/k) per degree, and about as much slower as the panel is wider.
     fn possible_widening(&self) -> f64 {
-        let needed = self.terms_above(3.0 * self.tolerance) + 1;
+        let needed = self.decay.terms_above(3.0 * self.tolerance) + 1;
         let spare = 1.0 / needed as f64 - 1.0 / (MOST_INTERVALS - 1) as f64;
         0.9 * self.tolerance.powf(-spare)
     }
+}
 
-    /// Notes the relative size of the coefficients: the largest over contact flexibility, contact motion, response row and
-    /// response, each against its own largest sample.
-    fn note_decay(&mut self, samples: &Samples, series: &ChebyshevSeries) -> Result<()> {
-        let mut largest = [0.0_f64; 4];
-        for sample in samples.iter() {
-            self.squares(sample, &mut largest);
-        }
-        self.decay.clear();
-        for of_degree in series.coefficients() {
-            let mut sizes = [0.0_f64; 4];
-            self.squares(of_degree, &mut sizes);
-            let relative = sizes.iter().zip(&largest).filter(|(_, largest)| **largest > 0.0);
-            let worst = relative.fold(0.0_f64, |worst, (size, largest)| worst.max(size / largest));
-            try_push(&mut self.decay, worst.sqrt(), CONTEXT)?;
-        }
-        Ok(())
+impl Panel {
+    /// Ends of the panel.
+    fn interval(&self) -> (f64, f64) {
+        self.series.interval()
     }
 
-    /// Raises the largest squares of each of the four parts of a table to those of its entries.
-    fn squares(&self, table: &[Complex64], largest: &mut [f64; 4]) {
-        let most = |part: &[Complex64], least: f64| part.iter().fold(least, |most, z| most.max(z.norm_sqr()));
-        let mut rest = table;
-        for (j, from) in self.layout.columns() {
-            let (column, others) = rest.split_at(self.outputs - from);
-            rest = others;
-            let excited = 2 * usize::from(j + 1 == self.outputs);
-            let (contacts, response) = column.split_at(column.len() - 1);
-            largest[excited] = most(contacts, largest[excited]);
-            largest[excited + 1] = most(response, largest[excited + 1]);
-        }
+    /// d(ω) and d′(ω).
+    fn denominator(&self, omega: f64) -> (Complex64, Complex64) {
+        let (low, high) = self.interval();
+        denominator(&self.resonances, high - low, omega)
     }
+}
+
+/// d(ω), its factors over the width of the panel, and d′(ω).
+fn denominator(resonances: &[Complex64], width: f64, omega: f64) -> (Complex64, Complex64) {
+    let (mut d, mut slope) = (Complex64::ONE, Complex64::ZERO);
+    for p in resonances {
+        let factor = (omega - p) / width;
+        slope = slope * factor + d / width;
+        d *= factor;
+    }
+    (d, slope)
 }
 
 #[cfg(test)]
@@ -388,6 +425,7 @@ mod tests {
             assert!((table.slope[0] - slope).norm() < 1e-9 * slope.norm());
         }
         assert_eq!(interpolation.panels.len(), 1);
-        assert_eq!(interpolation.evaluations(), 17);
+        // The samples, and the comparison where the panel is used first.
+        assert_eq!(interpolation.evaluations(), 17 + 1);
     }
 }

@@ -28,6 +28,7 @@ mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+mod series_decay;
 pub mod shared_tables;
 mod single_contact;
 mod single_contact_lanes;

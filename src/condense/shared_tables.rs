@@ -245,8 +245,9 @@ mod tests {
                 let modal = by_modes(&model, &condensed);
                 let mut cache = FrequencyCache::new(&condensed, RESPONSE, (0.5, 0.5), &interrupt).unwrap();
                 cache.set_modes(&condensed, modal, Some(interpolated)).unwrap();
-                for k in 0..40 {
-                    let omega = 0.5 + 0.1 * f64::from(k * 7 % 40) / 40.0;
+                // So many that each part of the range has its panel.
+                for k in 0..160 {
+                    let omega = 0.5 + 0.1 * f64::from(k * 7 % 160) / 160.0;
                     let off = deviation(&mut cache, &condensed, omega);
                     assert!(off < 1e-5, "{cyclic}, {beta}, H = {harmonics}, {omega}: {off:e}");
                 }

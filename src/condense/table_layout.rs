@@ -36,6 +36,12 @@ impl TableLayout {
         self.is_symmetric
     }
 
+    /// Number of parts with a size of their own: the columns, and the response under contact forces and under the excitation.
+    #[must_use]
+    pub fn parts(self) -> usize {
+        self.outputs + 2
+    }
+
     /// Numbers that are kept.
     #[must_use]
     pub fn size(self) -> usize {
@@ -105,6 +111,23 @@ pub fn is_symmetric(block: &HarmonicBlock) -> bool {
         && [&reference.values, &block.mass, &block.damping]
             .into_iter()
             .all(|values| on_pattern(values))
+}
+
+/// Largest relative deviation of a column of a table of so many rows from that of another one.
+#[must_use]
+pub fn deviation(a: &[Complex64], b: &[Complex64], outputs: usize) -> f64 {
+    let mut largest = 0.0_f64;
+    for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
+        let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
+        let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
+        if off > 0.0 || off.is_nan() {
+            largest = largest.max((off / size).sqrt());
+            if off.is_nan() || size == 0.0 {
+                return f64::INFINITY;
+            }
+        }
+    }
+    largest
 }
 
 #[cfg(test)]
