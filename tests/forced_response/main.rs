@@ -8,6 +8,7 @@ mod backward_waves;
 mod capacity;
 mod continuation;
 mod derivatives;
+mod direct_solutions;
 mod duffing;
 mod duffing_folds;
 mod folds;
