@@ -7,12 +7,37 @@ use crate::error::{Error, Result, Status, fail};
 pub struct ByteWriter<'a> {
     out: &'a mut [u8],
     at: usize,
+    /// Of what was written, where this is wanted.
+    digest: Option<u64>,
 }
+
+/// An odd number without pattern: 2⁶⁴ over the golden ratio (Knuth, The Art of Computer Programming 3, 6.4).
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl<'a> ByteWriter<'a> {
     /// A writer from the begin of a buffer.
     pub fn new(out: &'a mut [u8]) -> Self {
-        Self { out, at: 0 }
+        Self {
+            out,
+            at: 0,
+            digest: None,
+        }
+    }
+
+    /// A writer that keeps a digest of what is written instead of the bytes.
+    #[must_use]
+    pub fn digesting() -> Self {
+        Self {
+            out: &mut [],
+            at: 0,
+            digest: Some(0),
+        }
+    }
+
+    /// The digest: equal for equal bytes, and by chance alone for others. It is not safe against those who seek them.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        self.digest.unwrap_or(0)
     }
 
     /// Bytes written or counted.
@@ -28,6 +53,14 @@ impl<'a> ByteWriter<'a> {
             place.copy_from_slice(bytes);
         }
         self.at = end;
+        if let Some(digest) = &mut self.digest {
+            for chunk in bytes.chunks(8) {
+                let mut eight = [0; 8];
+                eight[..chunk.len()].copy_from_slice(chunk);
+                let mixed = (*digest ^ u64::from_le_bytes(eight)).wrapping_mul(GOLDEN);
+                *digest = (mixed ^ (mixed >> 29)).wrapping_add(chunk.len() as u64);
+            }
+        }
     }
 
     /// Appends one byte.

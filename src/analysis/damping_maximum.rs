@@ -7,7 +7,7 @@ use crate::analysis::parameter_curve::CurveRecorder;
 use crate::analysis::parameter_range::{ParameterRange, settings, wanted};
 use crate::analysis::tracked_damping::TrackedDamping;
 use crate::condense::Condensed;
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -43,9 +43,15 @@ pub(super) fn follow(
     };
     let ends = match log10_range {
         Some(ends) => ends,
-        None => from_onset(first, solver, &options, hooks)?,
+        None => match from_onset(first, solver, &options, hooks)? {
+            Ok(ends) => ends,
+            Err(stopped) => return without_points(first, solver, &stopped),
+        },
     };
     let branch = nonlinear_mode(first, solver, &options(ends), hooks)?;
+    if branch.status() == Status::StoppedByCaller {
+        return without_points(first, solver, &branch);
+    }
     let Some(data) = branch.mode_data() else {
         return fail!(Internal, "a nonlinear mode has no data of a mode");
     };
@@ -114,23 +120,41 @@ pub(super) fn follow(
     Ok(found)
 }
 
-/// The range of amplitude from the onset of slip.
+/// The result of a run that was stopped while it followed the mode of the first value: it has no point.
+fn without_points(first: &Model, solver: &SolverOptions, mode: &Branch) -> Result<Branch> {
+    let mut found = Branch::stopped(first, solver)?;
+    if let Some(data) = mode.mode_data() {
+        let ends = (STUCK, STUCK + 1.0);
+        found.set_mode(ModeData::new(
+            data.info.clone(),
+            data.linear.clone(),
+            data.gauge.clone(),
+            ends,
+        ));
+    }
+    found.set_parameter_data(ParameterData::default());
+    Ok(found)
+}
+
+/// The range of amplitude from the onset of slip, or the branch of a mode that was stopped.
 fn from_onset<'a>(
     first: &Model,
     solver: &SolverOptions,
     options: &impl Fn((f64, f64)) -> ModeOptions<'a>,
     hooks: &mut Hooks<'_>,
-) -> Result<(f64, f64)> {
+) -> Result<core::result::Result<(f64, f64), Branch>> {
     let one_point = SolverOptions {
         max_points: 1,
         ..*solver
     };
-    let begin = nonlinear_mode(first, &one_point, &options((STUCK, STUCK + 1.0)), hooks);
-    let onset = begin
-        .ok()
-        .and_then(|branch| branch.mode_data().map(|data| data.info.linear_up_to));
+    let onset = match nonlinear_mode(first, &one_point, &options((STUCK, STUCK + 1.0)), hooks) {
+        Ok(branch) if branch.status() == Status::StoppedByCaller => return Ok(Err(branch)),
+        Ok(branch) => branch.mode_data().map(|data| data.info.linear_up_to),
+        Err(e) if e.status == Status::NoConvergence => None,
+        Err(e) => return Err(e),
+    };
     match onset {
-        Some(onset) if onset.is_finite() => Ok((onset + FROM_ONSET.0, onset + FROM_ONSET.1)),
+        Some(onset) if onset.is_finite() => Ok(Ok((onset + FROM_ONSET.0, onset + FROM_ONSET.1))),
         _ => fail!(
             Argument,
             "no contact is known to stick at small amplitudes: set the range of log10 of the amplitude in which the damping is largest"

@@ -2,7 +2,6 @@
 
 use crate::analysis::floquet_on_modes::{KeptModes, floquet_of};
 use crate::analysis::perturbed_motion::Motion;
-use crate::analysis::verify::check_model;
 use crate::error::{Result, Status, fail};
 use crate::hooks::Hooks;
 use crate::model::Model;
@@ -34,8 +33,7 @@ pub fn floquet(
     hooks: &mut Hooks<'_>,
 ) -> Result<Floquet> {
     options.check()?;
-    branch.check_one_model()?;
-    check_model(model, branch)?;
+    branch.check_model(model)?;
     model.check_matrices(false)?;
     let Some(omega) = branch.omega_at(point) else {
         return fail!(

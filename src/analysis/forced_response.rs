@@ -80,10 +80,12 @@ fn with_detail(
     let outcome = with_samples(solver, |solver| {
         follow(model, solver, (range, detail), hooks, &interrupt, trace)
     });
-    match outcome {
-        Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
-        outcome => outcome.map(|branch| *branch),
-    }
+    let mut branch = match outcome {
+        Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver)?,
+        outcome => *outcome?,
+    };
+    branch.set_origin(model, true);
+    Ok(branch)
 }
 
 /// Records the branch from its first point on.

@@ -20,7 +20,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::repeated_modes::Multiple;
-use crate::options::{ModeOptions, SolverOptions};
+use crate::options::{Flexibility, ModeOptions, SolverOptions};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
 use crate::results::Branch;
@@ -76,8 +76,15 @@ pub fn nonlinear_mode(
             "stability: only a forced response has it along its curve; a nonlinear mode has Floquet multipliers at its limit cycles"
         );
     }
+    if solver.flexibility != Flexibility::Automatic {
+        return fail!(
+            Argument,
+            "flexibility: only a forced response has a choice of it; a nonlinear mode needs the automatic one"
+        );
+    }
     model.check_response_dof(solver.response_dof)?;
     let other_wave;
+    let given = model;
     let model = match range.diameter {
         None => model,
         Some(diameter) => {
@@ -94,6 +101,10 @@ pub fn nonlinear_mode(
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome.map(|branch| *branch),
     }
+    .map(|mut branch| {
+        branch.set_origin(given, range.diameter.is_none());
+        branch
+    })
 }
 
 /// The mode of a run that was stopped before its linear mode was known: zeros in place of its numbers.

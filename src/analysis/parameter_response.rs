@@ -8,7 +8,7 @@ use crate::analysis::forced_response::{forced_harmonics, forced_response};
 use crate::analysis::parameter_curve::CurveRecorder;
 use crate::analysis::parameter_range::{Follow, ParameterRange, settings, wanted};
 use crate::condense::{Condensed, Reference};
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
@@ -18,6 +18,11 @@ use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
 /// Share of a frequency within which its peak or fold is sought.
 const NEAR: f64 = 0.1;
+
+/// Share of the rest of the range by which the response is examined beyond the value at which a peak vanished, and share of its
+/// frequency within which another peak is sought there.
+const BEYOND: f64 = 0.02;
+const AROUND: f64 = 0.3;
 
 /// Relative excess of an amplitude, and distance of a frequency, of another peak that is higher.
 const HIGHER: (f64, f64) = (1e-6, 1e-5);
@@ -40,6 +45,18 @@ pub fn parameter_response(
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
     solver.check()?;
+    if solver.stability.is_some() {
+        return fail!(
+            Argument,
+            "stability: only a forced response has it along its curve; points over a parameter belong to different models"
+        );
+    }
+    if solver.estimate_error && solver.tolerance == 0.0 {
+        return fail!(
+            Argument,
+            "estimate_error with tolerance = 0: points over a parameter have estimates where a tolerance chooses their harmonics"
+        );
+    }
     parameter.check(model)?;
     range.check()?;
     let interrupt = hooks.interrupt();
@@ -57,8 +74,12 @@ pub fn parameter_response(
     let models = (model, &first, parameter);
     let mut data = ParameterData::default();
     let mut found = follow(models, solver, (range, omega, kind), &mut data, hooks, &interrupt)?;
-    if kind == ResponsePoint::Peak && found.status() != crate::error::Status::StoppedByCaller {
+    if kind == ResponsePoint::Peak && found.status() != Status::StoppedByCaller {
         find_higher_peaks((model, parameter), solver, &found, &mut data, hooks)?;
+        if found.status() == Status::StoppedPeakVanished {
+            let reason = where_next((model, parameter), solver, range, (&found, &data), hooks)?;
+            found.set_ending(Status::StoppedPeakVanished, Some(reason), (false, false));
+        }
     }
     found.set_parameter_data(data);
     Ok(found)
@@ -74,6 +95,9 @@ fn follow(
     interrupt: &Interrupt<'_>,
 ) -> Result<Branch> {
     let branch = forced_response(first, solver, &sweep(omega, kind), hooks)?;
+    if branch.status() == Status::StoppedByCaller {
+        return Branch::stopped(first, solver);
+    }
     if branch.points() == 0 {
         return fail!(NoConvergence, "the response at the start of the range was not found");
     }
@@ -145,6 +169,56 @@ fn sweep(omega: f64, kind: ResponsePoint) -> ForcedOptions<'static> {
         omega_stop: (1.0 + width) * omega,
         ..ForcedOptions::default()
     }
+}
+
+/// Reason of a peak that vanished: the highest peak that the response shows a little beyond the last value, if it has one.
+fn where_next(
+    (model, parameter): (&Model, Parameter<'_>),
+    solver: &SolverOptions,
+    range: &ParameterRange<'_>,
+    (found, data): (&Branch, &ParameterData),
+    hooks: &Hooks<'_>,
+) -> Result<Error> {
+    let point = found.points().saturating_sub(1);
+    let (value, omega) = (data.parameter_at(point), found.omega_at(point));
+    let (Some(value), Some(omega)) = (value, omega) else {
+        return fail!(Internal, "a peak that vanished has no point");
+    };
+    let beyond = value + BEYOND * (range.stop - value);
+    let design = design(model, core::slice::from_ref(&parameter), &[beyond])?;
+    let solver = SolverOptions {
+        response_dof: Some(found.response_dof()),
+        ..*solver
+    };
+    let around = ForcedOptions {
+        omega_start: (1.0 - AROUND) * omega,
+        omega_stop: (1.0 + AROUND) * omega,
+        ..ForcedOptions::default()
+    };
+    let mut quiet = Hooks {
+        cancelled: hooks.cancelled,
+        ..Hooks::default()
+    };
+    let branch = forced_response(&design, &solver, &around, &mut quiet).ok();
+    let peaks = branch.iter().flat_map(|branch| branch.peaks());
+    let status = Status::StoppedPeakVanished;
+    Ok(match peaks.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)) {
+        Some(peak) => Error::new(
+            status,
+            format_args!(
+                "the peak met a minimum between the values {value} and {beyond}; at {beyond} the highest peak near it has amplitude \
+                 {} at omega = {}: go on from start = {beyond} with follow = peak and omega = {}",
+                peak.amplitude, peak.omega, peak.omega
+            ),
+        ),
+        None => Error::new(
+            status,
+            format_args!(
+                "the peak met a minimum beyond the value {value}; at {beyond} the response has no peak within {} .. {}",
+                around.omega_start, around.omega_stop
+            ),
+        ),
+    })
 }
 
 /// Compares the followed peak with the highest one within a tenth of its frequency, at the first and the last point of

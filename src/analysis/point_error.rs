@@ -41,7 +41,7 @@ pub fn estimate_at_with(
     interrupt: &Interrupt<'_>,
 ) -> Result<Estimate> {
     solver.check()?;
-    branch.check_one_model()?;
+    branch.check_model(model)?;
     let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
         return fail!(
             Index,
@@ -49,16 +49,6 @@ pub fn estimate_at_with(
             branch.stored()
         );
     };
-    if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() {
-        return fail!(
-            Argument,
-            "the branch has {} degrees of freedom and {} contacts, the model {} and {}: it is another one",
-            branch.ndof(),
-            branch.contacts(),
-            model.ndof(),
-            model.contacts().len()
-        );
-    }
     let samples = branch.samples_at(point);
     if solver.tolerance == 0.0 && (solver.harmonics != branch.harmonics() || solver.samples != samples) {
         return fail!(

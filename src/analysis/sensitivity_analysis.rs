@@ -73,8 +73,7 @@ pub fn sensitivity_with(
             branch.stored()
         );
     };
-    branch.check_one_model()?;
-    check_model(model, branch)?;
+    branch.check_model(model)?;
     check_quantity(branch, point, of)?;
     for (i, parameter) in parameters.iter().enumerate() {
         parameter
@@ -162,32 +161,6 @@ pub fn sensitivity_with(
 fn peak_amplitude(branch: &Branch, point: usize) -> f64 {
     let mut peaks = branch.peaks().iter();
     peaks.find(|p| p.point == point).map_or(f64::NAN, |p| p.amplitude)
-}
-
-/// Refuses another model than that of the branch, as far as its size and its contacts tell.
-fn check_model(model: &Model, branch: &Branch) -> Result<()> {
-    if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() {
-        return fail!(
-            Argument,
-            "the branch has {} degrees of freedom and {} contacts, the model {} and {}: it is another one",
-            branch.ndof(),
-            branch.contacts(),
-            model.ndof(),
-            model.contacts().len()
-        );
-    }
-    let condensed = branch.condensed_at(0);
-    let before = condensed.contact_classes().contacts();
-    for (i, (a, b)) in model.contacts().iter().zip(before).enumerate() {
-        let constants = |c: &crate::contact::Contact| [c.kt, c.kn, c.mu, c.preload, c.gap, c.cubic].map(f64::to_bits);
-        if constants(a) != constants(b) {
-            return fail!(
-                Argument,
-                "contact {i} was changed after the computation of the branch: sensitivities need the model of the branch"
-            );
-        }
-    }
-    Ok(())
 }
 
 /// Refuses a result that the point does not have.

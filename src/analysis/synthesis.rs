@@ -227,6 +227,7 @@ fn check_model(branch: &Branch, data: &ModeData, model: &Model) -> Result<()> {
             "other degrees of freedom of the model are fixed than those of the mode, or its faces are others"
         );
     }
+    branch.check_model_of_synthesis(model)?;
     let (given, own) = (model.structure().engine_order(), data.info.engine_order);
     if model.structure().fold(given) != model.structure().fold(own) {
         return fail!(

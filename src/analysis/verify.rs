@@ -105,8 +105,7 @@ pub fn verify(
             "the branch is a nonlinear mode: no force drives it, so that there is no forced motion in time to compare with; take a point of a forced response"
         );
     }
-    branch.check_one_model()?;
-    check_model(model, branch)?;
+    branch.check_model(model)?;
     let Some(omega) = branch.omega_at(point) else {
         return fail!(
             Index,
@@ -148,22 +147,6 @@ pub fn verify(
         );
     }
     Ok(found)
-}
-
-/// Refuses a model that cannot be that of the branch.
-pub(super) fn check_model(model: &Model, branch: &Branch) -> Result<()> {
-    let (ours, theirs) = (model.structure().sectors(), branch.reduction().sectors);
-    if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() || ours != theirs {
-        return fail!(
-            Argument,
-            "the branch has {} degrees of freedom, {theirs} sectors and {} contacts, the model {}, {ours} and {}: it is another one",
-            branch.ndof(),
-            branch.contacts(),
-            model.ndof(),
-            model.contacts().len()
-        );
-    }
-    Ok(())
 }
 
 /// Smallest number of times of a period at which motions are compared.

@@ -194,6 +194,10 @@ unsafe impl Send for Callback {}
 unsafe impl Sync for Callback {}
 
 impl UserForce for Callback {
+    fn identity(&self) -> u64 {
+        (self.force as usize as u64) ^ (self.user.addr() as u64).rotate_left(32)
+    }
+
     fn evaluate(&self, call: &mut Call<'_>) -> i32 {
         let states = &mut call.states;
         let period = hbvib_force_call {

@@ -45,11 +45,11 @@ pub struct hbvib_mode_options {
     pub diameter: i64,
     /// Number of the linear mode, contacts stuck, from 0 (default) by rising frequency.
     pub mode_index: i64,
-    /// Above 0: the linear mode nearest to this angular frequency; mode_index is then ignored.
+    /// Above 0: the linear mode nearest to this angular frequency; mode_index must then be 0.
     /// 0: not used.
     pub near_omega: f64,
     /// The linear mode most similar to this shape, ndof complex numbers of one sector and of any
-    /// size; mode_index is then ignored. NULL: not used. near_omega must then be 0.
+    /// size. NULL: not used. mode_index and near_omega must then be 0.
     pub shape: *const f64,
     /// Complex numbers in shape.
     pub shape_len: i64,
@@ -199,6 +199,13 @@ unsafe fn choice<'a>(o: &hbvib_mode_options, ndof: usize) -> Result<ModeChoice<'
         return fail!(Index, "mode_index = {}, needs a number >= 0", o.mode_index);
     };
     let near = o.near_omega != 0.0;
+    if mode_index != 0 && (near || !o.shape.is_null()) {
+        return fail!(
+            Argument,
+            "mode_index = {mode_index} beside {}: both choose the mode; set mode_index = 0",
+            if near { "near_omega" } else { "shape" }
+        );
+    }
     if o.shape.is_null() && shape_len == 0 {
         return Ok(if near {
             ModeChoice::Near(o.near_omega)

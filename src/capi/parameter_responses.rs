@@ -53,7 +53,7 @@ pub struct hbvib_parameter_options {
     pub at: *const f64,
     /// Number of these values.
     pub at_len: i64,
-    /// HBVIB_FOLLOW_MODE_MAX_DAMPING only: log10 of the modal amplitude from which the maximum of
+    /// HBVIB_FOLLOW_MODE_MAX_DAMPING only, 0 for others: log10 of the modal amplitude from which the maximum of
     /// damping is sought at the first value. Equal to log10_stop, as 0 and 0: from the onset of slip
     /// to a thousand times its amplitude.
     pub log10_start: f64,
@@ -156,5 +156,15 @@ unsafe fn parameter_range<'a>(o: &hbvib_parameter_options) -> Result<ParameterRa
         },
     };
     range.check()?;
+    if !matches!(range.follow, Follow::ModeMaxDamping { .. }) {
+        for (name, value) in [("log10_start", o.log10_start), ("log10_stop", o.log10_stop)] {
+            if value != 0.0 {
+                return fail!(
+                    Argument,
+                    "{name} = {value}, needs 0: only HBVIB_FOLLOW_MODE_MAX_DAMPING has it"
+                );
+            }
+        }
+    }
     Ok(range)
 }

@@ -19,6 +19,12 @@ impl Contact {
     /// `Unsupported` for a law of the caller.
     pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) -> Result<()> {
         self.kind.save_to(out)?;
+        self.places_to(out);
+        Ok(())
+    }
+
+    /// Writes all but the kind.
+    pub(crate) fn places_to(&self, out: &mut ByteWriter<'_>) {
         for dof in self.dof_a.iter().chain(&self.dof_b) {
             out.optional(*dof);
         }
@@ -44,7 +50,6 @@ impl Contact {
         for &dof in &self.dofs {
             out.count(dof);
         }
-        Ok(())
     }
 
     /// Reads a contact; its model checks constants and degrees of freedom.

@@ -63,7 +63,7 @@ const SAFETY: f64 = 0.8;
 const MANY_ITERATIONS: usize = 6;
 
 impl StepControl {
-    /// Steps from `first` within `min` and `max`; zeros select defaults.
+    /// Steps from `first` within `min` and `max`; zeros select defaults, which give way where a given one crosses them.
     #[must_use]
     pub fn new(first: f64, min: f64, max: f64) -> Self {
         Self::with_detail(first, min, max, Detail::Curve)
@@ -73,11 +73,11 @@ impl StepControl {
     #[must_use]
     pub fn with_detail(first: f64, min: f64, max: f64, detail: Detail) -> Self {
         let has_bound = max > 0.0;
-        let max = if has_bound { max } else { detail.largest_step() };
-        let min = if min > 0.0 { min } else { (1e-10_f64).min(max) };
-        let first = if first > 0.0 { first } else { 0.25 * max };
+        let max = if has_bound { max } else { detail.largest_step().max(min) };
+        let min = if min > 0.0 { min } else { (1e-10_f64).min(max) }.min(max);
         Self {
-            step: first.clamp(min, max),
+            // A first step that is given is taken as it is, also above the largest one that is chosen here.
+            step: if first > 0.0 { first } else { (0.25 * max).max(min) },
             min,
             max,
             has_bound,
@@ -188,5 +188,38 @@ impl StepControl {
         }
         self.step = (self.step * factor).max(self.min);
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bounds_never_cross_whichever_of_them_are_given() {
+        let values = [0.0, 1e-12, 1e-10, 0.01, 0.04, 0.1, 0.3, 7.0, f64::MAX];
+        for detail in [Detail::Curve, Detail::SpecialPoints] {
+            for first in values {
+                for min in values {
+                    for max in values {
+                        let mut control = StepControl::with_detail(first, min, max, detail);
+                        assert!(0.0 < control.min && control.min <= control.max);
+                        if max > 0.0 {
+                            assert_eq!(control.max.to_bits(), max.to_bits());
+                        }
+                        if min > 0.0 && (max == 0.0 || min <= max) {
+                            assert_eq!(control.min.to_bits(), min.to_bits());
+                        }
+                        if first > 0.0 {
+                            assert_eq!(control.step.to_bits(), first.to_bits());
+                        }
+                        control.accepted(control.step, 1e-3, 4.0, 3);
+                        assert!(control.min <= control.step && control.step <= control.max);
+                        control.restart(1.0);
+                        assert!(control.min <= control.step && control.step <= control.max);
+                    }
+                }
+            }
+        }
     }
 }

@@ -279,10 +279,13 @@ impl Model {
     /// Adds many linear springs; all of them are checked before any is added.
     ///
     /// # Errors
-    /// As [`Self::add_spring`], naming the position in the list.
+    /// As [`Self::add_spring`], naming the position in the list; `Argument` after the modal damping was set.
     pub fn add_springs(&mut self, springs: &[Spring]) -> Result<()> {
         for (i, spring) in springs.iter().enumerate() {
             self.check_spring(spring).map_err(|e| e.at(format_args!("entry {i}")))?;
+        }
+        if !springs.is_empty() {
+            self.structure.refuse_modal_damping("springs are added")?;
         }
         try_extend(&mut self.springs, springs, "the springs")
     }

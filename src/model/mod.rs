@@ -9,6 +9,7 @@ pub mod damped_mode;
 pub mod degree_map;
 pub mod excitation;
 mod face_coordinates;
+pub(crate) mod fingerprint;
 pub mod full_wheel;
 pub mod influence;
 pub mod linear_modes;

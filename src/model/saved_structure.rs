@@ -79,7 +79,7 @@ impl Structure {
     }
 }
 
-fn save_degrees(degrees: &DegreeMap, out: &mut ByteWriter<'_>) {
+pub(super) fn save_degrees(degrees: &DegreeMap, out: &mut ByteWriter<'_>) {
     let Some(fixed) = degrees.fixed() else {
         out.bool(false);
         return;

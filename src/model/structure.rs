@@ -309,7 +309,7 @@ impl Structure {
     }
 
     /// Refuses a change of what the modes of the modal damping depend on.
-    fn refuse_modal_damping(&self, change: &str) -> Result<()> {
+    pub(super) fn refuse_modal_damping(&self, change: &str) -> Result<()> {
         if self.modal_damping.is_empty() {
             return Ok(());
         }

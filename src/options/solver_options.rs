@@ -35,9 +35,9 @@ pub struct SolverOptions {
     /// Factor of the samples that a law without exact events takes where [`Self::samples`] is 0, at least 1. With a
     /// tolerance an analysis raises it until the error of sampling is below the tolerance.
     pub refinement: usize,
-    /// First arc-length step in scaled unknowns; `0`: automatic.
+    /// First arc-length step in scaled unknowns, between the smallest and the largest one where these are given; `0`: automatic.
     pub step: f64,
-    /// Smallest step, below which the branch ends; `0`: automatic.
+    /// Smallest step, below which the branch ends; `0`: automatic. An automatic largest step is never below it.
     pub step_min: f64,
     /// Largest step; `0`: automatic.
     pub step_max: f64,
@@ -77,7 +77,7 @@ impl Default for SolverOptions {
         Self {
             tolerance: 1e-3,
             harmonics: 9,
-            max_harmonics: 511,
+            max_harmonics: DEFAULT_MAX_HARMONICS,
             samples: 0,
             refinement: 1,
             step: 0.0,
@@ -96,6 +96,9 @@ impl Default for SolverOptions {
         }
     }
 }
+
+/// Largest number of harmonics that a tolerance chooses by default.
+const DEFAULT_MAX_HARMONICS: usize = 511;
 
 /// Highest harmonic number that is accepted; beyond it index arithmetic may overflow and run times are excessive.
 pub const MAX_HARMONIC: usize = 100_000;
@@ -165,6 +168,23 @@ impl SolverOptions {
                 "step_min = {} exceeds step_max = {}",
                 self.step_min,
                 self.step_max
+            );
+        }
+        if self.step > 0.0 && (self.step < self.step_min || (self.step_max > 0.0 && self.step > self.step_max)) {
+            return fail!(
+                Argument,
+                "step = {}, needs step_min = {} .. step_max = {} (0 = automatic)",
+                self.step,
+                self.step_min,
+                self.step_max
+            );
+        }
+        if self.tolerance == 0.0 && self.max_harmonics < self.harmonics && self.max_harmonics != DEFAULT_MAX_HARMONICS {
+            return fail!(
+                Argument,
+                "max_harmonics = {} is below harmonics = {}, which tolerance = 0 selects",
+                self.max_harmonics,
+                self.harmonics
             );
         }
         if !(self.tol_residual > 0.0 && self.tol_residual < 1.0) {

@@ -5,6 +5,7 @@ use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
 use crate::results::mode_branch::ModeData;
+use crate::results::origin::Origin;
 use crate::results::parameter_branch::ParameterData;
 use crate::results::verdict::Located;
 use num_complex::Complex64;
@@ -59,6 +60,7 @@ pub struct Branch {
     pub(super) at: Vec<Vec<Special>>,
     pub(super) mode: Option<ModeData>,
     pub(super) parameter: Option<ParameterData>,
+    pub(super) origin: Option<Origin>,
 }
 
 /// Place of a stored point: the number of its resolution, and the offsets of its motion and of its response.

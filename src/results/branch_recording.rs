@@ -100,6 +100,7 @@ impl Branch {
             at: Vec::new(),
             mode: None,
             parameter: None,
+            origin: None,
         })
     }
 

@@ -9,6 +9,7 @@ mod floquet_stability;
 mod limit_cycles;
 pub mod mode_branch;
 mod mode_fields;
+mod origin;
 mod parameter_branch;
 mod parameter_fields;
 mod point_energy;

@@ -115,6 +115,17 @@ impl ContactKind {
         Ok(())
     }
 
+    /// Writes the kind into a digest; a law of the caller by what it tells of itself.
+    pub(crate) fn digest_to(&self, out: &mut ByteWriter<'_>) {
+        if let Self::User(law) = self {
+            out.u8(8);
+            law.digest_to(out);
+        } else {
+            // Only a law of the caller cannot be saved.
+            let _saved = self.save_to(out);
+        }
+    }
+
     /// The law of the caller, if it is one.
     #[must_use]
     pub fn user(&self) -> Option<&User> {

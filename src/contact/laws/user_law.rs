@@ -7,6 +7,7 @@
 //! that are not finite, become errors that keep the code, name the place, and are recoverable where another
 //! motion may succeed.
 
+use crate::byte_stream::ByteWriter;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::linearisation::Range;
 use crate::contact::samples::{Samples, automatic_samples};
@@ -20,6 +21,11 @@ pub trait UserForce: Send + Sync {
     /// any. The same motion must always have the same force. Returns 0 when done; a number above 0 when it cannot
     /// at this motion (the solver may try a smaller step); one below 0 when it never will.
     fn evaluate(&self, call: &mut Call<'_>) -> i32;
+
+    /// A number that tells this force from others; 0, which all have by default, tells nothing.
+    fn identity(&self) -> u64 {
+        0
+    }
 }
 
 /// One period, sample after sample; within a sample direction after direction. All quantities are
@@ -197,6 +203,18 @@ pub(crate) fn check_block(name: &str, values: &[f64], (rows, columns): (usize, u
         values[at]
     );
     Err(Error::new(Status::Callback, message).recoverable())
+}
+
+impl User {
+    /// Writes what is known of the force into a digest.
+    pub(crate) fn digest_to(&self, out: &mut ByteWriter<'_>) {
+        for count in [self.directions, self.states, self.samples] {
+            out.count(count);
+        }
+        out.bool(self.velocity);
+        out.bool(self.odd);
+        out.bytes(&self.force.identity().to_le_bytes());
+    }
 }
 
 impl fmt::Debug for User {
