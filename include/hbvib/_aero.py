@@ -1,7 +1,7 @@
 """Aerodynamic influence of a model."""
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,11 +10,14 @@ from ._calls import _Owner
 from ._convert import _array, _member
 from ._results import AeroEntries
 
+if TYPE_CHECKING:
+    from ._choices import AeroForms
+
 
 class _Aero(_Owner):
     """Methods of Model for forces that follow the motion of neighbouring sectors."""
 
-    def set_aero(self, dofs: Any, coefficients: Any, offsets: Any, form: Any = "displacement") -> None:
+    def set_aero(self, dofs: Any, coefficients: Any, offsets: Any, form: AeroForms = "displacement") -> None:
         """Aerodynamic forces on a sector that follow the motion of sectors at the distances `offsets`, on the right-hand
         side; they take the place of those of the same form. [] removes them.
 
@@ -40,7 +43,7 @@ class _Aero(_Owner):
             dofs = offsets = np.empty(0, np.int64)
         self._call("hbvib_cyclic_set_aero", dofs.size, dofs, offsets.size, given, offsets, _member(AeroForm, form))
 
-    def aero(self, form: Any = "displacement") -> AeroEntries:
+    def aero(self, form: AeroForms = "displacement") -> AeroEntries:
         """The aerodynamic forces of `set_aero`, read back, one coefficient after another.
 
         >>> import hbvib

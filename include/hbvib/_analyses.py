@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._calls import CancelFlag, Hook
+    from ._choices import DampingForms, Follows, LogLevels
     from ._sensitivity import Parameter
 
 
@@ -55,9 +56,9 @@ class _Analyses(_Matrices):
         return branch
 
     @_with_options("hbvib_solver_options", SolverOptions)
-    def forced_response(self, omega: Any, *, at: Optional[ArrayLike] = None, guess: Optional[ArrayLike] = None,
+    def forced_response(self, omega: ArrayLike, *, at: Optional[ArrayLike] = None, guess: Optional[ArrayLike] = None,
                         progress: Union[bool, Callable[[Progress], Any], None] = None,
-                        log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+                        log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                         cancel: Optional[CancelFlag] = None,
                         phase: Hook = None, **solver: Unpack[SolverOptions]) -> Branch:
         """Follows the periodic response over a range of frequency.
@@ -92,10 +93,10 @@ class _Analyses(_Matrices):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
-                       shape: Optional[ArrayLike] = None, damping_form: Any = DampingForm.MASS, diameter: int = -1,
+                       shape: Optional[ArrayLike] = None, damping_form: DampingForms = DampingForm.MASS, diameter: int = -1,
                        mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1, reference_dof: int = -1,
                        progress: Union[bool, Callable[[Progress], Any], None] = None,
-                       log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+                       log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                        cancel: Optional[CancelFlag] = None,
                        phase: Hook = None, **solver: Unpack[SolverOptions]) -> Branch:
         """Follows a nonlinear mode over a range of amplitude: frequency and damping ratio against it.
@@ -126,10 +127,10 @@ class _Analyses(_Matrices):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def parameter_response(self, parameter: Parameter, values: Sequence[float], *, omega: float,
-                           follow: Any = Follow.OMEGA, at: Optional[ArrayLike] = None,
+                           follow: Follows = Follow.OMEGA, at: Optional[ArrayLike] = None,
                            log10_amplitude: Sequence[float] = (0, 0),
                            progress: Union[bool, Callable[[Progress], Any], None] = None,
-                           log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+                           log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                            cancel: Optional[CancelFlag] = None,
                            phase: Hook = None, **solver: Unpack[SolverOptions]) -> Branch:
         """Follows a result over a parameter: Branch.parameter_values, .amplitude, .d_amplitude (of a mode .damping_ratio

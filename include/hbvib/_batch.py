@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._calls import CancelFlag, Hook
+    from ._results import FloatArray, IntArray
 
 
 class Batch:
@@ -41,10 +42,10 @@ class Batch:
     <hbvib.Batch: 3 designs, 0 without a complete result>
     """
 
-    peak_amplitude: np.ndarray[Any, np.dtype[np.float64]]
-    peak_omega: np.ndarray[Any, np.dtype[np.float64]]
-    status: np.ndarray[Any, np.dtype[np.int64]]
-    points: np.ndarray[Any, np.dtype[np.int64]]
+    peak_amplitude: FloatArray
+    peak_omega: FloatArray
+    status: IntArray
+    points: IntArray
 
     def __init__(self, peak_amplitude: ArrayLike, peak_omega: ArrayLike, status: ArrayLike, points: ArrayLike,
                  reasons: Optional[Mapping[int, str]] = None) -> None:
@@ -154,7 +155,7 @@ class _Batches(_Owner):
     """Methods of Model for many designs."""
 
     @_with_options("hbvib_solver_options", SolverOptions)
-    def batch(self, omega: Any, parameters: Union[Parameter, Sequence[Parameter]], values: ArrayLike, *,
+    def batch(self, omega: ArrayLike, parameters: Union[Parameter, Sequence[Parameter]], values: ArrayLike, *,
               threads: int = 1, keep: bool = False,
               progress: Union[bool, Callable[[Progress], Any], None] = None, phase: Hook = None,
               cancel: Optional[CancelFlag] = None, **solver: Unpack[SolverOptions]) -> Batch:

@@ -1,14 +1,18 @@
 """Fields of a branch: arrays in the library's own memory."""
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Optional, overload
 
 import numpy as np
 
-from ._c import Field, Scalar
+from ._c import Field
 from ._calls import _call, _Owner
 from ._convert import _member
 from ._structs import _new
+
+if TYPE_CHECKING:
+    from ._choices import Fields
+    from ._results import FloatArray
 
 
 class _Lease:
@@ -20,8 +24,19 @@ class _Lease:
         self.branch = branch
 
 
-def _field_property(field: Any, text: str) -> property:
-    return property(lambda self: self.field(field), doc=text)
+class _FieldProperty(property):
+    """A field as a read-only attribute, which type checkers know as an array."""
+
+    def __init__(self, field: Field, text: str) -> None:
+        super().__init__(lambda branch: branch.field(field))
+        self.__doc__ = text  # that of the class would hide it
+
+    if TYPE_CHECKING:
+        @overload
+        def __get__(self, instance: None, owner: Optional[type] = None) -> _FieldProperty: ...
+        @overload
+        def __get__(self, instance: _BranchFields, owner: Optional[type] = None) -> FloatArray: ...
+        def __get__(self, instance: Any, owner: Optional[type] = None) -> Any: ...
 
 
 class _BranchFields(_Owner):
@@ -29,7 +44,7 @@ class _BranchFields(_Owner):
 
     _leases: Any
 
-    def field(self, field: Any) -> np.ndarray:
+    def field(self, field: Fields) -> FloatArray:
         """A field, by Field or name, in the library's memory: (points), slip_fraction (points, contacts).
 
         >>> import hbvib
@@ -48,7 +63,7 @@ class _BranchFields(_Owner):
         except BaseException:
             self._leases.discard(lease)  # the traceback holds it, and no array was made
             raise
-        dtype = np.dtype(np.complex128 if view.scalar == Scalar.COMPLEX else np.float64)
+        dtype = np.dtype(np.float64)
         shape = tuple(view.shape[:view.rank])
         if not view.data or 0 in shape:
             empty = np.empty(shape, dtype)
@@ -59,28 +74,28 @@ class _BranchFields(_Owner):
             strides=tuple(dtype.itemsize * distance for distance in view.stride[:view.rank]))
         return np.asarray(lease)
 
-    omega = _field_property(Field.OMEGA, "Angular frequency.")
-    amplitude = _field_property(Field.AMPLITUDE, "Peak amplitude of the fundamental of the response dof.")
-    residual = _field_property(Field.RESIDUAL, "Relative residual.")
-    newton_iterations = _field_property(Field.NEWTON_ITERATIONS, "Newton iterations, as float64.")
-    harmonics_used = _field_property(Field.HARMONICS_USED, "Highest harmonic number carried, as float64.")
-    slip_fraction = _field_property(Field.SLIP_FRACTION, "Share of the period that each contact slips.")
-    sampling_error = _field_property(Field.SAMPLING_ERROR, "Relative change of forces with half the samples; NaN where a law"
+    omega = _FieldProperty(Field.OMEGA, "Angular frequency.")
+    amplitude = _FieldProperty(Field.AMPLITUDE, "Peak amplitude of the fundamental of the response dof.")
+    residual = _FieldProperty(Field.RESIDUAL, "Relative residual.")
+    newton_iterations = _FieldProperty(Field.NEWTON_ITERATIONS, "Newton iterations, as float64.")
+    harmonics_used = _FieldProperty(Field.HARMONICS_USED, "Highest harmonic number carried, as float64.")
+    slip_fraction = _FieldProperty(Field.SLIP_FRACTION, "Share of the period that each contact slips.")
+    sampling_error = _FieldProperty(Field.SAMPLING_ERROR, "Relative change of forces with half the samples; NaN where a law"
                                      " failed at the other samples.")
-    error_estimate = _field_property(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
+    error_estimate = _FieldProperty(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
                                      " harmonics left out; NaN where unknown, or with a fixed number unless estimate_error.")
-    floquet_radius = _field_property(Field.FLOQUET_RADIUS, "With `stability`: largest modulus of the ordinary Floquet"
+    floquet_radius = _FieldProperty(Field.FLOQUET_RADIUS, "With `stability`: largest modulus of the ordinary Floquet"
                                      " multipliers; NaN where unknown.")
-    unstable_directions = _field_property(Field.UNSTABLE_DIRECTIONS, "With `stability`: number of those outside the unit"
+    unstable_directions = _FieldProperty(Field.UNSTABLE_DIRECTIONS, "With `stability`: number of those outside the unit"
                                           " circle, as float64; 0 for a stable motion.")
-    damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, NaN as error_estimate.")
-    damping_ratio = _field_property(Field.DAMPING_RATIO, "Modes: damping ratio D.")
-    mode_energy = _field_property(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")
-    dissipation = _field_property(Field.DISSIPATION, "Modes: work of friction per cycle and sector.")
-    structural_loss = _field_property(Field.STRUCTURAL_LOSS, "Modes: work of the structure's damping per cycle.")
-    log10_amplitude = _field_property(Field.LOG10_AMPLITUDE, "Modes: log10 of the amplitude, the parameter.")
-    modal_amplitude = _field_property(Field.MODAL_AMPLITUDE, "Modes: sqrt(X_1^H M X_1).")
-    parameter_values = _field_property(Field.PARAMETER_VALUE, """Parameter responses: value of the parameter.
+    damping_error_estimate = _FieldProperty(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, NaN as error_estimate.")
+    damping_ratio = _FieldProperty(Field.DAMPING_RATIO, "Modes: damping ratio D.")
+    mode_energy = _FieldProperty(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")
+    dissipation = _FieldProperty(Field.DISSIPATION, "Modes: work of friction per cycle and sector.")
+    structural_loss = _FieldProperty(Field.STRUCTURAL_LOSS, "Modes: work of the structure's damping per cycle.")
+    log10_amplitude = _FieldProperty(Field.LOG10_AMPLITUDE, "Modes: log10 of the amplitude, the parameter.")
+    modal_amplitude = _FieldProperty(Field.MODAL_AMPLITUDE, "Modes: sqrt(X_1^H M X_1).")
+    parameter_values = _FieldProperty(Field.PARAMETER_VALUE, """Parameter responses: value of the parameter.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
@@ -89,8 +104,8 @@ class _BranchFields(_Owner):
         >>> float(found.parameter_values[-1])
         3.0
         """)
-    d_amplitude = _field_property(Field.D_AMPLITUDE, "Parameter responses: total derivative of the amplitude by the"
+    d_amplitude = _FieldProperty(Field.D_AMPLITUDE, "Parameter responses: total derivative of the amplitude by the"
                                   " parameter; NaN where there is none.")
-    d_damping = _field_property(Field.D_DAMPING, "Parameter responses of a mode: total derivative of its largest damping"
+    d_damping = _FieldProperty(Field.D_DAMPING, "Parameter responses of a mode: total derivative of its largest damping"
                                 " ratio by the parameter.")
-    modal_assurance = _field_property(Field.MODAL_ASSURANCE, "Modes: likeness to the point before, 0 to 1.")
+    modal_assurance = _FieldProperty(Field.MODAL_ASSURANCE, "Modes: likeness to the point before, 0 to 1.")

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from ._calls import CancelFlag, Hook
     from ._model import Model
+    from ._results import ComplexArray, FloatArray
 
 
 class _BranchPoints(_Owner):
@@ -107,7 +108,7 @@ class _BranchPoints(_Owner):
 
     def harmonics(self, point: int, first_dof: int = 0, n_dof: Optional[int] = None, *,
                   phase: Hook = None,
-                  cancel: Optional[CancelFlag] = None) -> np.ndarray:
+                  cancel: Optional[CancelFlag] = None) -> ComplexArray:
         """Harmonics 0 .. H at a point, (H + 1, n_dof) complex, a copy; n_dof None: all from first_dof on.
 
         phase, cancel   as in forced_response; Stopped is raised where they stop it. So in the methods below.
@@ -129,7 +130,7 @@ class _BranchPoints(_Owner):
                    cancel=cancel)
         return x
 
-    def slip(self, point: int) -> np.ndarray:
+    def slip(self, point: int) -> FloatArray:
         """Shares of the period that each contact slips at any stored point, (contacts).
 
         >>> import hbvib
@@ -146,7 +147,7 @@ class _BranchPoints(_Owner):
 
     def time_history(self, point: int, dof: int, n: int = 256, *,
                      phase: Hook = None,
-                     cancel: Optional[CancelFlag] = None) -> np.ndarray:
+                     cancel: Optional[CancelFlag] = None) -> FloatArray:
         """Motion of a degree of freedom over one period at a point, n equidistant times.
 
         >>> import hbvib

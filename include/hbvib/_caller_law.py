@@ -64,7 +64,7 @@ class ForceCall:
         self._call = call
         self.omega, self.samples, self.n, self.states = call.omega, call.samples, call.n, call.states
 
-    def __getattr__(self, name: str) -> Optional[np.ndarray]:
+    def __getattr__(self, name: str) -> Optional[FloatArray]:
         if name not in self._SHAPES:  # each array is made at its first use
             raise AttributeError(name)
         address, lengths, array = getattr(self._call, name), dict(N=self.samples, n=self.n, s=self.states), None

@@ -5,7 +5,7 @@ import contextlib
 import ctypes
 import signal
 import threading
-from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     Hook = Optional[Callable[[Phase, float], Any]]
 
+
+_OwnerType = TypeVar("_OwnerType", bound="_Owner")
 
 _running = threading.local()  # .guard: the guard of the innermost call of this thread
 
@@ -259,7 +261,7 @@ class _Owner:
         run(count.value, *arrays, count)
         return arrays
 
-    def __enter__(self) -> Any:
+    def __enter__(self: _OwnerType) -> _OwnerType:
         return self
 
     def __exit__(self, kind: Any, *_: Any) -> None:

@@ -18,6 +18,8 @@ from ._types import ContactConstants
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from ._choices import ContactKinds
+
 
 class _Contacts(_Owner):
     """Methods of Model for its contacts, one by one and many at once."""
@@ -249,7 +251,7 @@ class _Contacts(_Owner):
         cubic = None if cubic is None else _array("cubic", cubic, shape=[n] * 4)
         return self._identified("hbvib_model_add_stiffness_tensors", dofs, n, quadratic, cubic)
 
-    def add_patch(self, kind: Any, a: ArrayLike, b: Optional[ArrayLike], normal: ArrayLike, area: ArrayLike, *,
+    def add_patch(self, kind: ContactKinds, a: ArrayLike, b: Optional[ArrayLike], normal: ArrayLike, area: ArrayLike, *,
                   tangent: Optional[ArrayLike] = None, pressure: Optional[ArrayLike] = None,
                   gap: Optional[ArrayLike] = None, **constants: Any) -> range:
         """Adds a contact patch of n node pairs, each with an area; returns the numbers of the contacts.

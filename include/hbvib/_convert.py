@@ -10,11 +10,14 @@ import numpy as np
 from ._library import _ARGUMENTS
 
 
-def _whole(value: Any, bits: int = 64) -> int:
-    """A whole number that fits, which ctypes does not check."""
-    number = operator.index(value)
+def _whole(value: Any, bits: int = 64, name: str = "") -> int:
+    """A whole number that fits, which ctypes does not check. TypeError and OverflowError tell its name, where it has one."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name or 'an index or a count'} = {value!r}, needs a whole number") from None
     if not -(1 << bits - 1) <= number < 1 << bits - 1:
-        raise OverflowError(f"{number} does not fit into {bits} bits")
+        raise OverflowError(f"{name}{' = ' * bool(name)}{number} does not fit into {bits} bits")
     return number
 
 

@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike
 
 from ._c import ContactState
 from ._calls import _stoppable
-from ._convert import _array, _member
+from ._convert import _array, _member, _whole
 from ._matrices import _Matrices
 from ._results import Campbell, Crossings, DampedModes, Modes
 
 if TYPE_CHECKING:
     from ._calls import CancelFlag, Hook
+    from ._choices import ContactStates
 
 
 _GROWS = -1e-12  # damping ratio below which a mode grows; above it is rounding
@@ -32,7 +33,7 @@ def _warn_of_growth(ratio: Any, speeds: Any) -> None:
 class _LinearModes(_Matrices):
     """Methods of Model for its linear modes."""
 
-    def linear_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK, *,
+    def linear_modes(self, count: int, diameter: int = 0, contacts: ContactStates = ContactState.STUCK, *,
                      phase: Hook = None,
                      cancel: Optional[CancelFlag] = None) -> Modes:
         """Undamped natural modes: omega (count), ascending, and shapes (count, ndof), complex, phi^H M phi = 1.
@@ -47,12 +48,13 @@ class _LinearModes(_Matrices):
         >>> modes.omega.round(12), modes.shapes.shape
         (array([1.        , 1.73205081]), (2, 2))
         """
+        count, diameter = _whole(count, name="count"), _whole(diameter, name="diameter")
         omega, shapes = np.empty(count), np.empty((count, self.ndof), complex)
         _stoppable("hbvib_linear_modes", self.handle, diameter, _member(ContactState, contacts), count, omega, shapes,
                    phase=phase, cancel=cancel)
         return Modes(omega, shapes)
 
-    def damped_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK) -> DampedModes:
+    def damped_modes(self, count: int, diameter: int = 0, contacts: ContactStates = ContactState.STUCK) -> DampedModes:
         """Damped natural modes at the speed of the model, by rising frequency: eigenvalue (upper half plane), omega
         (its imaginary part), damping_ratio (minus its real part over its modulus; negative: the motion grows), shape
         (count, ndof), phi^H M phi = 1, and direction: 1 forward, -1 backward, 0 undefined, the sign of the change of
@@ -65,6 +67,7 @@ class _LinearModes(_Matrices):
         >>> model.damped_modes(2).damping_ratio.round(6)
         array([0.01    , 0.005774])
         """
+        count, diameter = _whole(count, name="count"), _whole(diameter, name="diameter")
         eigenvalue, shape = np.empty(count, complex), np.empty((count, self.ndof), complex)
         direction = np.empty(count, np.int64)
         self._call("hbvib_damped_modes", diameter, _member(ContactState, contacts), count, eigenvalue, shape, direction,
@@ -74,7 +77,7 @@ class _LinearModes(_Matrices):
         return DampedModes(eigenvalue, eigenvalue.imag.copy(), ratio, shape, direction)
 
     def campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,
-                 contacts: Any = ContactState.STUCK) -> Campbell:
+                 contacts: ContactStates = ContactState.STUCK) -> Campbell:
         """Campbell diagram: omega, damping_ratio and direction (speeds, count) of the damped modes at rising speeds, NaN
         where fewer motions oscillate, and the crossings with engine orders, omega = engine_order Omega.
 
@@ -85,14 +88,15 @@ class _LinearModes(_Matrices):
         array([0.9129, 1.118 ])
         """
         speeds, state = _array("speeds", speeds, np.float64).ravel(), _member(ContactState, contacts)
+        count, diameter = _whole(count, name="count"), _whole(diameter, name="diameter")
         omega, ratio = np.empty((speeds.size, count)), np.empty((speeds.size, count))
         direction = np.empty((speeds.size, count), np.int64)
         self._call("hbvib_campbell", speeds.size, speeds, diameter, state, count, omega, ratio, direction, None)
         room, found, rows = speeds.size * count, ctypes.c_int64(), []
         at, frequency, sense = np.empty(room), np.empty(room), np.empty(room, np.int64)
         for order in engine_orders:
-            self._call("hbvib_campbell_crossings", speeds.size, speeds, diameter, state, count, order, room, at,
-                       frequency, sense, found, None)
+            self._call("hbvib_campbell_crossings", speeds.size, speeds, diameter, state, count,
+                       _whole(order, name="engine_order"), room, at, frequency, sense, found, None)
             rows += [(int(order), *row) for row in zip(at[:found.value], frequency, sense)]
         orders, critical, frequencies, senses = zip(*rows) if rows else ((), (), (), ())
         crossings = Crossings(np.array(orders, np.int64), np.array(critical, float), np.array(frequencies, float),
@@ -101,7 +105,8 @@ class _LinearModes(_Matrices):
         return Campbell(speeds, omega, ratio, direction, crossings)
 
     def plot_campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,
-                      contacts: Any = ContactState.STUCK, *, ax: Any = None, hertz: bool = False, **line: Any) -> Any:
+                      contacts: ContactStates = ContactState.STUCK, *, ax: Any = None, hertz: bool = False,
+                      **line: Any) -> Any:
         """Draws the Campbell diagram with matplotlib: natural frequencies over the speed of rotation, lines of engine
         orders, crossings as dots. Returns the axes. ImportError without matplotlib.
 
@@ -120,7 +125,7 @@ class _LinearModes(_Matrices):
         return _plots.campbell(diagram, engine_orders, ax, hertz, line)
 
     def plot_interference(self, speed: float, count: int, engine_orders: Sequence[int] = (),
-                          contacts: Any = ContactState.STUCK, *, ax: Any = None, hertz: bool = False,
+                          contacts: ContactStates = ContactState.STUCK, *, ax: Any = None, hertz: bool = False,
                           **line: Any) -> Any:
         """Draws the interference (SAFE) diagram of a wheel with matplotlib: frequencies of the damped modes over the nodal
         diameter at one speed, and the frequency of each engine order, folded onto the diameter that it excites. A dot on

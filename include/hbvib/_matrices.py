@@ -2,16 +2,20 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Literal, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ._c import Block, MatrixKind, Part
 from ._calls import _call, _Owner
-from ._convert import _array, _member
+from ._convert import _array, _member, _whole
 from ._results import Forces, Springs
 from ._structs import _matrix
+
+if TYPE_CHECKING:
+    from ._choices import Blocks, MatrixKinds, Parts
+    from ._results import ComplexArray, FloatArray
 
 
 class _Matrices(_Owner):
@@ -78,7 +82,14 @@ class _Matrices(_Owner):
         """
         return Springs(*self._listed("hbvib_model_springs", (), [np.int64] * 3 + [float]))
 
-    def matrix(self, which: Any, block: Any = "own", *, sparse: bool = False) -> Any:
+    @overload
+    def matrix(self, which: MatrixKinds, block: Blocks = "own", *,
+               sparse: Literal[False] = False) -> Union[FloatArray, ComplexArray]: ...
+
+    @overload
+    def matrix(self, which: MatrixKinds, block: Blocks = "own", *, sparse: bool) -> Any: ...
+
+    def matrix(self, which: MatrixKinds, block: Blocks = "own", *, sparse: bool = False) -> Any:
         """A matrix, read back: (ndof, ndof), real where it has no imaginary part; without Rayleigh damping, springs and
         contacts. UnsupportedError where it was given per nodal diameter.
 
@@ -105,7 +116,7 @@ class _Matrices(_Owner):
         dense[row, column] = value
         return dense
 
-    def set_matrix(self, which: Any, matrix: Any, part: Any = Part.FULL) -> None:
+    def set_matrix(self, which: MatrixKinds, matrix: Any, part: Parts = Part.FULL) -> None:
         """Sets a matrix: which is "mass", "damping", "stiffness", "structural" (D of the structural damping i D in
         harmonics above 0), "gyroscopic" (G, skew-symmetric), "stiffness_speed2" (K1 of K + Omega^2 K1) or a
         MatrixKind; matrix is ndof x ndof.
@@ -197,7 +208,7 @@ class _Matrices(_Owner):
         else:
             self._call("hbvib_model_set_speed_per_omega", per_omega)
 
-    def set_coupling(self, which: Any, to_next: Any) -> None:
+    def set_coupling(self, which: MatrixKinds, to_next: Any) -> None:
         """Coupling of a sector (rows) to the next (columns), ndof x ndof; its transpose couples to the previous.
 
         >>> import hbvib
@@ -210,7 +221,7 @@ class _Matrices(_Owner):
         coupling = _matrix(to_next, Part.GENERAL, f"coupling of the {kind.name.lower()}")
         self._call("hbvib_cyclic_set_coupling", kind, coupling)
 
-    def set_coupling_previous(self, which: Any, to_previous: Any) -> None:
+    def set_coupling_previous(self, which: MatrixKinds, to_previous: Any) -> None:
         """Coupling to the previous sector where it is not the transpose: damping and stiffness only.
 
         >>> import hbvib
@@ -224,7 +235,7 @@ class _Matrices(_Owner):
         coupling = _matrix(to_previous, Part.GENERAL, f"coupling of the {kind.name.lower()}")
         self._call("hbvib_cyclic_set_coupling_previous", kind, coupling)
 
-    def set_diameter(self, which: Any, diameter: int, matrix: Any, part: Any = Part.FULL) -> None:
+    def set_diameter(self, which: MatrixKinds, diameter: int, matrix: Any, part: Parts = Part.FULL) -> None:
         """The complex matrix of the wave of a nodal diameter 0 .. sectors / 2, instead of sector blocks.
 
         >>> import hbvib
@@ -237,7 +248,8 @@ class _Matrices(_Owner):
         array([1.73205081])
         """
         kind = _member(MatrixKind, which)
-        self._call("hbvib_cyclic_set_diameter", kind, diameter, _matrix(matrix, part, kind.name.lower()))
+        self._call("hbvib_cyclic_set_diameter", kind, _whole(diameter, name="diameter"),
+                   _matrix(matrix, part, kind.name.lower()))
 
     def set_wave(self, engine_order: int) -> None:
         """Engine order of the excitation, of any sign and size.
@@ -248,7 +260,7 @@ class _Matrices(_Owner):
         >>> model.engine_order
         3
         """
-        self._call("hbvib_cyclic_set_wave", engine_order)
+        self._call("hbvib_cyclic_set_wave", _whole(engine_order, name="engine_order"))
 
     def add_force(self, dof: int, force: complex, harmonic: int = 1) -> None:
         """Adds Re(force exp(i harmonic omega t)) on a degree of freedom, a peak value; harmonic 0 is constant.
@@ -263,7 +275,7 @@ class _Matrices(_Owner):
         if isinstance(force, (str, bytes)):
             raise TypeError(f"force needs a number, not {force!r}")
         force = complex(force)
-        self._call("hbvib_model_add_force", dof, harmonic, force.real, force.imag)
+        self._call("hbvib_model_add_force", _whole(dof, name="dof"), _whole(harmonic, name="harmonic"), force.real, force.imag)
 
     def add_unbalance(self, dof_x: int, dof_y: int, m_e: float, phase: float = 0.0) -> None:
         """Adds m_e omega^2 cos(omega t + phase) on dof_x and m_e omega^2 sin(omega t + phase) on dof_y, omega the
@@ -276,7 +288,7 @@ class _Matrices(_Owner):
         >>> branch.peaks().amplitude.round(4)  # 1e-3 / 0.1
         array([0.01])
         """
-        self._call("hbvib_model_add_unbalance", dof_x, dof_y, m_e, phase)
+        self._call("hbvib_model_add_unbalance", _whole(dof_x, name="dof_x"), _whole(dof_y, name="dof_y"), m_e, phase)
 
     def clear_forces(self) -> None:
         """Removes all forces, unbalances included.

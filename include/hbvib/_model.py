@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,15 +10,18 @@ from numpy.typing import ArrayLike
 from ._aero import _Aero
 from ._analyses import _Analyses
 from ._batch import _Batches
-from ._c import SectorFrame
+from ._c import MatrixKind, SectorFrame
 from ._caller_law import _CallerLaws
 from ._calls import _call
-from ._convert import _array, _member
+from ._convert import _array, _member, _whole
 from ._library import lib
 from ._linear_modes import _LinearModes
 from ._sensitivity import _Sensitivity
 from ._structs import _new
 from ._time_integration import _TimeIntegration
+
+if TYPE_CHECKING:
+    from ._choices import MatrixKinds, SectorFrames
 
 
 class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches):
@@ -44,7 +47,7 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
 
     def __init__(self, ndof: Optional[int] = None, *, mass: Any = None, damping: Any = None, stiffness: Any = None,
                  rayleigh: Optional[Sequence[float]] = None) -> None:
-        self._create(None, ndof, dict(mass=mass, damping=damping, stiffness=stiffness), {}, rayleigh)
+        self._create(None, ndof, {"mass": mass, "damping": damping, "stiffness": stiffness}, {}, rayleigh)
 
     @classmethod
     def cyclic(cls, ndof: Optional[int] = None, *, sectors: int, engine_order: int = 0, mass: Any = None,
@@ -63,13 +66,14 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         array([1.73205081])
         """
         model = cls.__new__(cls)
-        model._create(sectors, ndof, dict(mass=mass, damping=damping, stiffness=stiffness), coupling or {}, rayleigh)
+        model._create(sectors, ndof, {"mass": mass, "damping": damping, "stiffness": stiffness}, coupling or {},
+                      rayleigh)
         model.set_wave(engine_order)
         return model
 
     @classmethod
     def sector(cls, *, stiffness: Any, mass: Any, damping: Any = None, sectors: int, engine_order: int,
-               left: ArrayLike, right: ArrayLike, fixed: ArrayLike = (), frame: Any = "cartesian",
+               left: ArrayLike, right: ArrayLike, fixed: ArrayLike = (), frame: SectorFrames = "cartesian",
                axis: ArrayLike = (0, 0, 1), direction: int = 1, coordinates: Any = None) -> Model:
         """A wheel from one sector with both faces, as a finite-element program writes it. The numbering of the sector
         is kept for matrices, contacts, forces and results; its couplings follow from its matrices.
@@ -114,12 +118,12 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         model._handle = None
         _call("hbvib_cyclic_from_sector", description, handle)
         model._handle, model._kept = handle.value, []
-        for kind, value in (("stiffness", stiffness), ("mass", mass), ("damping", damping)):
+        for kind, value in ((MatrixKind.STIFFNESS, stiffness), (MatrixKind.MASS, mass), (MatrixKind.DAMPING, damping)):
             if value is not None:
                 model.set_matrix(kind, value)
         return model
 
-    def _create(self, sectors: Any, ndof: Any, matrices: dict[str, Any], coupling: dict[str, Any],
+    def _create(self, sectors: Any, ndof: Any, matrices: Mapping[MatrixKinds, Any], coupling: Mapping[Any, Any],
                 rayleigh: Any) -> None:
         given = [(kind, value) for kind, value in matrices.items() if value is not None]
         if ndof is None:
@@ -128,9 +132,9 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
             ndof = (*np.shape(given[0][1]), 1)[0]
         handle = ctypes.c_void_p()
         if sectors is None:
-            _call("hbvib_model_new", ndof, handle)
+            _call("hbvib_model_new", _whole(ndof, name="ndof"), handle)
         else:
-            _call("hbvib_cyclic_new", ndof, sectors, handle)
+            _call("hbvib_cyclic_new", _whole(ndof, name="ndof"), _whole(sectors, name="sectors"), handle)
         self._handle, self._kept = handle.value, []
         for kind, value in given:
             self.set_matrix(kind, value)

@@ -16,6 +16,7 @@ from ._structs import _matrix, _new
 if TYPE_CHECKING:
     from ._branch import Branch
     from ._calls import CancelFlag, Hook
+    from ._choices import ParameterKinds, Quantities, Scalings
 
 
 class Parameter:
@@ -33,9 +34,11 @@ class Parameter:
     hbvib.Parameter('kt', contact=0)
     """
 
-    def __init__(self, kind: Any, contact: int = -1, direction: Any = None, scaling: Any = "additive") -> None:
-        self.kind, self.contact = _member(ParameterKind, kind), contact
-        self.direction, self.scaling = direction, _member(Scaling, scaling)
+    def __init__(self, kind: ParameterKinds, contact: int = -1, direction: Any = None,
+                 scaling: Scalings = "additive") -> None:
+        self.kind: ParameterKind = _member(ParameterKind, kind)
+        self.contact, self.direction = contact, direction
+        self.scaling: Scaling = _member(Scaling, scaling)
 
     def __repr__(self) -> str:
         text = f"hbvib.Parameter({self.kind.name.lower()!r}"
@@ -53,7 +56,7 @@ class Parameter:
         return described
 
 
-class Sensitivities(np.ndarray):
+class Sensitivities(np.ndarray[Any, np.dtype[np.float64]]):
     """Derivatives of a result by parameters, an array in their order; `reasons` has for each the reason why it is NaN,
     or an empty text.
 
@@ -76,7 +79,7 @@ class _Sensitivity(_Owner):
     """Methods of Model for derivatives."""
 
     def sensitivity(self, branch: Branch, point: int, parameters: Union[Parameter, Sequence[Parameter]],
-                    of: Any = "amplitude", *, phase: Hook = None,
+                    of: Quantities = "amplitude", *, phase: Hook = None,
                     cancel: Optional[CancelFlag] = None) -> Sensitivities:
         """Exact derivatives of a result at a point of this model by parameters, from one adjoint solution for all.
 

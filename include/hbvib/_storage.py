@@ -16,6 +16,7 @@ from ._tables import fields
 from ._types import Energy, ModeInfo, ModePoint, Reduction
 
 if TYPE_CHECKING:
+    from ._choices import Fields
     from ._results import ComplexArray, FloatArray
 
 _FORMAT = 1
@@ -168,7 +169,7 @@ class SavedBranch(Branch):
     def is_mode(self) -> bool:
         return bool(self._about["is_mode"])
 
-    def field(self, field: Any) -> np.ndarray:
+    def field(self, field: Fields) -> FloatArray:
         name = (field if isinstance(field, str) else Field(field).name).lower()
         if "field/" + name not in self._arrays:
             Field[name.upper()]

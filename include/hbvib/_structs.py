@@ -28,7 +28,7 @@ def _new(name: str, **values: Any) -> Any:
         elif kind is ctypes.c_double:
             value = _real(value)
         elif kind in (ctypes.c_int32, ctypes.c_int64):
-            value = _whole(value, 8 * ctypes.sizeof(kind))
+            value = _whole(value, 8 * ctypes.sizeof(kind), key)
         setattr(struct, key, value)
     return struct
 

@@ -20,15 +20,17 @@ if TYPE_CHECKING:
 
     from ._branch import Branch
     from ._calls import CancelFlag, Hook
+    from ._choices import LogLevels, SteadyMethods, WaveSets
 
 
 class _TimeIntegration(_Matrices, _Contacts):
     """Methods of Model that integrate in time."""
 
     @_with_options("hbvib_time_options", TimeOptions)
-    def time_response(self, omega: float, *, harmonics: int = 9, samples: int = 0, method: Any = SteadyMethod.SHOOTING,
-                      start: Optional[ArrayLike] = None, progress: Union[bool, Callable[[Progress], Any], None] = None,
-                      log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+    def time_response(self, omega: float, *, harmonics: int = 9, samples: int = 0,
+                      method: SteadyMethods = SteadyMethod.SHOOTING, start: Optional[ArrayLike] = None,
+                      progress: Union[bool, Callable[[Progress], Any], None] = None,
+                      log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                       cancel: Optional[CancelFlag] = None,
                       phase: Hook = None, **options: Unpack[TimeOptions]) -> TimeResponse:
         """The periodic response at one frequency by integration in time: a check of any point of a branch.
@@ -62,9 +64,9 @@ class _TimeIntegration(_Matrices, _Contacts):
         return TimeResponse(x, times, _record(TimeInfo, info), Status(status))
 
     @_with_options("hbvib_verify_options", VerifyOptions)
-    def verify(self, branch: Branch, point: int, *, method: Any = SteadyMethod.SHOOTING,
+    def verify(self, branch: Branch, point: int, *, method: SteadyMethods = SteadyMethod.SHOOTING,
                progress: Union[bool, Callable[[Progress], Any], None] = None,
-               log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+               log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                cancel: Optional[CancelFlag] = None,
                phase: Hook = None, **options: Unpack[VerifyOptions]) -> Verification:
         """How far a point of a forced response of this model is from the motion that integration in time finds from it.
@@ -96,9 +98,9 @@ class _TimeIntegration(_Matrices, _Contacts):
         return Verification(x, errors, _record(VerificationInfo, info), Status(status))
 
     @_with_options("hbvib_floquet_options", FloquetOptions)
-    def floquet(self, branch: Branch, point: int, *, waves: Any = Waves.WAVE, refine: bool = True,
+    def floquet(self, branch: Branch, point: int, *, waves: WaveSets = Waves.WAVE, refine: bool = True,
                 progress: Union[bool, Callable[[Progress], Any], None] = None,
-                log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+                log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                 cancel: Optional[CancelFlag] = None,
                 phase: Hook = None, **options: Unpack[FloquetOptions]) -> Floquet:
         """The Floquet multipliers of a point of this model: the motion is unstable where radius > 1.

@@ -9,9 +9,12 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from typing import Any, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ._results import IntArray
 
 __all__ = ["Matrices", "ReadError", "read"]
 
@@ -35,7 +38,7 @@ class Matrices(NamedTuple):
     stiffness: Any
     mass: Any
     damping: Any
-    dofs: Optional[np.ndarray]
+    dofs: Optional[IntArray]
 
 
 class ReadError(ValueError):

@@ -61,6 +61,8 @@ branch.amplitud
 hbvib.evaluate_contact("cubic", [0, 1], kt=1)  # no cubic
 number: str = branch.peaks().omega
 branch.energy(0).friction
+model.nonlinear_mode((-2.0, 1.0), damping_form=3.5)
+model.nonlinear_mode((-2.0, 1.0), damping_form="mas")
 '''
 
 

@@ -1,0 +1,36 @@
+"""Arguments that name a member of an enumeration: the member, its name in lower case, or its number."""
+from __future__ import annotations
+
+from typing import Literal, Union
+
+from ._c import (AeroForm, Block, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind, ParameterKind, Part,
+                 Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
+
+AeroForms = Union[AeroForm, Literal["displacement", "velocity"], int]
+Blocks = Union[Block, Literal["own", "next", "previous"], int]
+ContactKinds = Union[ContactKind, Literal["jenkins", "friction_2d", "friction_3d", "unilateral", "cubic", "regularised"], int]
+ContactStates = Union[ContactState, Literal["free", "stuck", "static"], int]
+DampingForms = Union[DampingForm, Literal["mass", "stiffness"], int]
+Fields = Union[
+    Field,
+    Literal["omega", "amplitude", "damping_ratio", "energy", "dissipation", "residual", "newton_iterations", "error_estimate",
+            "harmonics_used", "slip_fraction", "log10_amplitude", "modal_amplitude", "structural_loss", "modal_assurance",
+            "sampling_error", "damping_error_estimate", "floquet_radius", "unstable_directions", "parameter_value",
+            "d_amplitude", "d_damping"],
+    int]
+Follows = Union[Follow, Literal["omega", "peak", "fold", "mode_max_damping"], int]
+LogLevels = Union[LogLevel, Literal["none", "warn", "info", "debug"], int]
+MatrixKinds = Union[
+    MatrixKind, Literal["mass", "damping", "stiffness", "structural", "gyroscopic", "stiffness_speed2"], int]
+ParameterKinds = Union[
+    ParameterKind,
+    Literal["force", "preload", "mu", "kt", "kn", "gap", "mass", "damping", "stiffness", "speed"], int]
+Parts = Union[
+    Part,
+    Literal["full", "lower", "upper", "general", "symmetric", "symmetric_lower", "symmetric_upper"], int]
+Quantities = Union[
+    Quantity, Literal["amplitude", "peak_amplitude", "peak_omega", "mode_omega", "mode_damping"], int]
+Scalings = Union[Scaling, Literal["additive", "factor"], int]
+SectorFrames = Union[SectorFrame, Literal["cartesian", "cylindrical"], int]
+SteadyMethods = Union[SteadyMethod, Literal["shooting", "marching"], int]
+WaveSets = Union[Waves, Literal["wave", "wheel"], int]
