@@ -48,6 +48,7 @@ from ._model import Model
 from ._results import *
 from ._sensitivity import Parameter, Sensitivities
 from ._storage import SavedBranch, load
+from ._stored_point import StoredPoint
 from ._types import *
 
 __all__ = [
@@ -55,7 +56,7 @@ __all__ = [
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Parameter", "Sensitivities", "Batch", "Branch", "SavedBranch", "CancelFlag", "ForceCall",
+    "Model", "Parameter", "Sensitivities", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
     "get_include",

@@ -14,6 +14,7 @@ from ._calls import _call, _Guard, _hooks, _stoppable
 from ._convert import _array, _counted_array, _member, _range
 from ._errors import StoppedEarly, _sentence
 from ._matrices import _Matrices
+from ._origin import Origin
 from ._results import Progress, Residual
 from ._structs import _new, _options, _with_options
 from ._types import SolverOptions
@@ -40,13 +41,16 @@ def _solver_options(caller: str, given: Mapping[str, Any]) -> Any:
 class _Analyses(_Matrices):
     """Methods of Model that follow branches."""
 
-    def _solve(self, name: str, solver: Any, options: Any, hooks: tuple[Any, ...]) -> Branch:
+    def _solve(self, name: str, solver: Any, options: Any, at: Optional[ArrayLike], hooks: tuple[Any, ...]) -> Branch:
         settings = _solver_options(name[6:], solver)
         handle, kept = ctypes.c_void_p(), self._kept
+        origin = None if name == "hbvib_parameter_response" else Origin.of(self.handle, settings.samples)
         with _Guard() as guard:
             status = _call(name, self.handle, settings, options, _hooks(guard, *hooks), handle, guard=guard)
             if handle.value:
                 guard.branch = branch = Branch(handle.value, tuple(kept), _sentence(status) if status else "")
+                branch._at = np.array([] if at is None else at, float, ndmin=1)
+                branch._origin = origin
         if status > Status.STOPPED_BY_CALLER:
             try:
                 warnings.warn(StoppedEarly(branch.message, branch.status), stacklevel=3)
@@ -89,7 +93,7 @@ class _Analyses(_Matrices):
         start, stop = _range("omega", omega, "forced_response((0.8, 1.6), at=omega)", single=True)
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
-        return self._solve("hbvib_forced_response", solver, options, (progress, log, log_level, cancel, phase))
+        return self._solve("hbvib_forced_response", solver, options, at, (progress, log, log_level, cancel, phase))
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
@@ -123,7 +127,7 @@ class _Analyses(_Matrices):
                        damping_form=_member(DampingForm, damping_form), mode_index=mode_index, near_omega=near_omega,
                        amplitude_contact=amplitude_contact, reference_dof=reference_dof, **_counted_array("at", at),
                        **_counted_array("shape", shape, np.complex128, [self.ndof]))
-        return self._solve("hbvib_nonlinear_mode", solver, options, (progress, log, log_level, cancel, phase))
+        return self._solve("hbvib_nonlinear_mode", solver, options, at, (progress, log, log_level, cancel, phase))
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def parameter_response(self, parameter: Parameter, values: Sequence[float], *, omega: float,
@@ -165,7 +169,7 @@ class _Analyses(_Matrices):
                        **_counted_array("at", at))
         options.described = described  # kept as long as the struct
         options.parameter = ctypes.addressof(described)
-        return self._solve("hbvib_parameter_response", solver, options, (progress, log, log_level, cancel, phase))
+        return self._solve("hbvib_parameter_response", solver, options, at, (progress, log, log_level, cancel, phase))
 
     def forced_residual(self, omega: float, x: ArrayLike, *, jacobian: bool = False, d_omega: bool = False,
                         samples: int = 0, phase: Hook = None,

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import weakref
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from ._branch_fields import _BranchFields
 from ._branch_points import _BranchPoints
@@ -10,6 +10,9 @@ from ._c import Field, Status
 from ._calls import _call
 from ._errors import ArgumentError, BusyError
 from ._library import lib
+
+if TYPE_CHECKING:
+    from ._origin import Origin
 
 
 class Branch(_BranchFields, _BranchPoints):
@@ -35,6 +38,7 @@ class Branch(_BranchFields, _BranchPoints):
     def __init__(self, handle: int, kept: tuple[Any, ...], message: str) -> None:
         self._handle, self._kept, self.message = handle, kept, message
         self._leases: Any = weakref.WeakSet()
+        self._origin: Optional[Origin] = None
 
     def free(self) -> None:
         """Frees the branch. BufferError while arrays look into its memory, BusyError while a call uses it, FreedError
@@ -58,7 +62,7 @@ class Branch(_BranchFields, _BranchPoints):
         except (BufferError, BusyError):
             self._handle = handle
             raise
-        self._kept = ()
+        self._kept, self._origin = (), None
 
     def __len__(self) -> int:
         """Number of points on the curve."""
@@ -140,7 +144,8 @@ class Branch(_BranchFields, _BranchPoints):
         """Writes the branch to one file in numpy's NPZ format: fields, special points, energies and slip fractions of all
         stored points, to the last bit. `hbvib.load` reads it; np.load(path) too, in any version of numpy.
 
-        harmonics   with those of all degrees of freedom at all points, most of the file.
+        harmonics   with those of all degrees of freedom at all points, most of the file, and with the model, from which
+                    loops and summaries of contacts are computed again. A model with a force of the caller is not saved.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))

@@ -1,27 +1,33 @@
 """Points of a branch: motions, loops, energies, special points, synthesised responses."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
+import contextlib
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, cast
 
 import numpy as np
 
 from ._c import Bifurcation
 from ._calls import _Owner, _stoppable
 from ._convert import _whole
+from ._errors import ArgumentError
 from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Synthesis, SynthesisPeaks, Wanted
+from ._stored_point import StoredPoint
 from ._structs import _new, _options, _record, _Record, _with_options
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction, SynthesisOptions
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from ._branch import Branch
     from ._calls import CancelFlag, Hook
     from ._model import Model
-    from ._results import ComplexArray, FloatArray
+    from ._results import ComplexArray, FloatArray, IntArray
 
 
 class _BranchPoints(_Owner):
     """Methods of Branch for one point, and for lists of special points."""
+
+    _at: FloatArray = np.empty(0)  # entries of the solve's `at`
 
     def _filled(self, record: type[_Record], *arguments: Any, name: str) -> _Record:
         """The record that a function of the branch fills."""
@@ -267,7 +273,7 @@ class _BranchPoints(_Owner):
         return LimitCycles(*self._listed("hbvib_branch_limit_cycles", (), [float, float, float, np.int64]))
 
     def at(self, wanted: int) -> Wanted:
-        """Every solution at one entry of the solve's `at`: amplitude, point number.
+        """Every solution at one entry of the solve's `at`: omega, amplitude, point number.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
@@ -277,7 +283,33 @@ class _BranchPoints(_Owner):
         >>> branch.at(1).amplitude.round(4)
         array([0.56])
         """
-        return Wanted(*self._listed("hbvib_branch_at", (wanted,), [float, np.int64]))
+        amplitude, point = self._listed("hbvib_branch_at", (wanted,), [float, np.int64])
+        return Wanted(self._omega_at(wanted, point), amplitude, point)
+
+    def _omega_at(self, wanted: int, points: IntArray) -> FloatArray:
+        """Angular frequencies of the solutions at an entry of `at`; NaN where the library does not tell them."""
+        curve: Branch = cast("Branch", self)
+        if curve.is_mode:
+            return np.array([self.mode_point(int(point)).omega for point in points], float)
+        omega = self._at[wanted] if self._at.size else np.nan
+        with contextlib.suppress(ArgumentError):
+            over_parameter = curve.parameter_values.size > 0  # where the frequency may be held
+            omega = curve.omega[0] if over_parameter and np.ptp(curve.omega) == 0 else np.nan
+        return np.full(len(points), omega)
+
+    def point(self, number: int) -> StoredPoint:
+        """A stored point by its number, on the curve or beside it: its omega, amplitude and other fields, motion, loops,
+        energies.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.point(branch.peaks().point[0])
+        <hbvib.StoredPoint 45: omega 1.23203, amplitude 0.583635>
+        """
+        return StoredPoint(cast("Branch", self), _whole(number, name="point"))
 
     @_with_options("hbvib_synthesis_options", SynthesisOptions)
     def synthesis(self, model: Model, *, phase: Hook = None, cancel: Optional[CancelFlag] = None,

@@ -125,16 +125,18 @@ class Points(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """Solutions at one requested frequency (in a mode: amplitude): peak amplitude, number of the point.
+    """Solutions at one entry of a solve's `at`: angular frequency, peak amplitude, number of the point. The frequency is NaN in a
+    parameter response that follows a peak or a fold.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
     >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
     >>> model.add_force(0, 0.2)
     >>> branch = model.forced_response((0.8, 1.6), at=[1.0])
-    >>> branch.at(0).amplitude.shape
-    (1,)
+    >>> branch.at(0).amplitude.shape, branch.at(0).omega
+    ((1,), array([1.]))
     """
+    omega: FloatArray
     amplitude: FloatArray
     point: IntArray
 

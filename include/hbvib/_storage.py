@@ -11,15 +11,18 @@ from ._branch import Branch
 from ._c import Field, ModeMultiple, Status
 from ._errors import ArgumentError, OutOfRangeError, UnsupportedError
 from ._library import __version__
-from ._results import Bifurcations, LimitCycles, Points, Wanted
+from ._model import Model
+from ._recomputed import check, recomputed
+from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Wanted
+from ._stored_point import requests
 from ._tables import fields
-from ._types import Energy, ModeInfo, ModePoint, Reduction
+from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction
 
 if TYPE_CHECKING:
     from ._choices import Fields
     from ._results import ComplexArray, FloatArray
 
-_FORMAT = 1
+_FORMAT = 2
 _List = TypeVar("_List", bound="tuple[Any, ...]")
 
 
@@ -30,24 +33,38 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
         format=_FORMAT, version=__version__, status=int(branch.status), message=branch.message, points=len(branch),
         stored=stored, is_mode=branch.is_mode, reduction=branch.reduction._asdict(), at=0)
     arrays: dict[str, np.ndarray] = {"field/" + name: values for name, values in fields(branch).items()}
-    lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds(), bifurcations=branch.bifurcations())
+    lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds(), bifurcations=branch.bifurcations(),
+                                 optima=branch.optima(), higher_peaks=branch.higher_peaks())
     if branch.is_mode:
         lists["limit_cycles"] = branch.limit_cycles()
         about["mode_info"] = branch.mode_info._asdict()
         arrays["mode_point"] = np.array([branch.mode_point(point) for point in range(stored)], float)
-    try:
-        while True:
-            lists[f"at/{about['at']}"] = branch.at(about["at"])
-            about["at"] += 1
-    except OutOfRangeError:
-        pass
+    for found in requests(branch):
+        lists[f"at/{about['at']}"] = found
+        about["at"] += 1
+    arrays["at_values"] = branch._at
     for name, values in lists.items():
         arrays.update({f"{name}/{key}": column for key, column in values._asdict().items()})
     arrays["slip"] = np.array([branch.slip(point) for point in range(stored)]).reshape(stored, -1)
     arrays["energy"] = np.array([branch.energy(point) for point in range(stored)])
     if harmonics:
         arrays["harmonics"] = np.array([branch.harmonics(point) for point in range(stored)])
+        about["samples"], about["no_model"], model = _model_of(branch)
+        if model is not None:
+            arrays["model"] = model
     return dict(about=np.array(json.dumps(about)), **arrays)
+
+
+def _model_of(branch: Branch) -> tuple[int, str, Optional[np.ndarray]]:
+    """Samples of the solve, the reason why there is no model, and the bytes of the model."""
+    if isinstance(branch, SavedBranch):
+        return branch._about.get("samples", 0), branch._about.get("no_model", ""), branch._arrays.get("model")
+    if branch._origin is None:
+        return 0, "each point of this branch has a model of its own", None
+    try:
+        return branch._origin.samples, "", branch._origin.saved()
+    except UnsupportedError as error:
+        return 0, str(error), None
 
 
 def save(branch: Branch, path: Any, harmonics: bool) -> None:
@@ -88,8 +105,10 @@ def load(path: Any) -> SavedBranch:
 class SavedBranch(Branch):
     """A branch from a file or a pickle: fields, special points, harmonics, energies and slip fractions to the last bit.
 
-    Loops, summaries of contacts and syntheses are computed from the solution itself: UnsupportedError, as harmonics where they
-    were not saved. To have them, solve again, from `harmonics(point)` as guess= where that helps.
+    Loops and summaries of contacts are computed from the model and the harmonics that were saved, and differ from those of
+    the branch by rounding, where laws were sampled by the accuracy of the samples. UnsupportedError for a branch without
+    them, as one over a parameter, of a batch or of a model with a force of the caller. Syntheses need the solution
+    itself: solve again, from `harmonics(point)` as guess= where that helps.
 
     >>> import hbvib, pickle
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -106,6 +125,8 @@ class SavedBranch(Branch):
             raise ValueError(f"format {about['format']}, needs {_FORMAT}: saved by hbvib {about['version']}")
         super().__init__(0, (), about["message"])
         self._arrays, self._about, self._handle = arrays, about, None
+        self._at = arrays["at_values"]
+        self._solved: Optional[tuple[int, Branch]] = None
         for name, values in arrays.items():
             values.flags.writeable = False
 
@@ -219,8 +240,34 @@ class SavedBranch(Branch):
     def _list(self, kind: type[_List], name: str) -> _List:
         return kind(*(self._arrays[f"{name}/{key}"].copy() for key in kind._fields))  # type: ignore[attr-defined]
 
+    def _again(self, point: int) -> Branch:
+        """A branch of one point in memory with the motion of a point."""
+        if self._solved is not None and self._solved[0] == point:
+            return self._solved[1]
+        slip, energy, harmonics = self.slip(point), self.energy(point), self._row("harmonics", point)
+        if "model" not in self._arrays:
+            raise UnsupportedError(f"this file has no model: {self._about['no_model']}", Status.E_UNSUPPORTED)
+        order = self.mode_info.engine_order if self.is_mode else None
+        model = Model.from_bytes(self._arrays["model"])
+        found = recomputed(model, self.point(point).omega, harmonics, order, self._about["samples"])
+        check(found, slip, energy, self._about["samples"])
+        self._solved = (point, found)
+        return found
+
+    def loop(self, point: int, contact: int, direction: int = 0, n: int = 256, **stop: Any) -> Loop:
+        return self._again(point).loop(0, contact, direction, n, **stop)
+
+    def summary(self, point: int, contact: int, **stop: Any) -> ContactSummary:
+        return self._again(point).summary(0, contact, **stop)
+
     def peaks(self) -> Points:
         return self._list(Points, "peaks")
+
+    def optima(self) -> Optima:
+        return self._list(Optima, "optima")
+
+    def higher_peaks(self) -> HigherPeaks:
+        return self._list(HigherPeaks, "higher_peaks")
 
     def folds(self) -> Points:
         return self._list(Points, "folds")
