@@ -295,6 +295,26 @@ pub(super) fn add_slope_product(
     }
 }
 
+/// Fills the entries of ∂Z/∂ω of a harmonic, in the order of its pattern.
+pub(super) fn fill_slope(block: &HarmonicBlock, (omega, damping): (f64, f64), entries: &mut [Complex64]) {
+    let sum = Combination::slope(block, omega.into(), damping, Variable::Omega);
+    for (at, entry) in entries.iter_mut().enumerate() {
+        *entry = sum.at(block, at);
+    }
+}
+
+/// y ← A x for the entries of a matrix in the order of the pattern of a harmonic.
+pub(super) fn multiply(block: &HarmonicBlock, entries: &[Complex64], x: &[Complex64], y: &mut [Complex64]) {
+    let pattern = &block.reference;
+    y.fill(Complex64::ZERO);
+    for (x, ends) in x.iter().zip(pattern.col_ptr.windows(2)) {
+        let column = ends[0]..ends[1];
+        for (entry, &row) in entries[column.clone()].iter().zip(&pattern.row_idx[column]) {
+            y[row] += entry * x;
+        }
+    }
+}
+
 /// left·Z right at a complex frequency; nothing is conjugated.
 pub(super) fn product(
     condensed: &Condensed,

@@ -4,7 +4,7 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
+use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply, product};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -57,6 +57,8 @@ pub struct Workspace {
     /// Z⁻ᵀ Rᵀ, ndof rows.
     rows: Vec<Complex64>,
     product: Vec<Complex64>,
+    /// Entries of Z′, made when slopes are first wanted.
+    slope: Vec<Complex64>,
     load: Vec<Complex64>,
     table: Table,
 }
@@ -80,6 +82,7 @@ impl Workspace {
             columns: Vec::new(),
             rows: Vec::new(),
             product: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            slope: Vec::new(),
             load: try_vec(n, Complex64::ZERO, CONTEXT)?,
             table: Table::new(condensed.coordinates())?,
         })
@@ -210,15 +213,18 @@ impl Workspace {
             }
         }
         made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
+        let entries = block.reference.values.len();
+        if self.slope.len() < entries {
+            self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
+        }
+        fill_slope(block, (omega, self.damping), &mut self.slope[..entries]);
         for (column, table) in self
             .columns
             .chunks_exact(n)
             .zip(self.table.slope.chunks_exact_mut(outputs))
         {
             interrupt.check()?;
-            self.product.fill(Complex64::ZERO);
-            let at = (omega.into(), self.damping);
-            add_slope_product(condensed, i, at, Variable::Omega, false, column, &mut self.product);
+            multiply(block, &self.slope[..entries], column, &mut self.product);
             for (slope, solved) in table.iter_mut().zip(self.rows.chunks_exact(n)) {
                 let sum: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
                 *slope = -sum;

@@ -24,6 +24,9 @@ const INTERPOLATE_ABOVE_IF_RIGID: usize = 200;
 /// Relative error of interpolated tables, and of tables from modes.
 const TOLERANCE: f64 = 1e-11;
 
+/// Degrees of freedom up to which sums over modes of many contacts take less time than interpolation between them.
+const SUMS_UP_TO: usize = 100;
+
 /// Numbers of relative motions with which sums over modes are interpolated: with fewer the sums take no longer, with more the
 /// tables would take too much memory.
 const INTERPOLATED: RangeInclusive<usize> = 8..=96;
@@ -133,8 +136,7 @@ impl<'a> FrequencyCache<'a> {
             interrupt.part(Phase::Condensation, i, count)?;
             try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
             try_push(&mut constant, false, CONTEXT)?;
-            // With many degrees of freedom a sum takes longer than an interpolation.
-            let from_modes = if sweep && condensed.ndof() <= ALL_UP_TO {
+            let from_modes = if sweep && sums_are_quicker(condensed) {
                 let known = (&mut waves, &mut modal_work, &mut workspace);
                 of_wave((condensed, i, response), range, known, interrupt)?
             } else {
@@ -285,6 +287,12 @@ impl<'a> FrequencyCache<'a> {
         self.tabulated = Some((omega, self.way));
         Ok(())
     }
+}
+
+/// Whether a sum over all modes at each frequency takes less time than an interpolation between such sums.
+fn sums_are_quicker(condensed: &Condensed) -> bool {
+    let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
+    n <= SUMS_UP_TO || (n <= ALL_UP_TO && coordinates < *INTERPOLATED.start())
 }
 
 /// Interpolates a table between factorisations, or sums over modes where these are known; `false` where that is not possible.

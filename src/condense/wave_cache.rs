@@ -17,11 +17,8 @@ use num_complex::Complex64;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Degrees of freedom up to which all modes are computed.
-const MOST: usize = 600;
-
-/// Degrees of freedom up to which a sweep computes all modes at once.
-pub(super) const ALL_UP_TO: usize = 100;
+/// Degrees of freedom up to which a sweep computes all modes: they take as long as three to twelve complex factorisations.
+pub(super) const ALL_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the modes of the structure";
 
@@ -223,7 +220,7 @@ fn modes_of(
 ) -> Result<Option<WaveModes>> {
     let block = &condensed.blocks()[i];
     let n = condensed.ndof();
-    if n > MOST || has_other_terms(model) || block.unbalance.is_some() {
+    if n > ALL_UP_TO || has_other_terms(model) || block.unbalance.is_some() {
         return Ok(None);
     }
     let Some(springs) = springs(model, condensed, block)? else {

@@ -24,8 +24,8 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the reduced structure";
 
-/// Degrees of freedom from which a basis is quicker than factors at each frequency.
-const FROM: usize = 200;
+/// Degrees of freedom from which a basis is quicker than all modes, or factors at each frequency.
+const FROM: usize = 600;
 
 /// Degrees of freedom over columns of the first block, below which a basis is no reduction.
 const SHARE: usize = 20;
