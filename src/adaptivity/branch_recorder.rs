@@ -197,6 +197,7 @@ impl<'a> BranchRecorder<'a> {
                 data.push(mode)?;
             }
         }
+        self.branch.complete_stability()?;
         self.branch.set_reduction(reduction);
         self.branch.set_estimates(estimates);
         self.branch

@@ -12,8 +12,9 @@ use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
-use crate::error::{Status, fail, try_vec};
+use crate::error::{Result, Status, fail, try_vec};
 use crate::results::mode_branch::ModeField;
+use crate::results::{Branch, PointField};
 use core::ptr;
 use num_complex::Complex64;
 
@@ -176,96 +177,105 @@ pub unsafe extern "C" fn hbvib_branch_field(
     field: i32,
     out: *mut hbvib_view,
 ) -> hbvib_status {
-    const OMEGA: i32 = hbvib_field::HBVIB_OMEGA as i32;
-    const AMPLITUDE: i32 = hbvib_field::HBVIB_AMPLITUDE as i32;
-    const RESIDUAL: i32 = hbvib_field::HBVIB_RESIDUAL as i32;
-    const NEWTON_ITERATIONS: i32 = hbvib_field::HBVIB_NEWTON_ITERATIONS as i32;
-    const HARMONICS_USED: i32 = hbvib_field::HBVIB_HARMONICS_USED as i32;
-    const SAMPLING_ERROR: i32 = hbvib_field::HBVIB_SAMPLING_ERROR as i32;
-    const ERROR_ESTIMATE: i32 = hbvib_field::HBVIB_ERROR_ESTIMATE as i32;
-    const DAMPING_ERROR: i32 = hbvib_field::HBVIB_DAMPING_ERROR_ESTIMATE as i32;
-    const RADIUS: i32 = hbvib_field::HBVIB_FLOQUET_RADIUS as i32;
-    const UNSTABLE: i32 = hbvib_field::HBVIB_UNSTABLE_DIRECTIONS as i32;
-    const PARAMETER: i32 = hbvib_field::HBVIB_PARAMETER_VALUE as i32;
-    const D_AMPLITUDE: i32 = hbvib_field::HBVIB_D_AMPLITUDE as i32;
-    const D_DAMPING: i32 = hbvib_field::HBVIB_D_DAMPING as i32;
-    const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        let branch = &kept.branch;
-        unsafe { check_out(out, 3) }?;
-        let points = branch.points() as i64;
-        let contacts = branch.contacts() as i64;
-        let told = branch.tells_stability();
-        let data = match field {
-            OMEGA => branch.omega(),
-            AMPLITUDE => branch.amplitude(),
-            RESIDUAL => branch.residual(),
-            NEWTON_ITERATIONS => branch.newton_iterations(),
-            HARMONICS_USED => branch.harmonics_used(),
-            SAMPLING_ERROR => branch.sampling_error(),
-            ERROR_ESTIMATE => branch.error_estimate(),
-            DAMPING_ERROR if branch.mode().is_some() => branch.damping_error_estimate(),
-            DAMPING_ERROR => return fail!(Argument, "field = {field}: only a nonlinear mode has it").with_argument(2),
-            SLIP_FRACTION => branch.slip_fraction(),
-            RADIUS if told => branch.floquet_radius(),
-            UNSTABLE if told => branch.unstable_directions(),
-            RADIUS | UNSTABLE => {
-                return fail!(
-                    Argument,
-                    "field = {field}: only a forced response with the solver option stability has it"
-                )
-                .with_argument(2);
-            }
-            PARAMETER | D_AMPLITUDE | D_DAMPING => {
-                let data = match field {
-                    PARAMETER => branch.parameter(),
-                    D_AMPLITUDE => branch.d_amplitude(),
-                    _ => branch.d_damping().filter(|_| branch.mode().is_some()),
-                };
-                match data {
-                    Some(data) => data,
-                    None => {
-                        return fail!(
-                            Argument,
-                            "field = {field}: only a parameter response has it, the derivative of damping one of a mode"
-                        )
-                        .with_argument(2);
-                    }
-                }
-            }
-            _ => match mode_field(field).map(|f| branch.mode_field(f)) {
-                Some(Some(data)) => data,
-                Some(None) => return fail!(Argument, "field = {field}: only a nonlinear mode has it").with_argument(2),
-                None => return fail!(Argument, "field = {field}, needs a value of enum hbvib_field").with_argument(2),
-            },
-        };
-        let mut view = hbvib_view {
-            rank: 1,
-            data: if data.is_empty() { ptr::null() } else { data.as_ptr() },
-            shape: [points, 1, 1],
-            ..hbvib_view::defaults()
-        };
-        if field == SLIP_FRACTION {
-            view.rank = 2;
-            view.shape[1] = contacts;
-            view.stride[0] = contacts;
-        }
-        unsafe { fill_out(out, view) };
-        Ok(Status::Ok)
-    })
+    call(|| unsafe { lend(branch, field, Branch::points, out) })
 }
 
-/// The fields that only nonlinear modes have.
-fn mode_field(field: i32) -> Option<ModeField> {
+/// Borrows the values of a field at all stored points: those of the curve as hbvib_branch_field has
+/// them, then those of the peaks, folds and requested solutions beside it, so that the number of a
+/// point is its place.
+///
+/// field  as in hbvib_branch_field; the stability of points beside the curve is NaN.
+/// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
+///        hbvib_view_init before; untouched on error.
+/// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
+/// Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_stored_field(
+    branch: *const hbvib_branch,
+    field: i32,
+    out: *mut hbvib_view,
+) -> hbvib_status {
+    call(|| unsafe { lend(branch, field, Branch::stored, out) })
+}
+
+/// Fills the view of a field at so many points.
+///
+/// # Safety
+/// The caller of the C function states that the pointers are what they are said to be.
+unsafe fn lend(
+    branch: *const hbvib_branch,
+    field: i32,
+    points: impl Fn(&Branch) -> usize,
+    out: *mut hbvib_view,
+) -> Result<Status> {
+    let kept = read::<KeptBranch>(branch, 1)?;
+    let branch = &kept.branch;
+    unsafe { check_out(out, 3) }?;
+    let Some(known) = point_field(field) else {
+        return fail!(Argument, "field = {field}, needs a value of enum hbvib_field").with_argument(2);
+    };
+    let Some(data) = branch.stored_field(known) else {
+        return fail!(Argument, "field = {field}: {}", owner(known)).with_argument(2);
+    };
+    let points = points(branch) as i64;
+    let mut view = hbvib_view {
+        rank: 1,
+        data: if points == 0 || data.is_empty() {
+            ptr::null()
+        } else {
+            data.as_ptr()
+        },
+        shape: [points, 1, 1],
+        ..hbvib_view::defaults()
+    };
+    if known == PointField::SlipFraction {
+        let contacts = branch.contacts() as i64;
+        view.rank = 2;
+        view.shape[1] = contacts;
+        view.stride[0] = contacts;
+    }
+    unsafe { fill_out(out, view) };
+    Ok(Status::Ok)
+}
+
+/// The branches that have a field.
+fn owner(field: PointField) -> &'static str {
+    match field {
+        PointField::FloquetRadius | PointField::UnstableDirections => {
+            "only a forced response with the solver option stability has it"
+        }
+        PointField::Parameter | PointField::DAmplitude | PointField::DDamping => {
+            "only a parameter response has it, the derivative of damping one of a mode"
+        }
+        _ => "only a nonlinear mode has it",
+    }
+}
+
+/// The field of a number of the enumeration.
+fn point_field(field: i32) -> Option<PointField> {
+    use hbvib_field as f;
     [
-        (hbvib_field::HBVIB_DAMPING_RATIO, ModeField::DampingRatio),
-        (hbvib_field::HBVIB_ENERGY, ModeField::Energy),
-        (hbvib_field::HBVIB_DISSIPATION, ModeField::FrictionLoss),
-        (hbvib_field::HBVIB_LOG10_AMPLITUDE, ModeField::Log10Amplitude),
-        (hbvib_field::HBVIB_MODAL_AMPLITUDE, ModeField::ModalAmplitude),
-        (hbvib_field::HBVIB_STRUCTURAL_LOSS, ModeField::StructuralLoss),
-        (hbvib_field::HBVIB_MODAL_ASSURANCE, ModeField::Assurance),
+        (f::HBVIB_OMEGA, PointField::Omega),
+        (f::HBVIB_AMPLITUDE, PointField::Amplitude),
+        (f::HBVIB_RESIDUAL, PointField::Residual),
+        (f::HBVIB_NEWTON_ITERATIONS, PointField::NewtonIterations),
+        (f::HBVIB_HARMONICS_USED, PointField::HarmonicsUsed),
+        (f::HBVIB_SLIP_FRACTION, PointField::SlipFraction),
+        (f::HBVIB_SAMPLING_ERROR, PointField::SamplingError),
+        (f::HBVIB_ERROR_ESTIMATE, PointField::ErrorEstimate),
+        (f::HBVIB_DAMPING_ERROR_ESTIMATE, PointField::DampingErrorEstimate),
+        (f::HBVIB_FLOQUET_RADIUS, PointField::FloquetRadius),
+        (f::HBVIB_UNSTABLE_DIRECTIONS, PointField::UnstableDirections),
+        (f::HBVIB_PARAMETER_VALUE, PointField::Parameter),
+        (f::HBVIB_D_AMPLITUDE, PointField::DAmplitude),
+        (f::HBVIB_D_DAMPING, PointField::DDamping),
+        (f::HBVIB_DAMPING_RATIO, PointField::Mode(ModeField::DampingRatio)),
+        (f::HBVIB_ENERGY, PointField::Mode(ModeField::Energy)),
+        (f::HBVIB_DISSIPATION, PointField::Mode(ModeField::FrictionLoss)),
+        (f::HBVIB_LOG10_AMPLITUDE, PointField::Mode(ModeField::Log10Amplitude)),
+        (f::HBVIB_MODAL_AMPLITUDE, PointField::Mode(ModeField::ModalAmplitude)),
+        (f::HBVIB_STRUCTURAL_LOSS, PointField::Mode(ModeField::StructuralLoss)),
+        (f::HBVIB_MODAL_ASSURANCE, PointField::Mode(ModeField::Assurance)),
     ]
     .into_iter()
     .find_map(|(constant, known)| (constant as i32 == field).then_some(known))

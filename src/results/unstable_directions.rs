@@ -124,14 +124,14 @@ impl Branch {
     /// none without the solver option `stability`.
     #[must_use]
     pub fn floquet_radius(&self) -> &[f64] {
-        &self.floquet_radius
+        &self.floquet_radius[..self.points().min(self.floquet_radius.len())]
     }
 
     /// Number of ordinary Floquet multipliers outside the unit circle at each point of the curve, as
     /// [`Self::floquet_radius`].
     #[must_use]
     pub fn unstable_directions(&self) -> &[f64] {
-        &self.unstable_directions
+        &self.unstable_directions[..self.points().min(self.unstable_directions.len())]
     }
 
     /// Stores the stability of the next point of the curve.

@@ -107,7 +107,7 @@ fn results_that_a_point_does_not_have_are_refused() {
     }
     let other = Design::ring_damper(&BASE, 301.0).model();
     let error = sensitivity(&other, &branch, peak, &[Parameter::Force], Quantity::Amplitude).unwrap_err();
-    assert!(error.to_string().contains("contact 0 was changed"), "{error}");
+    assert!(error.to_string().contains("other contacts than"), "{error}");
 }
 
 #[test]
