@@ -235,12 +235,14 @@ module hbvib
 
    !> Size of the problem that was solved, and the parts that were removed from it before.
    type, bind(c) :: hbvib_reduction
-      integer(c_int32_t) :: struct_size = 120, reserved = 0
+      integer(c_int32_t) :: struct_size = 136, reserved = 0
       integer(c_int64_t) :: sectors = 0, degrees_of_freedom = 0, coordinates = 0, contacts = 0, never_slipping = 0, inert = 0, &
          harmonics_asked = 0, harmonics_carried = 0, unknowns = 0, response_dof = 0
       integer(c_int32_t) :: mean_carried = 0, even_removed = 0
       integer(c_int64_t) :: held_by_contacts = 0, basis = 0
       real(c_double) :: certificate = 0
+      integer(c_int64_t) :: response_harmonic = 0
+      integer(c_int32_t) :: guess_used = -1, reserved2 = 0
    end type hbvib_reduction
 
    !> Energies and losses of one point, in the units of the caller.
@@ -931,6 +933,14 @@ module hbvib
          type(hbvib_view), intent(inout) :: out
          integer(c_int32_t) :: status
       end function hbvib_branch_field
+
+      function hbvib_branch_stored_field(branch, field, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int32_t), value :: field
+         type(hbvib_view), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_branch_stored_field
 
       function hbvib_branch_harmonics(branch, point, first_dof, n_dof, x, x_len) bind(c) result(status)
          import

@@ -1466,7 +1466,8 @@ typedef struct {
   int64_t point;
   /// Angular frequency; in a nonlinear mode log10 of the amplitude.
   double parameter;
-  /// Peak amplitude of the fundamental of the response degree of freedom.
+  /// Peak amplitude of the response degree of freedom: of the fundamental, or of the harmonic that
+  /// hbvib_reduction names.
   double amplitude;
   /// Relative residual.
   double residual;
@@ -1591,7 +1592,12 @@ typedef struct {
   const double *at;
   /// Number of these frequencies.
   int64_t at_len;
-  /// Start values, complex (H + 1) x ndof, harmonic after harmonic, or NULL: the stuck solution.
+  /// Start values, complex (H + 1) x ndof, harmonic after harmonic with an H of their own, or NULL:
+  /// the stuck solution. The motion at the contacts counts; the imaginary part of the mean has
+  /// no effect. Harmonics that forces and laws do not excite by themselves (a subharmonic, the
+  /// mean and even harmonics of a symmetric model) are carried where the guess has them. One
+  /// above harmonics, or with a tolerance above max_harmonics, is refused. hbvib_reduction tells
+  /// whether the first point was found from the guess.
   const double *guess;
   /// Complex numbers in guess.
   int64_t guess_len;
@@ -1664,7 +1670,8 @@ hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 typedef enum {
   /// Angular frequency.
   HBVIB_OMEGA = 0,
-  /// Peak amplitude of the fundamental of the response degree of freedom.
+  /// Peak amplitude of the response degree of freedom: of the fundamental, or of the harmonic that
+  /// hbvib_reduction names.
   HBVIB_AMPLITUDE = 1,
   /// Nonlinear modes only: damping ratio D.
   HBVIB_DAMPING_RATIO = 2,
@@ -1756,6 +1763,18 @@ hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 /// Threads: any number on one branch.
 HBVIB_NODISCARD
 hbvib_status hbvib_branch_field(const hbvib_branch *branch, int32_t field, hbvib_view *out);
+
+/// Borrows the values of a field at all stored points: those of the curve as hbvib_branch_field has
+/// them, then those of the peaks, folds and requested solutions beside it, so that the number of a
+/// point is its place.
+///
+/// field  as in hbvib_branch_field; the stability of points beside the curve is NaN.
+/// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
+///        hbvib_view_init before; untouched on error.
+/// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
+/// Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_stored_field(const hbvib_branch *branch, int32_t field, hbvib_view *out);
 
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
 /// unit of length. H is harmonics_asked of hbvib_branch_reduction; harmonics that are
@@ -1936,6 +1955,14 @@ typedef struct {
   /// the contacts, the excitation and the response over the frequencies of the call, the largest
   /// of all points; 0 without a basis.
   double certificate;
+  /// Harmonic whose amplitude is that of the response: the lowest one in which a vibrating force
+  /// acts that is at least a thousandth of the largest; of a nonlinear mode 1.
+  int64_t response_harmonic;
+  /// 1: the first point was found from the given guess. 0: there was a guess, and no solution was
+  /// found from it; another way found the first point. -1: no guess was given.
+  int32_t guess_used;
+  /// 0.
+  int32_t reserved2;
 } hbvib_reduction;
 
 /// Fills a reduction with zeros.
@@ -2331,11 +2358,11 @@ typedef struct {
   int64_t diameter;
   /// Number of the linear mode, contacts stuck, from 0 (default) by rising frequency.
   int64_t mode_index;
-  /// Above 0: the linear mode nearest to this angular frequency; mode_index is then ignored.
+  /// Above 0: the linear mode nearest to this angular frequency; mode_index must then be 0.
   /// 0: not used.
   double near_omega;
   /// The linear mode most similar to this shape, ndof complex numbers of one sector and of any
-  /// size; mode_index is then ignored. NULL: not used. near_omega must then be 0.
+  /// size. NULL: not used. mode_index and near_omega must then be 0.
   const double *shape;
   /// Complex numbers in shape.
   int64_t shape_len;
@@ -3242,9 +3269,9 @@ typedef struct {
   const double *at;
   /// Number of these values.
   int64_t at_len;
-  /// HBVIB_FOLLOW_MODE_MAX_DAMPING only: log10 of the modal amplitude from which the maximum of
-  /// damping is sought at the first value. Equal to log10_stop, as 0 and 0: from the onset of slip
-  /// to a thousand times its amplitude.
+  /// HBVIB_FOLLOW_MODE_MAX_DAMPING only, 0 for others: log10 of the modal amplitude from which
+  /// the maximum of damping is sought at the first value. Equal to log10_stop, as 0 and 0: from
+  /// the onset of slip to a thousand times its amplitude.
   double log10_start;
   /// The same up to which it is sought.
   double log10_stop;

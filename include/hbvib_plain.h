@@ -448,6 +448,9 @@ struct hbvib_reduction {
   int64_t held_by_contacts;
   int64_t basis;
   double certificate;
+  int64_t response_harmonic;
+  int32_t guess_used;
+  int32_t reserved2;
 };
 struct hbvib_energy {
   uint32_t struct_size;
@@ -686,6 +689,7 @@ int64_t hbvib_branch_stored(const hbvib_branch *branch);
 hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 hbvib_status hbvib_branch_field(const hbvib_branch *branch, int32_t field, hbvib_view *out);
+hbvib_status hbvib_branch_stored_field(const hbvib_branch *branch, int32_t field, hbvib_view *out);
 hbvib_status hbvib_branch_harmonics(const hbvib_branch *branch, int64_t point, int64_t first_dof, int64_t n_dof, double *x, int64_t x_len);
 hbvib_status hbvib_branch_harmonics_with_hooks(const hbvib_branch *branch, int64_t point, int64_t first_dof, int64_t n_dof, double *x, int64_t x_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_branch_time_history(const hbvib_branch *branch, int64_t point, int64_t dof, int64_t n, double *x);

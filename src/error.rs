@@ -138,7 +138,7 @@ impl Status {
                 "the response has no bound at an undamped resonance within the range; all points are kept; add damping"
             }
             Self::StoppedNoForce => {
-                "no force acts on the model: its response is zero, or the static motion under preloads; all points are kept; add a force"
+                "no force acts on the model: unless a law of the caller excites it by itself or a guess began at a motion of its own, the response is zero, or the static motion under preloads; all points are kept"
             }
             Self::StoppedNoPeak => {
                 "the amplitude has no maximum within the range; all points are kept; widen the range of frequency"

@@ -349,7 +349,8 @@ class Field(enum.IntEnum):
     """Results that a branch holds for each point of the curve.
 
     OMEGA   Angular frequency.
-    AMPLITUDE   Peak amplitude of the fundamental of the response degree of freedom.
+    AMPLITUDE   Peak amplitude of the response degree of freedom: of the fundamental, or of the harmonic that
+        hbvib_reduction names.
     DAMPING_RATIO   Nonlinear modes only: damping ratio D.
     ENERGY   Nonlinear modes only: T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the mean kinetic
         energy.
@@ -707,7 +708,7 @@ forced_options: uint32 struct_size; int32 reserved; double omega_start omega_sto
 view: uint32 struct_size; int32 scalar rank reserved; pointer data; int64 shape[3] stride[3]
 reduction: uint32 struct_size; int32 reserved; int64 sectors degrees_of_freedom coordinates contacts never_slipping
     inert harmonics_asked harmonics_carried unknowns response_dof; int32 mean_carried even_removed; int64
-    held_by_contacts basis; double certificate
+    held_by_contacts basis; double certificate; int64 response_harmonic; int32 guess_used reserved2
 energy: uint32 struct_size; int32 reserved; double twice_mean_kinetic kinetic_mean kinetic_peak potential_mean
     potential_peak wheel_kinetic_mean wheel_kinetic_peak wheel_potential_mean wheel_potential_peak structural_loss
     friction_loss
@@ -812,6 +813,7 @@ branch_stored: h -> int64
 branch_status: h
 view_init: view z
 branch_field: h i view
+branch_stored_field: h i view
 branch_harmonics: h l l l p l
 branch_harmonics_with_hooks: h l l l p l hooks
 branch_time_history: h l l l p
@@ -962,6 +964,7 @@ if TYPE_CHECKING:
         def hbvib_branch_status(self, branch: Any) -> int: ...
         def hbvib_view_init(self, v: Any, size_of_v: int) -> int: ...
         def hbvib_branch_field(self, branch: Any, field: int, out: Any) -> int: ...
+        def hbvib_branch_stored_field(self, branch: Any, field: int, out: Any) -> int: ...
         def hbvib_branch_harmonics(self, branch: Any, point: int, first_dof: int, n_dof: int, x: Any, x_len:
             int) -> int: ...
         def hbvib_branch_harmonics_with_hooks(self, branch: Any, point: int, first_dof: int, n_dof: int, x: Any, x_len:

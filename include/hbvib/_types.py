@@ -376,6 +376,11 @@ class Reduction(NamedTuple):
     certificate   Estimated relative error of the motion of the structure on its basis, under unit forces at the
         contacts, the excitation and the response over the frequencies of the call, the largest of all points; 0 without
         a basis.
+    response_harmonic   Harmonic whose amplitude is that of the response: the lowest one in which a vibrating force acts
+        that is at least a thousandth of the largest; of a nonlinear mode 1.
+    guess_used   1: the first point was found from the given guess. 0: there was a guess, and no solution was found from
+        it; another way found the first point. -1: no guess was given.
+    reserved2   0.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -400,6 +405,9 @@ class Reduction(NamedTuple):
     held_by_contacts: int
     basis: int
     certificate: float
+    response_harmonic: int
+    guess_used: int
+    reserved2: int
 
 
 class JacobianGap(NamedTuple):

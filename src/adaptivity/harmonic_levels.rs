@@ -173,7 +173,7 @@ fn automatic_numbers(options: &SolverOptions, forced: &[usize]) -> Result<Vec<us
     let base = if options.keep_even_harmonics {
         1
     } else {
-        forced.iter().fold(0, |g, &h| gcd(g, h)).max(1)
+        forced.iter().fold(options.content.base, |g, &h| gcd(g, h)).max(1)
     };
     let least = forced.iter().copied().max().unwrap_or(0).max(1);
     let mut numbers = Vec::new();

@@ -11,7 +11,7 @@ use crate::analysis::forced_equations::Equations;
 use crate::analysis::point_error::observed;
 use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_cache::SharedWaves;
-use crate::condense::{ModelCache, Reference, reduced_resonances};
+use crate::condense::{ModelCache, Reduction, Reference, reduced_resonances};
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, boxed, try_vec};
@@ -94,6 +94,7 @@ pub(super) struct ForcedDiscretised<'a> {
     estimates_each: bool,
     /// Newton iterations of the first point.
     first_iterations: usize,
+    guess_used: Option<bool>,
     /// Whether every contact was linear at the point of the curve recorded last.
     linear: bool,
     stability: Option<BranchStability<'a>>,
@@ -143,6 +144,7 @@ impl<'a> ForcedDiscretised<'a> {
             last_error: f64::NAN,
             estimates_each: solver.estimate_error,
             first_iterations: 0,
+            guess_used: None,
             linear: false,
             stability: match solver.stability {
                 Some(waves) => Some(BranchStability::new(model, waves, settings.start, interrupt)?),
@@ -156,6 +158,11 @@ impl<'a> ForcedDiscretised<'a> {
         self.first_iterations = first.iterations;
     }
 
+    /// Notes whether the first point was found from the given guess, if there was one.
+    pub fn note_guess(&mut self, used: Option<bool>) {
+        self.guess_used = used;
+    }
+
     /// The complete branch.
     pub fn finish(
         self: Box<Self>,
@@ -164,9 +171,12 @@ impl<'a> ForcedDiscretised<'a> {
         ending: &Ending,
         estimates: usize,
     ) -> Result<Box<Branch>> {
-        let reduction = self
-            .resolutions
-            .reduction(model, solver, self.recorder.branch().reduction())?;
+        let reduction = Reduction {
+            guess_used: self.guess_used,
+            ..self
+                .resolutions
+                .reduction(model, solver, self.recorder.branch().reduction())?
+        };
         self.recorder.finish(ending, reduction, estimates)
     }
 

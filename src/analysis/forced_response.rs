@@ -15,7 +15,7 @@ use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference};
-use crate::continuation::initial_point::{self, First};
+use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::{Detail, StepControl};
 use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, boxed, try_push, try_vec};
@@ -23,7 +23,8 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{ForcedOptions, SolverOptions};
+use crate::options::{Content, ForcedOptions, SolverOptions};
+use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
 
@@ -74,9 +75,19 @@ fn with_detail(
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
     solver.check()?;
-    range.check((solver.harmonics + 1).saturating_mul(model.ndof()))?;
+    range.check()?;
+    range.check_guess(model.ndof(), solver)?;
     model.check_response_dof(solver.response_dof)?;
     let interrupt = hooks.interrupt();
+    let with_guess;
+    let solver = match range.guess {
+        Some(guess) => {
+            let (content, _) = Content::of(guess, model.ndof());
+            with_guess = SolverOptions { content, ..*solver };
+            &with_guess
+        }
+        None => solver,
+    };
     let outcome = with_samples(solver, |solver| {
         follow(model, solver, (range, detail), hooks, &interrupt, trace)
     });
@@ -120,10 +131,10 @@ fn follow(
     let stuck = |highest, fewer: Option<&Condensed>| condensed(highest, Some(Reference::Stuck), fewer);
     let stuck = HarmonicLevels::new(model, solver, &forced, stuck)?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
-    let level = if levels.is_automatic() && range.guess.is_none() {
-        0
-    } else {
-        levels.first(solver.harmonics)
+    let level = match range.guess {
+        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess, model.ndof()).1),
+        _ if levels.is_automatic() => 0,
+        _ => levels.first(solver.harmonics),
     };
     let resolution = levels.at(level)?;
     let length = resolution.condensed.length();
@@ -178,6 +189,14 @@ fn follow(
             {
                 return Err(reason);
             }
+            let from_guess = way == Way::Newton(InitialGuess::Given);
+            if range.guess.is_some() && !from_guess {
+                hooks.log(
+                    LogLevel::Warn,
+                    "no solution was found from the given start; another way found this first point",
+                );
+            }
+            response.note_guess(range.guess.map(|_| from_guess));
             hooks.log(LogLevel::Info, way.sentence());
             response.note_first(&point);
             trace(&mut tracer, &mut response, point, hooks)
@@ -265,9 +284,7 @@ fn extended_models(wanted: bool) -> Result<ModelCache> {
 /// The harmonics in which forces act.
 pub(super) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     let mut forced = Vec::new();
-    let forces = model.excitation().forces().iter();
-    let degrees = model.structure().degrees();
-    for force in forces.filter(|f| f.value != Complex64::ZERO && !degrees.is_fixed(f.dof)) {
+    for force in model.acting_forces() {
         try_push(&mut forced, force.harmonic, "the forces")?;
     }
     Ok(forced)
@@ -338,7 +355,7 @@ fn forced_dof_with_largest_motion(
     interrupt: &Interrupt<'_>,
 ) -> Result<usize> {
     let set = condensed.set();
-    let observed = set.numbers().iter().position(|&h| h > 0).unwrap_or(0);
+    let observed = set.watched();
     let mut x = try_vec(condensed.ndof(), Complex64::ZERO, "the response")?;
     let rest = try_vec(condensed.coordinates(), Complex64::ZERO, "the response")?;
     Workspace::new(condensed, None)?.recover(condensed, observed, omega, &rest, &mut x, interrupt)?;

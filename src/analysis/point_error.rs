@@ -8,7 +8,7 @@ use crate::error_estimate::mode_error::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::options::{DampingForm, SolverOptions};
+use crate::options::{Content, DampingForm, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
 
@@ -59,7 +59,17 @@ pub fn estimate_at_with(
             solver.samples
         );
     }
-    let solver = &SolverOptions { samples, ..*solver };
+    // A guess may have had more harmonics than forces excite.
+    let set = branch.condensed_at(point).set();
+    let content = Content {
+        base: set.base(),
+        even: !set.is_odd(),
+    };
+    let solver = &SolverOptions {
+        samples,
+        content,
+        ..*solver
+    };
     let condensed = branch.condensed_at(point);
     let solved = Solved {
         condensed,
@@ -97,5 +107,5 @@ pub fn estimate_at_with(
 
 /// Position of the harmonic whose amplitude a forced response reports: the lowest above zero.
 pub(super) fn observed(condensed: &Condensed) -> usize {
-    condensed.set().numbers().iter().position(|&h| h > 0).unwrap_or(0)
+    condensed.set().watched()
 }

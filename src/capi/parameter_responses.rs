@@ -53,9 +53,9 @@ pub struct hbvib_parameter_options {
     pub at: *const f64,
     /// Number of these values.
     pub at_len: i64,
-    /// HBVIB_FOLLOW_MODE_MAX_DAMPING only, 0 for others: log10 of the modal amplitude from which the maximum of
-    /// damping is sought at the first value. Equal to log10_stop, as 0 and 0: from the onset of slip
-    /// to a thousand times its amplitude.
+    /// HBVIB_FOLLOW_MODE_MAX_DAMPING only, 0 for others: log10 of the modal amplitude from which
+    /// the maximum of damping is sought at the first value. Equal to log10_stop, as 0 and 0: from
+    /// the onset of slip to a thousand times its amplitude.
     pub log10_start: f64,
     /// The same up to which it is sought.
     pub log10_stop: f64,

@@ -60,7 +60,8 @@ pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbv
 pub enum hbvib_field {
     /// Angular frequency.
     HBVIB_OMEGA = 0,
-    /// Peak amplitude of the fundamental of the response degree of freedom.
+    /// Peak amplitude of the response degree of freedom: of the fundamental, or of the harmonic that
+    /// hbvib_reduction names.
     HBVIB_AMPLITUDE = 1,
     /// Nonlinear modes only: damping ratio D.
     HBVIB_DAMPING_RATIO = 2,

@@ -53,6 +53,14 @@ pub struct hbvib_reduction {
     /// the contacts, the excitation and the response over the frequencies of the call, the largest
     /// of all points; 0 without a basis.
     pub certificate: f64,
+    /// Harmonic whose amplitude is that of the response: the lowest one in which a vibrating force
+    /// acts that is at least a thousandth of the largest; of a nonlinear mode 1.
+    pub response_harmonic: i64,
+    /// 1: the first point was found from the given guess. 0: there was a guess, and no solution was
+    /// found from it; another way found the first point. -1: no guess was given.
+    pub guess_used: i32,
+    /// 0.
+    pub reserved2: i32,
 }
 
 unsafe impl VersionedStruct for hbvib_reduction {
@@ -78,6 +86,9 @@ unsafe impl VersionedStruct for hbvib_reduction {
             held_by_contacts: 0,
             basis: 0,
             certificate: 0.0,
+            response_harmonic: 0,
+            guess_used: -1,
+            reserved2: 0,
         }
     }
 }
@@ -122,6 +133,8 @@ pub unsafe extern "C" fn hbvib_branch_reduction(
             held_by_contacts: r.held_by_contacts as i64,
             basis: r.basis as i64,
             certificate: r.certificate,
+            response_harmonic: r.response_harmonic as i64,
+            guess_used: r.guess_used.map_or(-1, i32::from),
             ..hbvib_reduction::defaults()
         };
         unsafe { fill_out(out, value) };

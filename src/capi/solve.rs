@@ -15,7 +15,7 @@ use crate::analysis;
 use crate::error::{Result, fail};
 use crate::hooks::Hooks;
 use crate::model::Model;
-use crate::options::ForcedOptions;
+use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use core::ptr;
 use num_complex::Complex64;
@@ -60,7 +60,12 @@ pub struct hbvib_forced_options {
     pub at: *const f64,
     /// Number of these frequencies.
     pub at_len: i64,
-    /// Start values, complex (H + 1) x ndof, harmonic after harmonic, or NULL: the stuck solution.
+    /// Start values, complex (H + 1) x ndof, harmonic after harmonic with an H of their own, or NULL:
+    /// the stuck solution. The motion at the contacts counts; the imaginary part of the mean has
+    /// no effect. Harmonics that forces and laws do not excite by themselves (a subharmonic, the
+    /// mean and even harmonics of a symmetric model) are carried where the guess has them. One
+    /// above harmonics, or with a tolerance above max_harmonics, is refused. hbvib_reduction tells
+    /// whether the first point was found from the guess.
     pub guess: *const f64,
     /// Complex numbers in guess.
     pub guess_len: i64,
@@ -124,8 +129,7 @@ pub unsafe extern "C" fn hbvib_forced_response(
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
         let forced = unsafe { load(forced, 3) }?;
-        let guess_len = (solver.harmonics + 1).saturating_mul(model.ndof());
-        let forced = unsafe { forced_options(&forced, guess_len) }.with_argument(3)?;
+        let forced = unsafe { forced_options(&forced, model.ndof(), &solver) }.with_argument(3)?;
         unsafe {
             follow(hooks, out, forced.at.len(), |hooks| {
                 analysis::forced_response(&model, &solver, &forced, hooks)
@@ -134,18 +138,22 @@ pub unsafe extern "C" fn hbvib_forced_response(
     })
 }
 
-unsafe fn forced_options<'a>(o: &hbvib_forced_options, guess_len: usize) -> Result<ForcedOptions<'a>> {
+unsafe fn forced_options<'a>(
+    o: &hbvib_forced_options,
+    ndof: usize,
+    solver: &SolverOptions,
+) -> Result<ForcedOptions<'a>> {
     check_reserved(o.reserved, 3, "hbvib_forced_options")?;
     let at_len = count(o.at_len, 3, "at_len")?;
     let given = count(o.guess_len, 3, "guess_len")?;
     let guess = if o.guess.is_null() && given == 0 {
         None
-    } else if given == guess_len {
+    } else if given > 0 && given % ndof == 0 {
         Some(unsafe { input::<Complex64>(o.guess.cast(), given, 3, "guess") }?)
     } else {
         return fail!(
             Dimension,
-            "guess_len = {given}, needs (harmonics + 1) * ndof = {guess_len}"
+            "guess_len = {given}, needs (H + 1) * ndof, a multiple of {ndof}"
         );
     };
     let options = ForcedOptions {
@@ -154,7 +162,8 @@ unsafe fn forced_options<'a>(o: &hbvib_forced_options, guess_len: usize) -> Resu
         at: unsafe { input(o.at, at_len, 3, "at") }?,
         guess,
     };
-    options.check(guess_len)?;
+    options.check()?;
+    options.check_guess(ndof, solver)?;
     Ok(options)
 }
 

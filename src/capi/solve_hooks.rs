@@ -26,7 +26,8 @@ pub struct hbvib_progress {
     pub point: i64,
     /// Angular frequency; in a nonlinear mode log10 of the amplitude.
     pub parameter: f64,
-    /// Peak amplitude of the fundamental of the response degree of freedom.
+    /// Peak amplitude of the response degree of freedom: of the fundamental, or of the harmonic that
+    /// hbvib_reduction names.
     pub amplitude: f64,
     /// Relative residual.
     pub residual: f64,

@@ -21,7 +21,7 @@ use crate::condense::tied_load::TiedLoad;
 use crate::condense::wave_cache::{ALL_UP_TO, WaveCache};
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
-use crate::error::{Result, Status, try_push, try_vec};
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
@@ -371,8 +371,7 @@ impl Condensed {
 /// The harmonics in which forces act.
 pub(super) fn forced_harmonics(model: &Model, options: &SolverOptions) -> Result<Vec<usize>> {
     let mut forced = Vec::new();
-    let forces = model.excitation().forces().iter();
-    for force in forces.filter(|f| f.value != Complex64::ZERO) {
+    for force in model.acting_forces() {
         try_push(&mut forced, force.harmonic, "the forces")?;
     }
     forced.sort_unstable();
@@ -396,7 +395,18 @@ pub(super) fn carried(
         odd &= model.contacts()[i].law(1.0)?.is_odd();
     }
     let (highest, keep_all) = (options.harmonics, options.keep_even_harmonics);
-    HarmonicSet::excited(forced, highest, !active.is_empty(), odd, keep_all)
+    let mut excited = try_copy(forced, "the forces")?;
+    if !active.is_empty() {
+        // A linear structure has no other solution.
+        for number in options.content.numbers() {
+            try_push(&mut excited, number, "the forces")?;
+        }
+    }
+    let mut set = HarmonicSet::excited(&excited, highest, !active.is_empty(), odd, keep_all)?;
+    if let Some(number) = model.watched_harmonic().filter(|h| forced.contains(h)) {
+        set.watch(number);
+    }
+    Ok(set)
 }
 
 /// The reference stiffness with which a forced response of so many unknowns is quicker.

@@ -4,7 +4,9 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply, product};
+use crate::condense::dynamic_stiffness::{
+    DynamicStiffness, Variable, add_slope_product, fill_slope, multiply, product,
+};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;

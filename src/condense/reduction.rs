@@ -38,6 +38,10 @@ pub struct Reduction {
     pub basis: usize,
     /// Estimated relative error of the motion of the structure on a basis, the largest over the points; 0 without one.
     pub certificate: f64,
+    /// Number of the harmonic whose amplitude is that of the response.
+    pub response_harmonic: usize,
+    /// Whether the first point was found from the given guess; `None` without one.
+    pub guess_used: Option<bool>,
 }
 
 impl Condensed {
@@ -72,6 +76,8 @@ impl Condensed {
             held_by_contacts,
             basis: if self.is_reduced() { self.ndof() } else { 0 },
             certificate: self.certificate(),
+            response_harmonic: self.set.numbers().get(self.set.watched()).copied().unwrap_or(0),
+            guess_used: None,
         }
     }
 }

@@ -14,6 +14,8 @@ pub struct HarmonicSet {
     numbers: Vec<usize>,
     base: usize,
     stride: usize,
+    /// Number of the harmonic whose amplitude is that of a response.
+    watched: usize,
 }
 
 impl HarmonicSet {
@@ -52,7 +54,13 @@ impl HarmonicSet {
                 try_push(&mut numbers, h, "the list of harmonics")?;
             }
         }
-        Ok(Self { numbers, base, stride })
+        let watched = numbers.iter().copied().find(|&h| h > 0).unwrap_or(0);
+        Ok(Self {
+            numbers,
+            base,
+            stride,
+            watched,
+        })
     }
 
     /// All harmonics 0 … `highest`.
@@ -85,6 +93,19 @@ impl HarmonicSet {
     #[must_use]
     pub fn fundamental(&self) -> usize {
         self.numbers.iter().position(|&h| h == 1).unwrap_or(0)
+    }
+
+    /// Watches the amplitude of a harmonic, if it is carried; the lowest vibrating one is watched otherwise.
+    pub fn watch(&mut self, number: usize) {
+        if self.numbers.contains(&number) {
+            self.watched = number;
+        }
+    }
+
+    /// Position of the harmonic that is watched.
+    #[must_use]
+    pub fn watched(&self) -> usize {
+        self.numbers.iter().position(|&h| h == self.watched).unwrap_or(0)
     }
 
     /// Common divisor g of the carried harmonics.

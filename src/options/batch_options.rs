@@ -46,7 +46,7 @@ impl BatchOptions {
     /// # Errors
     /// `Argument` or `NotFinite`, naming the field, its value and its range.
     pub fn check(&self) -> Result<()> {
-        self.range().check(0)?;
+        self.range().check()?;
         if self.threads == 0 || self.threads > MOST_THREADS {
             return fail!(Argument, "threads = {}, needs 1 .. {MOST_THREADS}", self.threads);
         }

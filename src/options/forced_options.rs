@@ -1,6 +1,8 @@
 //! Options of a forced response.
 
 use crate::error::{Result, fail};
+use crate::options::content::Content;
+use crate::options::solver_options::{MAX_HARMONIC, SolverOptions};
 use num_complex::Complex64;
 
 /// Options of a forced response over a range of frequency.
@@ -12,16 +14,18 @@ pub struct ForcedOptions<'a> {
     pub omega_stop: f64,
     /// Angular frequencies within the range at which every solution on the branch is stored.
     pub at: &'a [f64],
-    /// Initial guess: complex, (H + 1) × ndof, harmonic by harmonic; `None`: the solution with stuck contacts.
+    /// Initial guess: complex, (H + 1) × ndof, harmonic by harmonic, with an H of its own; `None`: the solution with stuck
+    /// contacts. Of it the motion at the contacts counts. Harmonics that forces and laws do not excite by themselves, as a
+    /// subharmonic, a mean or even harmonics of a symmetric model, are carried where the guess has them.
     pub guess: Option<&'a [Complex64]>,
 }
 
 impl ForcedOptions<'_> {
-    /// Checks range, requested frequencies and guess (against `(harmonics + 1) * ndof`).
+    /// Checks range and requested frequencies.
     ///
     /// # Errors
-    /// `Argument`, `NotFinite` or `Dimension`, naming the field, its value and its range.
-    pub fn check(&self, guess_len: usize) -> Result<()> {
+    /// `Argument` or `NotFinite`, naming the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
         for (name, value) in [("omega_start", self.omega_start), ("omega_stop", self.omega_stop)] {
             if !value.is_finite() {
                 return fail!(NotFinite, "{name} = {value}, needs a finite angular frequency > 0");
@@ -42,16 +46,37 @@ impl ForcedOptions<'_> {
                 return fail!(Argument, "at[{i}] = {w}, needs a frequency within {low} .. {high}");
             }
         }
+        Ok(())
+    }
+
+    /// Checks the guess of a model of `ndof` degrees of freedom against the harmonics of a solver.
+    ///
+    /// # Errors
+    /// `Argument`, `NotFinite` or `Dimension`, naming its value and its range.
+    pub fn check_guess(&self, ndof: usize, solver: &SolverOptions) -> Result<()> {
         if let Some(guess) = self.guess {
-            if guess.len() != guess_len {
+            let rows = guess.len() / ndof.max(1);
+            if rows == 0 || rows * ndof != guess.len() || rows > MAX_HARMONIC + 1 {
                 return fail!(
                     Dimension,
-                    "guess has {} complex entries, needs (harmonics+1)*ndof = {guess_len}",
+                    "guess has {} complex entries, needs (H + 1) * ndof = (H + 1) * {ndof}, H = 0 .. {MAX_HARMONIC}",
                     guess.len()
                 );
             }
             if let Some(i) = guess.iter().position(|z| !z.is_finite()) {
                 return fail!(NotFinite, "guess[{i}] is not finite");
+            }
+            let (_, highest) = Content::of(guess, ndof);
+            let (name, most) = if solver.tolerance > 0.0 {
+                ("max_harmonics", solver.max_harmonics)
+            } else {
+                ("harmonics", solver.harmonics)
+            };
+            if highest > most {
+                return fail!(
+                    Argument,
+                    "guess has harmonic {highest}, but {name} = {most}; raise {name} to {highest}, or leave out what is above"
+                );
             }
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! Options of the analyses, each with its defaults and checks.
 
 mod batch_options;
+pub(crate) mod content;
 mod floquet_options;
 mod forced_options;
 mod mode_options;
@@ -10,6 +11,7 @@ mod time_options;
 mod waves;
 
 pub use batch_options::{BatchOptions, MOST_THREADS};
+pub use content::Content;
 pub use floquet_options::FloquetOptions;
 pub use forced_options::ForcedOptions;
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeOptions};

@@ -1,6 +1,7 @@
 //! Options of the solver, with their defaults and checks.
 
 use crate::error::{Result, fail};
+use crate::options::content::Content;
 use crate::options::waves::Waves;
 
 /// The way to the flexibility of the structure at the contacts.
@@ -70,6 +71,8 @@ pub struct SolverOptions {
     /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
     /// point; `None`: none. A nonlinear mode refuses it.
     pub stability: Option<Waves>,
+    /// Harmonics that are carried beyond those which forces and laws excite by themselves; an analysis with a guess sets it.
+    pub content: Content,
 }
 
 impl Default for SolverOptions {
@@ -93,6 +96,7 @@ impl Default for SolverOptions {
             certificate: 1e-8,
             memory_limit: 0,
             stability: None,
+            content: Content::default(),
         }
     }
 }

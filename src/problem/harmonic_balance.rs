@@ -82,7 +82,7 @@ impl<'a> HarmonicBalance<'a> {
             condensed,
             forces: Box::new(ContactForces::new(condensed, samples, interrupt)?),
             tables: FrequencyCache::new(condensed, response, range, interrupt)?,
-            observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
+            observed: set.watched(),
             given,
             loaded_at_rest,
             sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,

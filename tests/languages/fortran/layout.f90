@@ -265,6 +265,9 @@ contains
       call field('held_by_contacts', c_loc(s), c_loc(s%held_by_contacts), c_sizeof(s%held_by_contacts))
       call field('basis', c_loc(s), c_loc(s%basis), c_sizeof(s%basis))
       call field('certificate', c_loc(s), c_loc(s%certificate), c_sizeof(s%certificate))
+      call field('response_harmonic', c_loc(s), c_loc(s%response_harmonic), c_sizeof(s%response_harmonic))
+      call field('guess_used', c_loc(s), c_loc(s%guess_used), c_sizeof(s%guess_used))
+      call field('reserved2', c_loc(s), c_loc(s%reserved2), c_sizeof(s%reserved2))
    end subroutine reduction
 
    subroutine energy()
