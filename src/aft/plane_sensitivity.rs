@@ -85,7 +85,7 @@ impl PlaneSensitivity {
         for piece in &path.pieces {
             interrupt.check_before((self.directions * STAGES * m * m) as u64)?;
             let PlaneForce::Slip(panel) = &piece.force else {
-                self.add_session(out);
+                self.add_session(out, interrupt)?;
                 if piece.state() == State::Open {
                     self.carried = Carried::Nothing;
                 } else {
@@ -95,7 +95,7 @@ impl PlaneSensitivity {
                 continue;
             };
             if self.session.is_full() {
-                self.add_session(out);
+                self.add_session(out, interrupt)?;
             }
             self.begin_slip(law, path, piece, panel);
             if self.session.is_empty() {
@@ -104,7 +104,7 @@ impl PlaneSensitivity {
             self.session
                 .add(law, path, (piece, panel), &mut self.angle, interrupt)?;
         }
-        self.add_session(out);
+        self.add_session(out, interrupt)?;
         if matches!(path.repetition, Repetition::Returns) {
             self.close(law, path, end, out);
         }
@@ -255,13 +255,13 @@ impl PlaneSensitivity {
     }
 
     /// Adds the panels of slip that were collected.
-    fn add_session(&mut self, out: &mut Evaluation) {
+    fn add_session(&mut self, out: &mut Evaluation, interrupt: &Interrupt<'_>) -> Result<()> {
         if self.session.is_empty() {
-            return;
+            return Ok(());
         }
         let m = self.set.packed_len();
         let order = self.directions * m;
-        let by_first = self.session.add_to(&mut out.jacobian);
+        let by_first = self.session.add_to(&mut out.jacobian, interrupt)?;
         for (k, angle) in self.first_angle.iter().enumerate() {
             let column = if k < order {
                 &mut out.jacobian[k * order..][..2 * m]
@@ -271,6 +271,7 @@ impl PlaneSensitivity {
             add(column, *angle, by_first);
         }
         self.session.clear();
+        Ok(())
     }
 
     /// Adds the derivatives of the force at the start, which returns at the end.

@@ -17,6 +17,9 @@ use crate::interrupt::Interrupt;
 use crate::linalg::add_outer_products_to;
 use crate::linalg::lu::Lu;
 
+/// Products between two checks of a stop.
+const BETWEEN_CHECKS: usize = 10_000_000;
+
 /// Panels that are collected before they are added.
 const PANELS: usize = 16;
 
@@ -54,7 +57,7 @@ impl SlipSession {
         let order = directions * m;
         add_outer_products_to(
             (&weights, 2 * m),
-            (&rates, order),
+            (&rates, order, order),
             order,
             &mut memory(order.saturating_mul(order))?,
         );
@@ -175,7 +178,10 @@ impl SlipSession {
     }
 
     /// Adds the panels to a Jacobian over all motions, and returns λ of the first angle.
-    pub fn add_to(&mut self, jacobian: &mut [f64]) -> &[f64] {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn add_to(&mut self, jacobian: &mut [f64], interrupt: &Interrupt<'_>) -> Result<&[f64]> {
         let (m, d) = (self.set.packed_len(), self.directions);
         self.behind.fill(0.0);
         for k in (0..self.panels).rev() {
@@ -189,13 +195,20 @@ impl SlipSession {
             }
         }
         let nodes = self.panels * STAGES;
-        add_outer_products_to(
-            (&self.weights[..2 * m * nodes], 2 * m),
-            (&self.rates[..d * m * nodes], d * m),
-            d * m,
-            jacobian,
-        );
-        &self.behind
+        let rates = &self.rates[..d * m * nodes];
+        // So many columns that a stop waits for about a hundredth of a second.
+        let columns = (BETWEEN_CHECKS / (2 * m * nodes).max(1)).max(1);
+        for first in (0..d * m).step_by(columns) {
+            let count = columns.min(d * m - first);
+            interrupt.check_before((2 * m * nodes * count) as u64)?;
+            add_outer_products_to(
+                (&self.weights[..2 * m * nodes], 2 * m),
+                (&rates[first..], count, d * m),
+                d * m,
+                &mut jacobian[first * d * m..],
+            );
+        }
+        Ok(&self.behind)
     }
 }
 

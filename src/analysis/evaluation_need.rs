@@ -6,8 +6,9 @@ use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 
-/// Bytes above which the evaluation of a law is refused.
+/// Bytes above which the evaluation of a law is refused, and the same where its Jacobian is not asked for.
 const MOST_OF_A_LAW: usize = 16 << 30;
+const MOST_OF_A_FORCE: usize = 500_000_000;
 
 /// Bytes that suffice for the evaluation of a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 250 a sample, of which a law that
 /// is always sampled takes at most 128 (H + 1) by itself, and 1 MiB; in a plane the pieces of the path take 2 MiB (H + 1) at most.
@@ -46,17 +47,18 @@ fn need_of_a_residual(model: &Model, solver: &SolverOptions) -> Result<usize> {
     Ok(contacts.fold(matrices, usize::saturating_add))
 }
 
-/// Refuses the evaluation of a law that needs more than 16 GiB.
-pub fn allow_law(harmonics: usize, directions: usize, samples: usize) -> Result<()> {
+/// Refuses the evaluation of a law that needs more than 16 GiB, or without its Jacobian more than 500 MB.
+pub fn allow_law(harmonics: usize, directions: usize, samples: usize, jacobian: bool) -> Result<()> {
+    let most = if jacobian { MOST_OF_A_LAW } else { MOST_OF_A_FORCE };
     let need = need_of_a_law(harmonics, directions, samples);
-    if need <= MOST_OF_A_LAW {
+    if need <= most {
         return Ok(());
     }
     Err(beyond(format_args!(
         "the evaluation of a contact with {harmonics} harmonics and {samples} samples needs about {} MB, more than the {} MB that \
-         an evaluation may take; reduce harmonics or samples",
+         an evaluation may take (500 MB without jac, 16 GiB with it); reduce harmonics or samples",
         mega(need),
-        mega(MOST_OF_A_LAW)
+        mega(most)
     )))
 }
 

@@ -471,7 +471,7 @@ pub fn contact_evaluate_with(
     if let Some(i) = motion.iter().position(|z| !z.is_finite()) {
         return fail!(NotFinite, "motion[{i}] is not finite");
     }
-    allow_law(harmonics, directions, samples)?;
+    allow_law(harmonics, directions, samples, jacobian.is_some())?;
     let set = HarmonicSet::all(harmonics)?;
     let m = set.packed_len();
     let mut packed = try_vec(m * directions, 0.0, "a contact motion")?;

@@ -266,7 +266,7 @@ impl Condensed {
         let contact_classes = ContactClasses::new(model)?;
         let active = &contact_classes.active;
         let set = carried(model, options, forced, active)?;
-        let (assembled, representatives) = assign_coordinates(model, active)?;
+        let (assembled, representatives) = assign_coordinates(model, active, interrupt)?;
         let mut can_stick = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
         for at in &assembled {

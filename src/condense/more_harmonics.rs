@@ -31,7 +31,7 @@ impl Condensed {
             return Ok(None);
         }
         within_directly(options.memory_limit, model, set.numbers())?;
-        let (_, representatives) = assign_coordinates(model, active)?;
+        let (_, representatives) = assign_coordinates(model, active, interrupt)?;
         let contacts = (&self.contact_classes, &representatives[..]);
         let kappa = |c: usize, number: usize| self.reference.kappa(self.reference_stiffness[c], number);
         let mut blocks = Vec::new();

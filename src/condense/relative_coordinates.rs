@@ -1,9 +1,14 @@
 //! The relative coordinates: contacts between the same two degrees of freedom share one.
 
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_push, try_room, try_vec};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::spring::along;
 use num_complex::Complex64;
+
+/// Keys between two checks of a stop, and operations of one of them.
+const BETWEEN_CHECKS: usize = 1024;
+const OF_ONE_KEY: usize = 100;
 
 /// A direction of an active contact, and its relative coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -18,9 +23,13 @@ pub(super) type ContactDirection = (usize, usize);
 
 /// Assigns the directions of active contacts to unique relative coordinates. Returns the directions, contact after
 /// contact, and for each coordinate the (contact, direction) that represents it.
+///
+/// # Errors
+/// `OutOfMemory`; `StoppedByCaller`.
 pub(super) fn assign_coordinates(
     model: &Model,
     active: &[usize],
+    interrupt: &Interrupt<'_>,
 ) -> Result<(Vec<AssembledDirection>, Vec<ContactDirection>)> {
     const CONTEXT: &str = "the contacts";
     let structure = model.structure();
@@ -35,16 +44,22 @@ pub(super) fn assign_coordinates(
             try_push(&mut assembled, new, CONTEXT)?;
         }
     }
-    let key =
-        |p: AssembledDirection| structure.key(&structure.contact_motion(&model.contacts()[p.contact], p.direction));
+    // Each key once: a comparison takes less time than a key.
+    let mut keys = try_room(assembled.len(), CONTEXT)?;
+    for (i, p) in assembled.iter().enumerate() {
+        if i.is_multiple_of(BETWEEN_CHECKS) {
+            interrupt.check_before((BETWEEN_CHECKS * OF_ONE_KEY) as u64)?;
+        }
+        keys.push(structure.key(&structure.contact_motion(&model.contacts()[p.contact], p.direction)));
+    }
     let mut order = try_vec(assembled.len(), 0, CONTEXT)?;
     for (i, o) in order.iter_mut().enumerate() {
         *o = i;
     }
-    order.sort_unstable_by_key(|&i| (key(assembled[i]), i));
+    order.sort_unstable_by(|&i, &j| keys[i].cmp(&keys[j]).then(i.cmp(&j)));
     let mut representatives = Vec::new();
     for (k, &i) in order.iter().enumerate() {
-        if k == 0 || key(assembled[i]) != key(assembled[order[k - 1]]) {
+        if k == 0 || keys[i] != keys[order[k - 1]] {
             try_push(
                 &mut representatives,
                 (assembled[i].contact, assembled[i].direction),

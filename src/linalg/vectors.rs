@@ -142,11 +142,11 @@ impl WithSimd for Product<'_> {
     }
 }
 
-/// The first `rows` numbers of each column of a column-major matrix += Σⱼ aⱼ bⱼᵀ, over rows aⱼ of `rows` numbers and rows bⱼ that are as
-/// long as the matrix has columns; columns are `stride` apart.
+/// The first `rows` numbers of each column of a column-major matrix += Σⱼ aⱼ bⱼᵀ, over rows aⱼ of `rows` numbers and the first
+/// `columns` numbers of rows bⱼ that are `apart`, as many as the matrix has columns; columns are `stride` apart.
 pub fn add_outer_products_to(
     (a, rows): (&[f64], usize),
-    (b, columns): (&[f64], usize),
+    (b, columns, apart): (&[f64], usize, usize),
     stride: usize,
     matrix: &mut [f64],
 ) {
@@ -155,7 +155,7 @@ pub fn add_outer_products_to(
         MatMut::from_column_major_slice_with_stride_mut(matrix, rows, columns, stride),
         Accum::Add,
         MatRef::from_column_major_slice(a, rows, count),
-        MatRef::from_row_major_slice(b, count, columns),
+        MatRef::from_row_major_slice_with_stride(b, count, columns, apart),
         1.0,
         Par::Seq,
     );

@@ -27,6 +27,7 @@ use crate::interrupt::Interrupt;
 use crate::results::contact_loops::one_motion::ScalarOrbit;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, extrema, range, time};
 use crate::results::contact_loops::two_motions::CoupledOrbit;
+use crate::results::time_history::check_time;
 use std::f64::consts::PI;
 
 pub use period::{Account, Times};
@@ -103,6 +104,7 @@ impl<'a> Orbit<'a> {
             state: try_vec(n, State::Stick, CONTEXT)?,
         };
         for (j, row) in out.motion.chunks_exact_mut(d.max(1)).enumerate() {
+            check_time(interrupt, j, set)?;
             let tau = time(set, j, n);
             for (k, x) in row.iter_mut().enumerate() {
                 *x = jet(set, self.motion.signal(k), tau).x;
@@ -122,6 +124,7 @@ impl<'a> Orbit<'a> {
                 let orbit = ScalarOrbit::new(set, packed, law)?;
                 let rows = out.force.iter_mut().zip(&mut out.state).zip(&out.motion);
                 for (j, ((force, state), x)) in rows.enumerate() {
+                    check_time(interrupt, j, set)?;
                     (*force, *state) = orbit.at(time(set, j, n), *x);
                 }
             }
@@ -129,6 +132,7 @@ impl<'a> Orbit<'a> {
                 let orbit = CoupledOrbit::new(set, packed, law)?;
                 let rows = out.force.chunks_exact_mut(2).zip(&mut out.state);
                 for (j, ((force, state), x)) in rows.zip(out.motion.chunks_exact(2)).enumerate() {
+                    check_time(interrupt, j, set)?;
                     let found = orbit.at(time(set, j, n), [x[0], x[1]]);
                     force.copy_from_slice(&found.0);
                     *state = found.1;
@@ -136,7 +140,7 @@ impl<'a> Orbit<'a> {
             }
             Form::PlaneFriction(law) => plane_motion::followed(&self.motion, law, &mut out, interrupt)?,
             Form::Hysteretic(law) => from_samples::marched(&self.motion, law, self.samples, &mut out, interrupt)?,
-            Form::Memoryless(law) => from_samples::pointwise(&self.motion, law, &mut out)?,
+            Form::Memoryless(law) => from_samples::pointwise(&self.motion, law, &mut out, interrupt)?,
         }
         Ok(out)
     }

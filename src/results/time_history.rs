@@ -15,6 +15,10 @@ use std::sync::Arc;
 /// Largest number of times of a loop or a history.
 pub const MOST_TIMES: usize = 1 << 24;
 
+/// Times between two checks of a stop, and operations of a harmonic at one time.
+const BETWEEN_CHECKS: usize = 256;
+const OF_ONE_JET: usize = 10;
+
 /// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactLoop {
@@ -84,6 +88,7 @@ impl Branch {
         let (set, packed) = self.recover(point, 1, motion, interrupt)?;
         let mut history = try_vec(n, 0.0, "a time history")?;
         for (j, x) in history.iter_mut().enumerate() {
+            check_time(interrupt, j, &set)?;
             *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
         }
         Ok(history)
@@ -280,6 +285,17 @@ impl Branch {
         }
         Ok((set, packed))
     }
+}
+
+/// Checks a stop now and then, before the j-th value of a signal.
+///
+/// # Errors
+/// `StoppedByCaller`.
+pub(super) fn check_time(interrupt: &Interrupt<'_>, j: usize, set: &HarmonicSet) -> Result<()> {
+    if j.is_multiple_of(BETWEEN_CHECKS) {
+        interrupt.check_before((BETWEEN_CHECKS * OF_ONE_JET * (set.numbers().len() + 1)) as u64)?;
+    }
+    Ok(())
 }
 
 fn check_times(n: usize) -> Result<()> {

@@ -252,7 +252,7 @@ impl EventLoop {
             let theta = self.next_event(system, state);
             let h = self.polynomial.length;
             if let Some(r) = recorder.as_deref_mut() {
-                r.add(&self.polynomial, theta);
+                r.add(&self.polynomial, theta, system.interrupt)?;
             }
             if theta > 0.0 {
                 if let Some(variation) = variation.as_deref_mut() {

@@ -4,7 +4,9 @@
 //! quadrature computes to round-off on parts of at most four radians. A lapse of all sectors is the whole period of
 //! one: x₀(t + kT/n) is the motion at t of the sector k·j before.
 
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_vec};
+use crate::fourier::gcd;
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::time_integration::gauss::nodes;
@@ -18,6 +20,9 @@ const CONTEXT: &str = "the harmonics of the motion";
 /// Points of quadrature on each part.
 const POINTS: usize = 20;
 
+/// Harmonics, or times, between two checks of a stop.
+const BETWEEN_CHECKS: usize = 64;
+
 /// Largest angle of a part.
 const WIDEST: f64 = 4.0;
 
@@ -26,6 +31,61 @@ struct RequestedTime {
     time: f64,
     sector: usize,
     sample: usize,
+}
+
+/// The times of `count` samples of a period, in the order of time within a lapse, which `sectors` times makes a period.
+///
+/// Sample s lies at s·sectors/count lapses. With g = gcd(sectors, count) the times within a lapse are w·g/count, w = 0 … count/g − 1,
+/// and the samples of w are those with s·(sectors/g) ≡ w (mod count/g): g of them.
+struct RequestedTimes {
+    count: usize,
+    sectors: usize,
+    /// g
+    together: usize,
+    /// Inverse of sectors/g modulo count/g.
+    inverse: usize,
+}
+
+impl RequestedTimes {
+    fn new(count: usize, sectors: usize) -> Self {
+        let together = gcd(sectors, count.max(1));
+        let modulus = count.max(1) / together;
+        Self {
+            count,
+            sectors,
+            together,
+            inverse: inverse(sectors / together % modulus, modulus),
+        }
+    }
+
+    /// The i-th one in the order of time.
+    fn get(&self, system: (f64, usize), i: usize) -> Option<RequestedTime> {
+        if i >= self.count {
+            return None;
+        }
+        let (lapse, follower) = system;
+        let modulus = self.count / self.together;
+        let (w, k) = (i / self.together, i % self.together);
+        let sample = w * self.inverse % modulus + k * modulus;
+        // Whole parts of the period are counted exactly.
+        let part = sample * self.sectors / self.count;
+        Some(RequestedTime {
+            time: lapse * (w * self.together) as f64 / self.count as f64,
+            sector: back(part * follower, self.sectors),
+            sample,
+        })
+    }
+}
+
+/// x with a x ≡ 1 (mod m), for a and m without a common divisor, by Euclid's algorithm; 0 for m = 1.
+fn inverse(a: usize, m: usize) -> usize {
+    let (mut r, mut x) = ((m as i128, a as i128), (0_i128, 1_i128));
+    while r.1 > 0 {
+        let quotient = r.0 / r.1;
+        r = (r.1, r.0 - quotient * r.1);
+        x = (x.1, x.0 - quotient * x.1);
+    }
+    x.0.rem_euclid(m as i128) as usize
 }
 
 /// Harmonics and samples of a lapse.
@@ -37,9 +97,10 @@ pub(crate) struct HarmonicAnalysis {
     /// ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
     integrals: Vec<Complex64>,
     nodes: ([f64; POINTS], [f64; POINTS]),
-    /// Requested times in ascending order.
-    requested: Vec<RequestedTime>,
+    requested: RequestedTimes,
+    /// Number of requested times that are done.
     next: usize,
+    follower: usize,
     /// Motion of sector 0 at each sample.
     samples: Vec<f64>,
     x: Vec<f64>,
@@ -51,27 +112,15 @@ impl HarmonicAnalysis {
     /// Memory for harmonics 0 ..= `harmonics` and for `samples` times of the period.
     pub fn new(system: &System<'_>, harmonics: usize, samples: usize) -> Result<Self> {
         let n = system.order();
-        let mut requested = Vec::new();
-        for sample in 0..samples {
-            // Whole parts of the period are counted exactly.
-            let part = sample * system.sectors / samples;
-            let within = sample * system.sectors % samples;
-            let entry = RequestedTime {
-                time: system.lapse() * within as f64 / samples as f64,
-                sector: before(system, part),
-                sample,
-            };
-            try_push(&mut requested, entry, "the samples of the motion")?;
-        }
-        requested.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
         Ok(Self {
             ndof: system.ndof,
             sectors: system.sectors,
             omega: system.omega,
             integrals: try_vec((harmonics + 1).saturating_mul(n), Complex64::ZERO, CONTEXT)?,
             nodes: nodes(),
-            requested,
+            requested: RequestedTimes::new(samples, system.sectors),
             next: 0,
+            follower: system.follower,
             degrees: system.degrees.clone(),
             samples: try_vec(
                 samples.saturating_mul(system.degrees.given()),
@@ -85,13 +134,20 @@ impl HarmonicAnalysis {
     }
 
     /// Adds the part of a step up to θ.
-    pub fn add(&mut self, step: &StepPolynomial, theta: f64) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn add(&mut self, step: &StepPolynomial, theta: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         if theta <= 0.0 {
-            return;
+            return Ok(());
         }
         let n = self.ndof * self.sectors;
         let length = theta * step.length;
         for (h, integral) in self.integrals.chunks_exact_mut(n).enumerate() {
+            if h % BETWEEN_CHECKS == 0 {
+                let parts = (h as f64 * self.omega * length / WIDEST) as usize + 1;
+                interrupt.check_before((BETWEEN_CHECKS * (parts * POINTS * DEGREE + n * DEGREE)) as u64)?;
+            }
             let rate = h as f64 * self.omega;
             let moments = moments(&self.nodes, rate * length, step.degree);
             let mut scale = length * Complex64::cis(-rate * step.begin);
@@ -104,7 +160,10 @@ impl HarmonicAnalysis {
             }
         }
         let end = step.begin + length;
-        while let Some(requested) = self.requested.get(self.next) {
+        while let Some(requested) = self.requested.get((self.lapse, self.follower), self.next) {
+            if self.next.is_multiple_of(BETWEEN_CHECKS) {
+                interrupt.check_before((BETWEEN_CHECKS * n * DEGREE) as u64)?;
+            }
             // Round-off may leave the last times of a lapse just beyond its last step.
             if requested.time > end && end < self.lapse * (1.0 - 1e-12) {
                 break;
@@ -120,6 +179,7 @@ impl HarmonicAnalysis {
             );
             self.next += 1;
         }
+        Ok(())
     }
 
     /// The harmonics of all degrees of freedom in the caller's numbering, harmonic by harmonic.
@@ -177,8 +237,12 @@ impl HarmonicAnalysis {
 
 /// The sector whose present motion sector 0 repeats `parts` lapses later.
 fn before(system: &System<'_>, parts: usize) -> usize {
-    let back = parts * system.follower % system.sectors;
-    (system.sectors - back) % system.sectors
+    back(parts * system.follower, system.sectors)
+}
+
+/// The sector so many sectors before sector 0.
+fn back(count: usize, sectors: usize) -> usize {
+    (sectors - count % sectors) % sectors
 }
 
 /// ∫ θᵏ e^{−iαθ} dθ from 0 to 1, k = 0 ..= degree.
@@ -202,6 +266,37 @@ fn moments((c, b): &([f64; POINTS], [f64; POINTS]), angle: f64, degree: usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn requested_times_are_in_order_and_each_sample_is_among_them() {
+        let cases = [
+            (1, 1, 0),
+            (7, 1, 0),
+            (12, 8, 3),
+            (9, 24, 5),
+            (64, 24, 23),
+            (5, 5, 2),
+            (1000, 37, 11),
+        ];
+        for (count, sectors, follower) in cases {
+            let lapse = 0.7;
+            let times = RequestedTimes::new(count, sectors);
+            let mut seen = vec![false; count];
+            let mut last = 0.0;
+            for i in 0..count {
+                let requested = times.get((lapse, follower), i).unwrap();
+                let turned = requested.sample * sectors;
+                let within = lapse * (turned % count) as f64 / count as f64;
+                assert!((requested.time - within).abs() < 1e-12 && requested.time >= last);
+                let moved = turned / count * follower % sectors;
+                assert_eq!((requested.sector + moved) % sectors, 0);
+                assert!(!seen[requested.sample]);
+                seen[requested.sample] = true;
+                last = requested.time;
+            }
+            assert!(times.get((lapse, follower), count).is_none());
+        }
+    }
 
     #[test]
     fn moments_are_those_in_closed_form() {

@@ -8,12 +8,18 @@ use crate::error::{Result, try_vec};
 use crate::fourier::jet;
 use crate::interrupt::Interrupt;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, Times, sample, time};
+use crate::results::time_history::check_time;
 
 /// Forces of a law without memory at the motions in `out`, in one call.
 ///
 /// # Errors
-/// `OutOfMemory` and those of the law.
-pub(super) fn pointwise(motion: &PeriodicMotion<'_>, law: &dyn Memoryless, out: &mut Times) -> Result<()> {
+/// `OutOfMemory`, `StoppedByCaller` and those of the law.
+pub(super) fn pointwise(
+    motion: &PeriodicMotion<'_>,
+    law: &dyn Memoryless,
+    out: &mut Times,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
     let (n, d) = (out.state.len(), motion.directions);
     let memory = |size: usize| try_vec(size, 0.0, CONTEXT);
     let tangents = out.motion.len().saturating_mul(d);
@@ -22,6 +28,7 @@ pub(super) fn pointwise(motion: &PeriodicMotion<'_>, law: &dyn Memoryless, out: 
     // τ runs `base` times as fast as ωt.
     let rate = motion.set.base() as f64 * motion.omega;
     for (j, row) in v.chunks_exact_mut(d.max(1)).enumerate() {
+        check_time(interrupt, j, motion.set)?;
         let tau = time(motion.set, j, n);
         for (k, v) in row.iter_mut().enumerate() {
             *v = rate * jet(motion.set, motion.signal(k), tau).dx;
