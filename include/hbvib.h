@@ -154,13 +154,17 @@ typedef enum {
   /// An undamped resonance lies in the range, where the response has no bound; the amplitude there
   /// is what round-off makes of it. hbvib_last_error names the frequency.
   HBVIB_STOPPED_UNBOUNDED = 8,
-  /// No force acts on the model: its response is zero, or the static motion under preloads.
+  /// No force acts on the model: unless a law of the caller excites it by itself or a guess began
+  /// at a motion of its own, the response is zero, or the static motion under preloads.
   HBVIB_STOPPED_NO_FORCE = 9,
   /// Batches only: the amplitude has no maximum within the range.
   HBVIB_STOPPED_NO_PEAK = 10,
   /// Parameter responses only: the followed peak, or maximum of damping, met a minimum and
   /// vanished.
   HBVIB_STOPPED_PEAK_VANISHED = 11,
+  /// The curve is closed: it came back to its first point, and all of it within the range is
+  /// kept.
+  HBVIB_STOPPED_CLOSED = 12,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.

@@ -39,6 +39,8 @@ pub enum Status {
     StoppedNoPeak = 10,
     /// The followed peak, or maximum of damping, vanished: it met a minimum; the points found so far are kept.
     StoppedPeakVanished = 11,
+    /// The curve is closed, an isolated branch: it came back to its first point, and all of it within the range is kept.
+    StoppedClosed = 12,
     /// A required pointer is NULL.
     Null = -1,
     /// An argument has a value outside its range.
@@ -92,6 +94,7 @@ impl Status {
             Self::StoppedNoForce => c"HBVIB_STOPPED_NO_FORCE",
             Self::StoppedNoPeak => c"HBVIB_STOPPED_NO_PEAK",
             Self::StoppedPeakVanished => c"HBVIB_STOPPED_PEAK_VANISHED",
+            Self::StoppedClosed => c"HBVIB_STOPPED_CLOSED",
             Self::Null => c"HBVIB_E_NULL",
             Self::Argument => c"HBVIB_E_ARGUMENT",
             Self::Dimension => c"HBVIB_E_DIMENSION",
@@ -146,12 +149,15 @@ impl Status {
             Self::StoppedPeakVanished => {
                 "the followed maximum met a minimum and vanished; the points found so far are kept; follow another peak from there"
             }
+            Self::StoppedClosed => {
+                "the curve is closed: it came back to its first point, and all of it within the range is kept"
+            }
             _ => "",
         }
     }
 
     /// All values, for tables and for the conversion of an integer into a status.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 30] = [
         Self::Ok,
         Self::StoppedByCaller,
         Self::StoppedStepTooSmall,
@@ -164,6 +170,7 @@ impl Status {
         Self::StoppedNoForce,
         Self::StoppedNoPeak,
         Self::StoppedPeakVanished,
+        Self::StoppedClosed,
         Self::Null,
         Self::Argument,
         Self::Dimension,

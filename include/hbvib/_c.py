@@ -26,10 +26,12 @@ class Status(enum.IntEnum):
     STOPPED_CALLBACK   A force callback failed; hbvib_last_error has the code that it returned.
     STOPPED_UNBOUNDED   An undamped resonance lies in the range, where the response has no bound; the amplitude there is
         what round-off makes of it.
-    STOPPED_NO_FORCE   No force acts on the model: its response is zero, or the static motion under preloads.
+    STOPPED_NO_FORCE   No force acts on the model: unless a law of the caller excites it by itself or a guess began at a
+        motion of its own, the response is zero, or the static motion under preloads.
     STOPPED_NO_PEAK   Batches only: the amplitude has no maximum within the range.
     STOPPED_PEAK_VANISHED   Parameter responses only: the followed peak, or maximum of damping, met a minimum and
         vanished.
+    STOPPED_CLOSED   The curve is closed: it came back to its first point, and all of it within the range is kept.
     E_NULL   A required pointer is NULL.
     E_ARGUMENT   A value lies outside its range.
     E_DIMENSION   A count or length does not fit.
@@ -64,6 +66,7 @@ class Status(enum.IntEnum):
     STOPPED_NO_FORCE = 9
     STOPPED_NO_PEAK = 10
     STOPPED_PEAK_VANISHED = 11
+    STOPPED_CLOSED = 12
     E_NULL = -1
     E_ARGUMENT = -2
     E_DIMENSION = -3

@@ -72,6 +72,8 @@ pub(super) enum Stretch {
 enum Outside {
     /// It came back, after the folds that lie between these pairs of neighbours.
     Back(Point, Vec<(Point, Point)>),
+    /// It came back to its first point.
+    Closed,
     Gone,
 }
 
@@ -244,6 +246,7 @@ impl<'a> BranchTracer<'a> {
         let resolution = analysis.resolution();
         let (back, turns) = match self.follow_outside(analysis, exit, begin)? {
             Outside::Back(back, turns) => (back, turns),
+            Outside::Closed => return Ok(Return::Ended(Status::StoppedClosed)),
             Outside::Gone => return Ok(Return::Ended(Status::StoppedLeftRange)),
         };
         hooks.log(LogLevel::Info, "the branch left at its start and came back");
@@ -334,7 +337,10 @@ impl<'a> BranchTracer<'a> {
                     }
                 }
                 // A closed curve would be followed forever.
-                Ok(Advance::LeftAtStart { point }) if !same(point.unknowns(), begin.unknowns()) => {
+                Ok(Advance::LeftAtStart { point }) if same(point.unknowns(), begin.unknowns()) => {
+                    return Ok(Outside::Closed);
+                }
+                Ok(Advance::LeftAtStart { point }) => {
                     if SpecialPoint::Fold.between(&last, &point) {
                         let turn = (last, point.try_clone()?);
                         try_push(&mut turns, turn, "the folds outside the range")?;

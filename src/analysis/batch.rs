@@ -221,6 +221,15 @@ pub fn batch_within(
         parameter
             .check(model)
             .map_err(|e| e.at(format_args!("parameter {i}")))?;
+        if let Some(j) = parameters[..i]
+            .iter()
+            .position(|other| other.sets_the_same_as(parameter))
+        {
+            return fail!(
+                Argument,
+                "parameters {j} and {i} set the same number of the model: the last value would hold"
+            );
+        }
     }
     if parameters.is_empty() {
         return fail!(Dimension, "no parameters, needs at least one");

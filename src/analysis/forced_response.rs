@@ -10,6 +10,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::analysis::coarse_start::CoarseStart;
 use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
+use crate::analysis::odd_laws;
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
@@ -96,6 +97,7 @@ fn with_detail(
         outcome => *outcome?,
     };
     branch.set_origin(model, true);
+    odd_laws::check(model, &branch)?;
     Ok(branch)
 }
 

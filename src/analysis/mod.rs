@@ -24,6 +24,7 @@ mod mode_onset;
 mod mode_path;
 mod mode_start;
 pub mod nonlinear_mode;
+mod odd_laws;
 mod parameter_curve;
 pub mod parameter_range;
 pub mod parameter_response;

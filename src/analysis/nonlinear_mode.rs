@@ -9,6 +9,7 @@ use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::mode_equations::LinearStart;
 use crate::analysis::mode_path::{Onset, course, trace};
 use crate::analysis::mode_start::ModeStart;
+use crate::analysis::odd_laws;
 use crate::analysis::sampling::{Sampled, required, with_samples};
 use crate::condense::Condensed;
 use crate::condense::wave_cache::SharedWaves;
@@ -101,9 +102,10 @@ pub fn nonlinear_mode(
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome.map(|branch| *branch),
     }
-    .map(|mut branch| {
+    .and_then(|mut branch| {
         branch.set_origin(given, range.diameter.is_none());
-        branch
+        odd_laws::check(model, &branch)?;
+        Ok(branch)
     })
 }
 

@@ -182,7 +182,9 @@ pub fn synthesise_with(
         }
         if let Some(state) = refinement.between(k - 1, a, b)? {
             let backwards = states[k].log10 < states[k - 1].log10;
-            let at = state.at_peak();
+            let Some(at) = state.at_peak() else {
+                continue;
+            };
             let error = if options.compare {
                 let damping = |h: usize| -> Result<Option<Csc>> {
                     Ok(if options.model_damping {

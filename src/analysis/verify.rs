@@ -5,13 +5,14 @@
 //! over the period and the degrees of freedom, ‖x‖² = |X₀|² + ½ Σₕ |Xₕ|², so that parts of a distance add up by
 //! their squares.
 
-use crate::analysis::time_response::{TimeResponse, time_response};
+use crate::analysis::time_response::TimeResponse;
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::options::{TimeOptions, VerifyOptions};
+use crate::options::{SteadyMethod, TimeOptions, VerifyOptions};
 use crate::results::Branch;
+use crate::time_integration::solve_disturbed;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -128,7 +129,18 @@ pub fn verify(
         start: Some(&x),
     };
     let time = match recovered {
-        Ok(()) => time_response(model, &options_in_time, hooks)?,
+        Ok(()) => {
+            options_in_time.check(model.ndof())?;
+            model.check_matrices(false)?;
+            // Marching from the point itself would keep an unstable motion whose symmetry it has.
+            let disturbance = match options.method {
+                SteadyMethod::Marching => DISTURBANCE
+                    .max(MORE_THAN_STEADY * options.tolerance)
+                    .min(MOST_DISTURBED),
+                SteadyMethod::Shooting => 0.0,
+            };
+            solve_disturbed(model, &options_in_time, disturbance, hooks)?
+        }
         Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, &options_in_time)?,
         Err(e) => return Err(e),
     };
@@ -148,6 +160,12 @@ pub fn verify(
     }
     Ok(found)
 }
+
+/// Disturbance of a start that is marched, relative to the motion: at least this, and so much more than the change over a period
+/// that counts as steady.
+const DISTURBANCE: f64 = 1e-6;
+const MORE_THAN_STEADY: f64 = 1e3;
+const MOST_DISTURBED: f64 = 1e-3;
 
 /// Smallest number of times of a period at which motions are compared.
 const FEWEST_TIMES: usize = 1024;

@@ -35,6 +35,24 @@ impl Parameter<'_> {
         }
     }
 
+    /// Whether two parameters set the same constant or speed; factors and directions act one after the other.
+    pub(crate) fn sets_the_same_as(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::Contact {
+                    constant: a,
+                    contact: x,
+                },
+                Self::Contact {
+                    constant: b,
+                    contact: y,
+                },
+            ) => a == b && (x.is_none() || y.is_none() || x == y),
+            (Self::Speed, Self::Speed) => true,
+            _ => false,
+        }
+    }
+
     /// Factor on the derivative of a model that has the value: a factor or a force is relative to the one that the model
     /// has.
     pub(crate) fn relative_at(&self, value: f64) -> f64 {

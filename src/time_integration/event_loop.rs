@@ -55,6 +55,21 @@ impl State {
         })
     }
 
+    /// Adds a motion without any symmetry, whose size is a share of the largest displacement or velocity over ω. Signs without
+    /// pattern come from multiples of the golden ratio.
+    pub fn disturb(&mut self, share: f64, omega: f64) {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let size = largest(&self.x).max(largest(&self.v) / omega);
+        let size = if size > 0.0 { size } else { 1.0 };
+        for (values, unit) in [(&mut self.x, 1.0), (&mut self.v, omega)] {
+            for (i, x) in values.iter_mut().enumerate() {
+                let part = (i as f64 + 1.0) * GOLDEN;
+                *x += share * size * unit * (part - part.floor() - 0.3);
+            }
+        }
+    }
+
     /// Copies the values of another.
     pub fn set(&mut self, other: &Self) {
         self.x.copy_from_slice(&other.x);

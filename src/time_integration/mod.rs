@@ -24,6 +24,7 @@ pub use periodic_response::{TimeResponse, solve};
 pub(crate) use event_loop::{EventLoop, Observers, State};
 pub(crate) use harmonic_analysis::HarmonicAnalysis;
 pub(crate) use initial_state::{state_of, state_of_sector};
+pub(crate) use periodic_response::solve_disturbed;
 pub(crate) use perturbation_basis::PerturbationBasis;
 pub(crate) use shooting::{Search, Steady, check_shooting};
 pub(crate) use unrolled_structure::{System, refuse_massless, refuse_structural_damping};

@@ -56,8 +56,22 @@ pub struct TimeResponse {
 /// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` if no
 /// steady state was found, `NoBoundedSolution` if the motion grows without bound, `OutOfMemory`.
 pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
+    solve_disturbed(model, options, 0.0, hooks)
+}
+
+/// The same from a start that is disturbed by a share of its size, so that marching leaves an unstable motion even where the
+/// start has its symmetry.
+///
+/// # Errors
+/// As [`solve`].
+pub(crate) fn solve_disturbed(
+    model: &Model,
+    options: &TimeOptions<'_>,
+    disturbance: f64,
+    hooks: &mut Hooks<'_>,
+) -> Result<TimeResponse> {
     let interrupt = hooks.interrupt();
-    match integrate(model, options, hooks, &interrupt) {
+    match integrate(model, (options, disturbance), hooks, &interrupt) {
         Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, options),
         outcome => outcome,
     }
@@ -87,7 +101,7 @@ impl TimeResponse {
 
 fn integrate(
     model: &Model,
-    options: &TimeOptions<'_>,
+    (options, disturbance): (&TimeOptions<'_>, f64),
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<TimeResponse> {
@@ -97,10 +111,13 @@ fn integrate(
     }
     let mut system = System::new(model, options.omega, interrupt)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
-    let start = match options.start {
+    let mut start = match options.start {
         Some(harmonics) => state_of(model, &system, harmonics)?,
         None => State::rest(&system)?,
     };
+    if disturbance > 0.0 {
+        start.disturb(disturbance, options.omega);
+    }
     hooks.log(LogLevel::Info, "the structure in time is set up");
     let mut steady = Search::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
     let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;

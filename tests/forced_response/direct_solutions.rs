@@ -297,7 +297,7 @@ fn every_stored_point_of_sweeps_with_stuck_contacts_is_the_direct_solution() {
             for damping in DAMPINGS {
                 seed += 1;
                 // The largest ones take the most time.
-                if seed % (1 + n / 60) == 0 {
+                if seed % (1 + n as u64 / 60) == 0 {
                     compare(&Case::new(seed, n, shape, damping));
                 }
             }

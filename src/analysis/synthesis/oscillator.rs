@@ -127,13 +127,8 @@ impl State {
         }
     }
 
-    pub fn at_peak(&self) -> SynthesisPoint {
-        self.at(0.0).unwrap_or(SynthesisPoint {
-            omega: 0.0,
-            response: self.response,
-            modal_amplitude: self.square.sqrt(),
-            natural_omega: self.omega,
-            damping_ratio: self.damping,
-        })
+    /// The point of the largest response; `None` where the damping leaves none above zero frequency.
+    pub fn at_peak(&self) -> Option<SynthesisPoint> {
+        self.at(0.0).filter(|point| point.omega > 0.0)
     }
 }
