@@ -264,7 +264,7 @@ module hbvib
 
    !> Options of hbvib_nonlinear_mode.
    type, bind(c) :: hbvib_mode_options
-      integer(c_int32_t) :: struct_size = 96, damping_form = 0
+      integer(c_int32_t) :: struct_size = 128, damping_form = 0
       real(c_double) :: log10_start = 0, log10_stop = 0
       integer(c_int64_t) :: diameter = -1, mode_index = 1
       real(c_double) :: near_omega = 0
@@ -272,6 +272,9 @@ module hbvib
       integer(c_int64_t) :: shape_len = 0, amplitude_contact = -1
       type(c_ptr) :: at = c_null_ptr
       integer(c_int64_t) :: at_len = 0, reference_dof = -1
+      type(c_ptr) :: guess = c_null_ptr
+      integer(c_int64_t) :: guess_len = 0
+      real(c_double) :: guess_omega = 0, guess_damping = 0
    end type hbvib_mode_options
 
    !> Numbers of one point of a nonlinear mode, in the units of the caller; energies are of one sector.
@@ -2912,10 +2915,11 @@ contains
    end function model_parameter_response
 
    !> Nonlinear mode over log10 amplitudes log10_start .. log10_stop. mode: the other options, whose range is not looked at.
-   !> at: log10 of requested exact amplitudes. shape(ndof): the linear mode most similar to it. tolerance, harmonics,
+   !> at: log10 of requested exact amplitudes. shape(ndof): the linear mode most similar to it. guess(ndof, 0:H): motion near the
+   !> first point, whose frequency and damping ratio are mode%guess_omega and mode%guess_damping. tolerance, harmonics,
    !> response_dof: as in forced_response.
    function model_nonlinear_mode(self, branch, log10_start, log10_stop, mode, solver, hooks, at, shape, tolerance, harmonics, &
-      response_dof) result(status)
+      response_dof, guess) result(status)
       class(hbvib_model), intent(in) :: self
       type(hbvib_branch), intent(inout) :: branch
       real(dp), intent(in) :: log10_start, log10_stop
@@ -2926,6 +2930,7 @@ contains
       complex(dp), intent(in), contiguous, target, optional :: shape(:)
       real(dp), intent(in), optional :: tolerance
       integer, intent(in), optional :: harmonics, response_dof
+      complex(dp), intent(in), contiguous, target, optional :: guess(:, :)
       integer(i32) :: status
       type(hbvib_mode_options) :: m
       type(hbvib_solver_options), allocatable :: chosen
@@ -2949,6 +2954,11 @@ contains
       if (present(shape)) then
          m%shape_len = size(shape)
          if (size(shape) > 0) m%shape = c_loc(shape)
+      end if
+      if (present(guess)) then
+         call same_length(status, 'guess(:, 0)', size(guess, 1, i64), ndof)
+         m%guess_len = size(guess)
+         if (size(guess) > 0) m%guess = c_loc(guess)
       end if
       if (status == HBVIB_OK) status = hbvib_nonlinear_mode(self%handle, chosen, m, hooks, branch%handle)
    end function model_nonlinear_mode

@@ -2380,6 +2380,18 @@ typedef struct {
   /// Degree of freedom whose fundamental is real; -1 (default): the one that moves most in the
   /// linear mode.
   int64_t reference_dof;
+  /// Motion near the first point, complex (H + 1) x ndof, harmonic after harmonic with an H of
+  /// its own, at least 1, or NULL: the linear mode, from small amplitudes on. Its amplitude and
+  /// phase are made those of the first point. Harmonics that laws do not excite by themselves are
+  /// carried where the guess has them. hbvib_reduction tells whether the first point was found
+  /// from it.
+  const double *guess;
+  /// Complex numbers in guess.
+  int64_t guess_len;
+  /// Angular frequency of the guess, > 0; 0 without one.
+  double guess_omega;
+  /// Damping ratio of the guess; 0 without one.
+  double guess_damping;
 } hbvib_mode_options;
 
 /// Fills the options of a nonlinear mode with their defaults: the lowest mode of the model's wave,

@@ -382,6 +382,11 @@ struct ModeOptions : Filled<hbvib_mode_options, hbvib_mode_options_init> {
   ModeOptions& wanted(Span<const double> amplitudes) { return at = amplitudes.data(), at_len = amplitudes.length(), *this; }
   /// The linear mode most alike this one, ndof numbers.
   ModeOptions& alike(Span<const Complex> x) { return shape = detail::flat(x.data()), shape_len = x.length(), *this; }
+  /// Motion near the first point, (H + 1) x ndof of any H, with its angular frequency and damping ratio.
+  ModeOptions& start_from(Span<const Complex> x, double omega, double damping) {
+    guess = detail::flat(x.data()), guess_len = x.length(), guess_omega = omega, guess_damping = damping;
+    return *this;
+  }
 };
 
 /// Options of a response in time. Arrays handed in are borrowed until it was solved.

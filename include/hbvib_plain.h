@@ -497,6 +497,10 @@ struct hbvib_mode_options {
   const double *at;
   int64_t at_len;
   int64_t reference_dof;
+  const double *guess;
+  int64_t guess_len;
+  double guess_omega;
+  double guess_damping;
 };
 struct hbvib_mode_point {
   uint32_t struct_size;

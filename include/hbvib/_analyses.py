@@ -69,7 +69,8 @@ class _Analyses(_Matrices):
 
         omega     (start, stop) in rad per time unit, downward where stop is the lower; or one frequency.
         at        frequencies within the range at which every solution is computed exactly: Branch.at.
-        guess     start values, (H + 1, ndof) complex, such as Branch.harmonics gives.
+        guess     start values, (H + 1, ndof) complex with an H of their own, such as Branch.harmonics gives. Harmonics that
+                  forces and laws do not excite by themselves (a subharmonic, a mean) are carried where the guess has them.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points. True
                   shows a bar of tqdm, or a line on stderr where that is not installed.
         log       log(LogLevel, text), lines up to log_level.
@@ -99,6 +100,7 @@ class _Analyses(_Matrices):
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
                        shape: Optional[ArrayLike] = None, damping_form: DampingForms = DampingForm.MASS, diameter: int = -1,
                        mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1, reference_dof: int = -1,
+                       guess: Optional[ArrayLike] = None, guess_omega: float = 0, guess_damping: float = 0,
                        progress: Union[bool, Callable[[Progress], Any], None] = None,
                        log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                        cancel: Optional[CancelFlag] = None,
@@ -108,6 +110,8 @@ class _Analyses(_Matrices):
         log10_amplitude   (start, stop), rising: of sqrt(X_1^H M X_1), or with amplitude_contact of |Y_1| of a contact.
         at                log10 of amplitudes at which every solution is computed exactly.
         mode_index, near_omega, shape   the linear mode to start from: by number, frequency or likeness (ndof complex).
+        guess, guess_omega, guess_damping   a motion near the first point with its frequency and damping ratio, such as a
+                          point of another mode: branch.harmonics(p), branch.omega[p], branch.damping_ratio[p].
         damping_form      "mass" or "stiffness".     diameter, reference_dof   -1: chosen by the library.
         progress, log, log_level, cancel, phase   as in forced_response.
         Options of the solver, as there:
@@ -126,6 +130,8 @@ class _Analyses(_Matrices):
         options = _new("hbvib_mode_options", log10_start=start, log10_stop=stop, diameter=diameter,
                        damping_form=_member(DampingForm, damping_form), mode_index=mode_index, near_omega=near_omega,
                        amplitude_contact=amplitude_contact, reference_dof=reference_dof, **_counted_array("at", at),
+                       guess_omega=guess_omega, guess_damping=guess_damping,
+                       **_counted_array("guess", guess, np.complex128, [None, self.ndof]),
                        **_counted_array("shape", shape, np.complex128, [self.ndof]))
         return self._solve("hbvib_nonlinear_mode", solver, options, at, (progress, log, log_level, cancel, phase))
 

@@ -718,7 +718,8 @@ energy: uint32 struct_size; int32 reserved; double twice_mean_kinetic kinetic_me
 contact_summary: uint32 struct_size; int32 reserved; double work slip_share open_share half_range motion_min motion_max
     load_min load_max; int64 directions; double all_min[3] all_max[3]
 mode_options: uint32 struct_size; int32 damping_form; double log10_start log10_stop; int64 diameter mode_index; double
-    near_omega; pointer shape; int64 shape_len amplitude_contact; pointer at; int64 at_len reference_dof
+    near_omega; pointer shape; int64 shape_len amplitude_contact; pointer at; int64 at_len reference_dof; pointer guess;
+    int64 guess_len; double guess_omega guess_damping
 mode_point: uint32 struct_size; int32 reserved; double log10_amplitude omega damping_ratio modal_amplitude energy
     fundamental_share friction_loss structural_loss energy_damping_ratio assurance
 mode_info: uint32 struct_size; int32 multiple; int64 mode_index multiplicity reference_dof engine_order

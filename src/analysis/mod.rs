@@ -20,6 +20,7 @@ pub mod harmonic_residual;
 pub mod linear_contacts;
 mod mode_discretised;
 mod mode_equations;
+mod mode_guess;
 mod mode_onset;
 mod mode_path;
 mod mode_start;

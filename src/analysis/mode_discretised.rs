@@ -8,6 +8,7 @@ use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::analysis::mode_onset::OnsetSearch;
+use crate::condense::Reduction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, boxed, try_copy};
@@ -39,6 +40,7 @@ pub(super) struct ModeDiscretised<'a> {
     damping: f64,
     /// Fundamental of the previous point of the curve.
     before: Vec<Complex64>,
+    guess_used: Option<bool>,
     onsets: OnsetSearch,
 }
 
@@ -75,6 +77,7 @@ impl<'a> ModeDiscretised<'a> {
             estimates_each: solver.estimate_error,
             damping: start.linear.damping.abs(),
             before: Vec::new(),
+            guess_used: None,
         })
     }
 
@@ -86,6 +89,16 @@ impl<'a> ModeDiscretised<'a> {
     /// log₁₀ of the amplitudes up to which the mode is linear, see [`Epmc::linear_up_to`].
     pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
         self.resolutions.current.problem.linear_up_to(first)
+    }
+
+    /// Seeks the first point of this resolution near given unknowns.
+    pub fn set_guess(&mut self, guess: Vec<f64>) {
+        self.resolutions.current.problem.set_guess(guess);
+    }
+
+    /// Notes whether the first point was found from the given guess.
+    pub fn note_guess(&mut self, used: bool) {
+        self.guess_used = Some(used);
     }
 
     /// The linear mode as a point of the branch.
@@ -104,9 +117,12 @@ impl<'a> ModeDiscretised<'a> {
         if let Some(data) = self.recorder.branch_mut().mode_data_mut() {
             [data.info.slip_from, data.info.lift_off_from] = self.onsets.found();
         }
-        let reduction = self
-            .resolutions
-            .reduction(model, solver, self.recorder.branch().reduction())?;
+        let reduction = Reduction {
+            guess_used: self.guess_used,
+            ..self
+                .resolutions
+                .reduction(model, solver, self.recorder.branch().reduction())?
+        };
         self.recorder.finish(ending, reduction, estimates)
     }
 

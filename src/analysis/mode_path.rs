@@ -10,7 +10,7 @@ use crate::error::{Result, Status, fail};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::options::{ModeOptions, SolverOptions};
-use crate::problem::Problem;
+use crate::problem::{InitialGuess, Problem};
 use crate::results::SpecialKind;
 
 /// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset itself the branch
@@ -74,6 +74,7 @@ pub(super) fn trace(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,
     (settings, onset): (Settings, Onset),
+    guess: Option<Vec<f64>>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Status> {
@@ -81,6 +82,9 @@ pub(super) fn trace(
     let max_points = tracer.course().max_points;
     let linear_up_to = onset.linear_up_to;
     let level = mode.resolution();
+    if let Some(guess) = guess {
+        return from_guess(mode, tracer, settings, guess, hooks, interrupt);
+    }
     if start <= linear_up_to {
         // Nothing but the fundamental vibrates there.
         if mode.levels().is_automatic() {
@@ -119,6 +123,30 @@ pub(super) fn trace(
             _ => Err(e),
         },
     }
+}
+
+/// Records the branch from the point at the start of the range that a guess leads to.
+fn from_guess(
+    mode: &mut ModeDiscretised<'_>,
+    tracer: &mut BranchTracer<'_>,
+    settings: Settings,
+    guess: Vec<f64>,
+    hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Status> {
+    interrupt.phase(Phase::FirstPoint, 0.0)?;
+    mode.set_guess(guess);
+    let First { point, way } = initial_point::solve(mode.problem(), &settings, interrupt)?;
+    let used = way == Way::Newton(InitialGuess::Given);
+    if !used {
+        hooks.log(
+            LogLevel::Warn,
+            "no solution was found from the given start; another way found this first point",
+        );
+    }
+    mode.note_guess(used);
+    hooks.log(LogLevel::Info, way.sentence());
+    tracer.trace(mode, point, hooks)
 }
 
 /// Solutions at the requested amplitudes of the linear range, and of the gap between it and the first point beyond.

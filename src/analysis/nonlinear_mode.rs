@@ -7,6 +7,7 @@ use crate::adaptivity::discretised::Recorder;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::mode_equations::LinearStart;
+use crate::analysis::mode_guess;
 use crate::analysis::mode_path::{Onset, course, trace};
 use crate::analysis::mode_start::ModeStart;
 use crate::analysis::odd_laws;
@@ -21,7 +22,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::repeated_modes::Multiple;
-use crate::options::{Flexibility, ModeOptions, SolverOptions};
+use crate::options::{Content, Flexibility, ModeOptions, SolverOptions, check_highest};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
 use crate::results::Branch;
@@ -98,6 +99,16 @@ pub fn nonlinear_mode(
     let separate = model.with_separate_loss()?;
     let model = &*separate;
     let interrupt = hooks.interrupt();
+    let with_guess;
+    let solver = match &range.guess {
+        Some(guess) => {
+            let (content, highest) = Content::of(guess.motion, model.ndof());
+            check_highest(highest, solver)?;
+            with_guess = SolverOptions { content, ..*solver };
+            &with_guess
+        }
+        None => solver,
+    };
     match with_samples(solver, |solver| on_wave(model, solver, range, hooks, &interrupt)) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome.map(|branch| *branch),
@@ -160,7 +171,10 @@ fn on_wave(
         // With many degrees of freedom sums over modes with their derivatives take no less time than factorisations.
         waves.attach(model, (condensed, 0), interrupt)
     })?;
-    let level = levels.first(solver.harmonics);
+    let level = match &range.guess {
+        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess.motion, model.ndof()).1),
+        _ => levels.first(solver.harmonics),
+    };
     let resolution = levels.at(level)?;
     start.check_motion(&resolution.condensed)?;
     let reference_dof = model.structure().degrees().origin(gauge.reference_dof);
@@ -190,12 +204,20 @@ fn on_wave(
         interrupt,
     };
     let mut mode = boxed(|| ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator))?;
-    let (linear_up_to, nearly) = mode.linear_up_to(range.log10_start)?;
+    let guess = range
+        .guess
+        .map(|guess| mode_guess::unknowns(resolution, (linear, gauge), &guess))
+        .transpose()?;
+    let (linear_up_to, nearly) = match guess {
+        // All of the range is nonlinear.
+        Some(_) => (f64::NEG_INFINITY, f64::NEG_INFINITY),
+        None => mode.linear_up_to(range.log10_start)?,
+    };
     mode.set_mode(start.data(model, range, linear_up_to)?);
     let onset = Onset { linear_up_to, nearly };
     let (course, settings) = course(solver, range, settings, onset);
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
-    let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt)
+    let outcome = trace(&mut mode, &mut tracer, (settings, onset), guess, hooks, interrupt)
         .map_err(|e| if linear.rest.is_loaded() { about_static(e) } else { e });
     if let Some(factor) = required(solver, &*mode) {
         return Ok(Err(factor));

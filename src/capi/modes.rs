@@ -14,7 +14,7 @@ use super::versioned_struct::{VersionedStruct, init, load};
 use crate::analysis;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
-use crate::options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
+use crate::options::{Amplitude, DampingForm, ModeChoice, ModeGuess, ModeOptions};
 use core::ptr;
 use num_complex::Complex64;
 
@@ -63,6 +63,18 @@ pub struct hbvib_mode_options {
     /// Degree of freedom whose fundamental is real; -1 (default): the one that moves most in the
     /// linear mode.
     pub reference_dof: i64,
+    /// Motion near the first point, complex (H + 1) x ndof, harmonic after harmonic with an H of
+    /// its own, at least 1, or NULL: the linear mode, from small amplitudes on. Its amplitude and
+    /// phase are made those of the first point. Harmonics that laws do not excite by themselves are
+    /// carried where the guess has them. hbvib_reduction tells whether the first point was found
+    /// from it.
+    pub guess: *const f64,
+    /// Complex numbers in guess.
+    pub guess_len: i64,
+    /// Angular frequency of the guess, > 0; 0 without one.
+    pub guess_omega: f64,
+    /// Damping ratio of the guess; 0 without one.
+    pub guess_damping: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_mode_options {
@@ -84,6 +96,10 @@ unsafe impl VersionedStruct for hbvib_mode_options {
             at: ptr::null(),
             at_len: 0,
             reference_dof: -1,
+            guess: ptr::null(),
+            guess_len: 0,
+            guess_omega: 0.0,
+            guess_damping: 0.0,
         }
     }
 }
@@ -188,9 +204,27 @@ unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> Result<Mode
         at: unsafe { input(o.at, at_len, 3, "at") }?,
         damping_form,
         reference_dof: optional(o.reference_dof, model.ndof(), "reference_dof", "automatic")?,
+        guess: unsafe { guess(o) }?,
     };
     options.check(model.ndof(), model.contacts().len(), sectors)?;
     Ok(options)
+}
+
+unsafe fn guess<'a>(o: &hbvib_mode_options) -> Result<Option<ModeGuess<'a>>> {
+    let count = count(o.guess_len, 3, "guess_len")?;
+    if o.guess.is_null() && count == 0 {
+        for (name, value) in [("guess_omega", o.guess_omega), ("guess_damping", o.guess_damping)] {
+            if value != 0.0 {
+                return fail!(Argument, "{name} = {value} without a guess, needs 0");
+            }
+        }
+        return Ok(None);
+    }
+    Ok(Some(ModeGuess {
+        motion: unsafe { input::<Complex64>(o.guess.cast(), count, 3, "guess") }?,
+        omega: o.guess_omega,
+        damping_ratio: o.guess_damping,
+    }))
 }
 
 unsafe fn choice<'a>(o: &hbvib_mode_options, ndof: usize) -> Result<ModeChoice<'a>> {

@@ -66,19 +66,27 @@ impl ForcedOptions<'_> {
             if let Some(i) = guess.iter().position(|z| !z.is_finite()) {
                 return fail!(NotFinite, "guess[{i}] is not finite");
             }
-            let (_, highest) = Content::of(guess, ndof);
-            let (name, most) = if solver.tolerance > 0.0 {
-                ("max_harmonics", solver.max_harmonics)
-            } else {
-                ("harmonics", solver.harmonics)
-            };
-            if highest > most {
-                return fail!(
-                    Argument,
-                    "guess has harmonic {highest}, but {name} = {most}; raise {name} to {highest}, or leave out what is above"
-                );
-            }
+            check_highest(Content::of(guess, ndof).1, solver)?;
         }
         Ok(())
     }
+}
+
+/// Refuses a guess whose highest harmonic that counts lies above those of a solver.
+///
+/// # Errors
+/// `Argument`, naming the option.
+pub(crate) fn check_highest(highest: usize, solver: &SolverOptions) -> Result<()> {
+    let (name, most) = if solver.tolerance > 0.0 {
+        ("max_harmonics", solver.max_harmonics)
+    } else {
+        ("harmonics", solver.harmonics)
+    };
+    if highest > most {
+        return fail!(
+            Argument,
+            "guess has harmonic {highest}, but {name} = {most}; raise {name} to {highest}, or leave out what is above"
+        );
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Options of a nonlinear mode.
 
 use crate::error::{Result, fail};
+use crate::options::solver_options::MAX_HARMONIC;
 use num_complex::Complex64;
 
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
@@ -58,6 +59,18 @@ impl ModeChoice<'_> {
     }
 }
 
+/// A motion near which the first point of a nonlinear mode lies, such as a point of another mode or above an internal resonance.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeGuess<'a> {
+    /// Complex, (H + 1) × ndof, harmonic by harmonic, with an H of its own, at least 1. Its amplitude and phase are made those of
+    /// the first point; harmonics that laws do not excite by themselves are carried where the guess has them.
+    pub motion: &'a [Complex64],
+    /// Angular frequency, rad per time unit, above zero.
+    pub omega: f64,
+    /// Damping ratio.
+    pub damping_ratio: f64,
+}
+
 /// Quantity that measures the amplitude of a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Amplitude {
@@ -87,6 +100,8 @@ pub struct ModeOptions<'a> {
     /// Degree of freedom that fixes the phase: its fundamental is real. `None`: the one that moves
     /// most in the linear mode.
     pub reference_dof: Option<usize>,
+    /// Motion near the first point; `None`: the linear mode, from small amplitudes on.
+    pub guess: Option<ModeGuess<'a>>,
 }
 
 impl Default for ModeOptions<'_> {
@@ -100,6 +115,7 @@ impl Default for ModeOptions<'_> {
             at: &[],
             damping_form: DampingForm::Mass,
             reference_dof: None,
+            guess: None,
         }
     }
 }
@@ -149,6 +165,33 @@ impl ModeOptions<'_> {
                 return fail!(
                     Argument,
                     "at[{i}] = {a}, needs the log10 of an amplitude within {start} .. {stop}"
+                );
+            }
+        }
+        if let Some(guess) = &self.guess {
+            let rows = guess.motion.len() / ndof.max(1);
+            if rows < 2 || rows * ndof != guess.motion.len() || rows > MAX_HARMONIC + 1 {
+                return fail!(
+                    Dimension,
+                    "guess has {} complex entries, needs (H + 1) * ndof = (H + 1) * {ndof}, H = 1 .. {MAX_HARMONIC}",
+                    guess.motion.len()
+                );
+            }
+            if let Some(i) = guess.motion.iter().position(|z| !z.is_finite()) {
+                return fail!(NotFinite, "guess[{i}] is not finite");
+            }
+            if !(guess.omega > 0.0 && guess.omega.is_finite()) {
+                return fail!(
+                    Argument,
+                    "guess_omega = {}, needs an angular frequency > 0",
+                    guess.omega
+                );
+            }
+            if !guess.damping_ratio.is_finite() {
+                return fail!(
+                    NotFinite,
+                    "guess_damping = {}, needs a finite number",
+                    guess.damping_ratio
                 );
             }
         }

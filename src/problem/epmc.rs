@@ -97,6 +97,8 @@ pub struct Epmc<'a> {
     by_omega: Vec<f64>,
     by_damping: Vec<f64>,
     gauge_rows: Vec<[Complex64; 2]>,
+    /// Unknowns given for the first point.
+    guess: Option<Vec<f64>>,
 }
 
 impl<'a> Epmc<'a> {
@@ -140,7 +142,13 @@ impl<'a> Epmc<'a> {
             by_omega: try_vec(unknowns, 0.0, CONTEXT)?,
             by_damping: try_vec(unknowns, 0.0, CONTEXT)?,
             gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
+            guess: None,
         })
+    }
+
+    /// Gives the unknowns near which the first point is sought.
+    pub fn set_guess(&mut self, guess: Vec<f64>) {
+        self.guess = Some(guess);
     }
 
     /// Frequency and damping ratio that belong to unknowns.
@@ -450,10 +458,11 @@ impl Problem for Epmc<'_> {
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
-        if kind != InitialGuess::Stuck {
-            return Ok(false);
+        match (kind, &self.guess) {
+            (InitialGuess::Given, Some(guess)) => u.copy_from_slice(guess),
+            (InitialGuess::Stuck, _) => self.linear_start(u),
+            (InitialGuess::Given | InitialGuess::Reference, _) => return Ok(false),
         }
-        self.linear_start(u);
         Ok(true)
     }
 

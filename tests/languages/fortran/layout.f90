@@ -322,6 +322,10 @@ contains
       call field('at', c_loc(s), c_loc(s%at), c_sizeof(s%at))
       call field('at_len', c_loc(s), c_loc(s%at_len), c_sizeof(s%at_len))
       call field('reference_dof', c_loc(s), c_loc(s%reference_dof), c_sizeof(s%reference_dof))
+      call field('guess', c_loc(s), c_loc(s%guess), c_sizeof(s%guess))
+      call field('guess_len', c_loc(s), c_loc(s%guess_len), c_sizeof(s%guess_len))
+      call field('guess_omega', c_loc(s), c_loc(s%guess_omega), c_sizeof(s%guess_omega))
+      call field('guess_damping', c_loc(s), c_loc(s%guess_damping), c_sizeof(s%guess_damping))
    end subroutine mode_options
 
    subroutine mode_point()
