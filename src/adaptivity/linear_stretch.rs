@@ -60,6 +60,11 @@ impl BranchTracer<'_> {
     ) -> Result<Option<Stretch>> {
         self.make_grid(analysis, hooks)?;
         let settings = self.course.settings;
+        // Between points of a linear response only the parameter counts.
+        let most = settings
+            .steps
+            .bound()
+            .map_or(f64::INFINITY, |bound| bound * (settings.end - settings.start).abs());
         let rising = from.tangent[from.tangent.len() - 1] > 0.0;
         let mut here = analysis.transfer(from, resolution)?;
         loop {
@@ -70,7 +75,7 @@ impl BranchTracer<'_> {
             let Some(grid) = &self.linear_grid else {
                 return Ok(None);
             };
-            let Some(value) = grid.after(here.parameter(), rising) else {
+            let Some(value) = grid.after(here.parameter(), rising, most) else {
                 return Ok(None);
             };
             let (point, onset) = match self.next_linear(analysis, &here, value)? {

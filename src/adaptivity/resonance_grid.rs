@@ -48,14 +48,14 @@ impl LinearGrid {
         })
     }
 
-    /// The next value beyond another one.
-    pub fn after(&self, value: f64, rising: bool) -> Option<f64> {
+    /// The next value beyond another one, at a distance of at most `most`.
+    pub fn after(&self, value: f64, rising: bool, most: f64) -> Option<f64> {
         if rising {
             let next = self.values.partition_point(|&x| x <= value);
-            return self.values.get(next).copied();
+            return self.values.get(next).map(|next| next.min(value + most));
         }
         let next = self.values.partition_point(|&x| x < value);
-        next.checked_sub(1).map(|i| self.values[i])
+        next.checked_sub(1).map(|i| self.values[i].max(value - most))
     }
 }
 
@@ -117,6 +117,23 @@ fn values(resonances: &[Resonance], (low, high): (f64, f64)) -> Result<Vec<f64>>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_distance_of_neighbours_has_a_bound_if_one_is_given() {
+        let grid = LinearGrid::new(&[], (0.0, 1.0)).unwrap();
+        for (most, count) in [(f64::INFINITY, BASE), (0.01, 3 * BASE)] {
+            for rising in [true, false] {
+                let (mut at, end) = if rising { (0.0, 1.0) } else { (1.0, 0.0) };
+                let mut steps = 0;
+                while let Some(next) = grid.after(at, rising, most) {
+                    assert!((next - at).abs() <= most * (1.0 + 1e-12) && (next > at) == rising);
+                    at = next;
+                    steps += 1;
+                }
+                assert_eq!((at, steps), (end, count));
+            }
+        }
+    }
 
     #[test]
     fn points_are_dense_at_each_of_many_resonances_and_few() {

@@ -63,7 +63,8 @@ pub struct hbvib_solver_options {
     pub step: f64,
     /// Smallest step; 0 = automatic.
     pub step_min: f64,
-    /// Largest step; 0 = automatic.
+    /// Largest step; 0 = automatic. Where every contact is linear, points lie at the resonances,
+    /// and this is the largest share of the range between neighbours.
     pub step_max: f64,
     /// Relative residual of a converged point.
     pub tol_residual: f64,

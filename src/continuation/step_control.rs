@@ -122,6 +122,12 @@ impl StepControl {
         self.max
     }
 
+    /// The largest step that the caller gave.
+    #[must_use]
+    pub fn bound(&self) -> Option<f64> {
+        self.has_bound.then_some(self.max)
+    }
+
     /// Whether the step to try is the largest one that the caller allows.
     #[must_use]
     pub fn is_bounded_by_caller(&self) -> bool {

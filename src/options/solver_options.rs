@@ -40,7 +40,8 @@ pub struct SolverOptions {
     pub step: f64,
     /// Smallest step, below which the branch ends; `0`: automatic. An automatic largest step is never below it.
     pub step_min: f64,
-    /// Largest step; `0`: automatic.
+    /// Largest step; `0`: automatic. Where every contact is linear, points lie at the resonances, and this is the largest share of
+    /// the range between neighbours.
     pub step_max: f64,
     /// Residual, relative to the contact motion, at which a point counts as converged. A last Newton correction
     /// follows, so that the error of the solution is far below this value. Where short steps follow a smooth branch,
