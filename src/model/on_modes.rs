@@ -24,7 +24,7 @@ const CONTEXT: &str = "the model on modes";
 pub(crate) struct ShapesOfWaves {
     /// Independent degrees of freedom of the contacts, ascending.
     pub held: Vec<usize>,
-    /// By nodal diameter 0 ..= N/2; `None` where no perturbation has it.
+    /// By nodal diameter 0 ..= N/2, of which the other sense has the conjugate shapes; `None` where no perturbation has it.
     shapes: Vec<Option<StuckShapes>>,
     /// Number of shapes in each that come from forces, or modes in their place.
     loads: usize,
@@ -48,6 +48,7 @@ impl ShapesOfWaves {
     /// As [`StuckShapes::new`].
     pub fn new(model: &Model, step: usize, modes: usize, interrupt: &Interrupt<'_>) -> Result<Self> {
         let structure = model.structure();
+        structure.check_senses()?;
         let held = degrees_of_contacts(model)?;
         let forces = forces_of_waves(model)?;
         let of = |diameter: usize| {
@@ -66,7 +67,13 @@ impl ShapesOfWaves {
                     try_push(&mut forces, try_copy(force, CONTEXT)?, CONTEXT)?;
                 }
                 let all = modes + loads;
-                Some(StuckShapes::new(model, diameter, (&held, &forces), all, interrupt)?)
+                Some(StuckShapes::new(
+                    model,
+                    diameter as i64,
+                    (&held, &forces),
+                    all,
+                    interrupt,
+                )?)
             } else {
                 None
             };
