@@ -1173,11 +1173,10 @@ module hbvib
          type(c_ptr), value :: model
          integer(c_int32_t), value :: contacts
          integer(c_int64_t), value :: count, capacity
-         integer(c_int64_t), intent(inout) :: diameter
+         integer(c_int64_t), intent(inout) :: diameter(*)
          real(c_double), intent(inout) :: omega(*)
          real(c_double), intent(inout), optional :: damping_ratio(*)
-         integer(c_int64_t), intent(inout), optional :: direction(*)
-         integer(c_int32_t), intent(inout), optional :: equal_senses(*)
+         integer(c_int64_t), intent(inout), optional :: direction(*), equal_senses
          type(hbvib_hooks), intent(in), optional :: hooks
          integer(c_int32_t) :: status
       end function hbvib_interference
@@ -2565,7 +2564,8 @@ contains
       logical, intent(inout), optional :: equal_senses
       integer(i32), intent(in), optional :: contacts
       type(hbvib_hooks), intent(in), optional :: hooks
-      integer(i32) :: status, state, equal
+      integer(i32) :: status, state
+      integer(i64) :: equal
       status = HBVIB_OK
       state = HBVIB_CONTACTS_STUCK
       if (present(contacts)) state = contacts

@@ -2339,7 +2339,7 @@ hbvib_status hbvib_campbell_crossings(const hbvib_model *model,
 /// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count          number of modes of each wave, 1 .. ndof.
 /// capacity       room of the arrays in waves, at least N.
-/// diameter       receives the N signed nodal diameters -N/2 < d <= N/2, rising.
+/// diameter       receives N numbers: signed nodal diameters -N/2 < d <= N/2, rising.
 /// omega          receives N * count damped angular frequencies, those of one wave rising, one wave
 ///                after the other; NaN where fewer motions oscillate.
 /// damping_ratio  receives N * count damping ratios likewise, negative where the motion grows; or
@@ -2359,7 +2359,7 @@ hbvib_status hbvib_interference(const hbvib_model *model,
                                 double *omega,
                                 double *damping_ratio,
                                 int64_t *direction,
-                                int32_t *equal_senses,
+                                int64_t *equal_senses,
                                 const hbvib_hooks *hooks);
 
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.

@@ -1272,7 +1272,7 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     const Index waves = sectors(), room = waves * count;
     Interference all{count, std::vector<Index>(detail::room(waves)), std::vector<double>(detail::room(room)),
                      std::vector<double>(detail::room(room)), std::vector<Index>(detail::room(room)), false};
-    std::int32_t equal = 0;
+    Index equal = 0;
     use(hbvib_interference, contacts, count, waves, all.diameters.data(), all.omega.data(), all.damping_ratio.data(), all.direction.data(), &equal,
         nullptr);
     all.equal_senses = equal != 0;

@@ -713,7 +713,7 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model, int64_t dia
 hbvib_status hbvib_damped_modes(const hbvib_model *model, int64_t diameter, int32_t contacts, int64_t count, double *eigenvalue, double *shapes, int64_t *direction, const hbvib_hooks *hooks);
 hbvib_status hbvib_campbell(const hbvib_model *model, int64_t n, const double *speeds, int64_t diameter, int32_t contacts, int64_t count, double *omega, double *damping_ratio, int64_t *direction, const hbvib_hooks *hooks);
 hbvib_status hbvib_campbell_crossings(const hbvib_model *model, int64_t n, const double *speeds, int64_t diameter, int32_t contacts, int64_t count, int64_t engine_order, int64_t capacity, double *speed, double *omega, int64_t *direction, int64_t *found, const hbvib_hooks *hooks);
-hbvib_status hbvib_interference(const hbvib_model *model, int32_t contacts, int64_t count, int64_t capacity, int64_t *diameter, double *omega, double *damping_ratio, int64_t *direction, int32_t *equal_senses, const hbvib_hooks *hooks);
+hbvib_status hbvib_interference(const hbvib_model *model, int32_t contacts, int64_t count, int64_t capacity, int64_t *diameter, double *omega, double *damping_ratio, int64_t *direction, int64_t *equal_senses, const hbvib_hooks *hooks);
 hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
 hbvib_status hbvib_nonlinear_mode(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_mode_options *mode, const hbvib_hooks *hooks, hbvib_branch **out);
 hbvib_status hbvib_mode_point_init(hbvib_mode_point *p, size_t size_of_p);

@@ -130,7 +130,7 @@ class _LinearModes(_Matrices):
         >>> found.diameters[found.damping_ratio[:, 0] < 0]
         array([1, 2, 3])
         """
-        waves, equal = self.sectors, ctypes.c_int32()
+        waves, equal = self.sectors, ctypes.c_int64()
         diameters, omega, ratio = np.empty(waves, np.int64), np.empty((waves, count)), np.empty((waves, count))
         direction = np.empty((waves, count), np.int64)
         self._call("hbvib_interference", _member(ContactState, contacts), count, waves, diameters, omega, ratio,

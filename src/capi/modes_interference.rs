@@ -22,7 +22,7 @@ use crate::model::Model;
 /// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count          number of modes of each wave, 1 .. ndof.
 /// capacity       room of the arrays in waves, at least N.
-/// diameter       receives the N signed nodal diameters -N/2 < d <= N/2, rising.
+/// diameter       receives N numbers: signed nodal diameters -N/2 < d <= N/2, rising.
 /// omega          receives N * count damped angular frequencies, those of one wave rising, one wave
 ///                after the other; NaN where fewer motions oscillate.
 /// damping_ratio  receives N * count damping ratios likewise, negative where the motion grows; or
@@ -43,7 +43,7 @@ pub unsafe extern "C" fn hbvib_interference(
     omega: *mut f64,
     damping_ratio: *mut f64,
     direction: *mut i64,
-    equal_senses: *mut i32,
+    equal_senses: *mut i64,
     hooks: *const hbvib_hooks,
 ) -> hbvib_status {
     call(|| {
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn hbvib_interference(
                 direction.copy_from(found.direction.as_ptr(), found.direction.len());
             }
             if !equal_senses.is_null() {
-                equal_senses.write(i32::from(found.has_equal_senses));
+                equal_senses.write(i64::from(found.has_equal_senses));
             }
         }
         Ok(Status::Ok)

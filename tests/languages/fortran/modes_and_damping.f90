@@ -218,7 +218,7 @@ contains
       call bad(model%add_unbalance(2, 2, e), HBVIB_E_ARGUMENT, 'both', 'an unbalance of one direction')
       call bad(model%add_unbalance(0, 2, e), HBVIB_E_INDEX, 'dof_x = 0, needs 1 .. 4', 'an unbalance on dof 0')
       call bad(model%add_unbalance(1, 5, e), HBVIB_E_INDEX, 'dof_y = 5, needs 1 .. 4', 'an unbalance on dof 5')
-      call bad(model%damped_modes(eigenvalue, diameter=13), HBVIB_E_ARGUMENT, 'diameter = 13', 'a diameter of no wheel')
+      call bad(plain%damped_modes(eigenvalue, diameter=13), HBVIB_E_ARGUMENT, 'diameter = 13', 'a diameter of no wheel')
       call bad(model%damped_modes(none), HBVIB_E_DIMENSION, 'count = 0', 'no mode')
       call bad(model%damped_modes(eigenvalue, shapes), HBVIB_E_DIMENSION, 'shapes', 'shapes of another length')
       call bad(model%damped_modes(eigenvalue, contacts=7), HBVIB_E_ARGUMENT, 'contacts = 7', 'contacts in no state')
