@@ -79,10 +79,12 @@ impl ShapesOfWaves {
             };
             try_push(&mut shapes, own, CONTEXT)?;
         }
+        // Contacts on all degrees of freedom leave no room for other shapes.
+        let room = shapes.iter().flatten().map(StuckShapes::modes).min().unwrap_or(0);
         Ok(Self {
             held,
             shapes,
-            loads,
+            loads: loads.min(room),
             requested: modes,
         })
     }

@@ -8,7 +8,6 @@ use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;
 
