@@ -8,6 +8,7 @@ use crate::contact::Role;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::blocks::Blocks;
 use crate::model::excitation::Excitation;
@@ -17,6 +18,9 @@ use crate::model::structure::{KINDS, MatrixKind, Structure};
 use crate::model::stuck_shapes::StuckShapes;
 use num_complex::Complex64;
 use std::sync::Arc;
+
+/// Deviation from a Hermitian matrix, relative to its largest entry, that is rounding.
+const HERMITIAN: f64 = 1e-12;
 
 const CONTEXT: &str = "the model on modes";
 
@@ -200,6 +204,7 @@ impl OnModes {
                     try_push(&mut to.diameters, matrix, CONTEXT)?;
                 }
             }
+            add_other_senses(&mut to.diameters, model.structure().sectors())?;
         }
         let mut small = model.try_clone()?;
         small.structure = small.structure.on_shapes(&of.held, order, blocks)?;
@@ -273,6 +278,24 @@ impl OnModes {
         }
         Ok(found)
     }
+}
+
+/// Adds the matrices of the other senses, which are the conjugates, where a matrix is not Hermitian: it could be taken for
+/// that of a loss, whose other sense is the transpose.
+fn add_other_senses(diameters: &mut Vec<Option<KeptMatrix>>, sectors: usize) -> Result<()> {
+    let has_symmetry = |a: &KeptMatrix| a.worst_pair(Symmetry::Hermitian).2 <= HERMITIAN * a.max_abs();
+    if diameters.iter().flatten().all(has_symmetry) {
+        return Ok(());
+    }
+    for residue in sectors / 2 + 1..sectors {
+        let of_mirror = |a: &KeptMatrix| {
+            let terms = [(Complex64::ONE, a, Form::Conjugated)];
+            KeptMatrix::new(Csc::sum(a.order(), &terms)?)
+        };
+        let other = diameters[sectors - residue].as_ref().map(of_mirror).transpose()?;
+        try_push(diameters, other, CONTEXT)?;
+    }
+    Ok(())
 }
 
 impl Structure {

@@ -12,6 +12,10 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
+const ALPHA: f64 = 0.02;
+const BETA: f64 = 0.003;
+const ETA: f64 = 0.015;
+
 /// Numbers in −1 … 1.
 pub struct Random(pub u64);
 
@@ -45,7 +49,7 @@ struct Ring {
     previous: DMatrix<f64>,
 }
 
-/// What a random sector has.
+/// Features of a random sector.
 #[derive(Clone, Copy, Debug)]
 struct Traits {
     gyroscopic: bool,
@@ -53,6 +57,8 @@ struct Traits {
     complex_aero: bool,
     unsymmetric: bool,
     structural: bool,
+    /// Rayleigh damping and a loss factor.
+    proportional: bool,
     contact: bool,
     per_diameter: bool,
 }
@@ -84,6 +90,7 @@ impl Sector {
             complex_aero: random.chance(0.5),
             unsymmetric: random.chance(0.4),
             structural: random.chance(0.3),
+            proportional: random.chance(0.4),
             contact: random.chance(0.5),
             per_diameter: random.chance(0.3),
         };
@@ -222,6 +229,10 @@ impl Sector {
             };
             model.add_contact(&contact).unwrap();
         }
+        if self.traits.proportional {
+            model.set_rayleigh(ALPHA, BETA).unwrap();
+            model.set_loss_factor(ETA).unwrap();
+        }
         model.set_speed(Speed::Fixed(self.speed)).unwrap();
         model
     }
@@ -248,7 +259,15 @@ impl Sector {
                 MatrixKind::StiffnessSpeed2 => (2, (self.speed * self.speed).into()),
             };
             for (offset, a) in [(0, &ring.own), (1, &ring.next), (-1, &ring.previous)] {
-                place(to, factor, offset, &a.map(Complex64::from));
+                let a = a.map(Complex64::from);
+                place(to, factor, offset, &a);
+                if self.traits.proportional && ring.kind == MatrixKind::Mass {
+                    place(1, ALPHA.into(), offset, &a);
+                }
+                if self.traits.proportional && ring.kind == MatrixKind::Stiffness {
+                    place(1, BETA.into(), offset, &a);
+                    place(2, Complex64::new(0.0, ETA), offset, &a);
+                }
             }
         }
         for ((offsets, coefficients), to) in self.aero.iter().zip([2, 1]) {
@@ -338,6 +357,7 @@ fn undamped_modes_of_both_senses_are_those_of_the_rotating_wheel() {
             .rings
             .retain(|ring| !matches!(ring.kind, MatrixKind::Damping | MatrixKind::Structural));
         sector.aero = Default::default();
+        sector.traits.proportional = false;
         for ring in sector
             .rings
             .iter_mut()
