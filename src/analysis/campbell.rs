@@ -1,6 +1,6 @@
 //! Campbell diagram: damped modes over the speed of rotation, and the speeds at which engine orders meet them.
 
-use crate::analysis::damped_modes::{DampedModes, GROWS, at_present_speed, has_equal_senses};
+use crate::analysis::damped_modes::{self, DampedModes, GROWS, has_equal_senses};
 use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_copy, try_push};
 use crate::hooks::{Hooks, LogLevel};
@@ -138,7 +138,9 @@ struct ModesAtSpeed<'a> {
 impl ModesAtSpeed<'_> {
     fn at(&mut self, diameter: i64, speed: f64) -> Result<DampedModes> {
         self.rotating.set_speed(Speed::Fixed(speed))?;
-        at_present_speed(&self.rotating, diameter, self.contacts, self.count, self.interrupt)
+        damped_modes::check(&self.rotating, diameter, self.count)?;
+        let contacts = self.contacts.prepared(&self.rotating, self.interrupt)?;
+        damped_modes::of_wave(&self.rotating, diameter, contacts.state(), self.count, self.interrupt)
     }
 
     /// The diagram of a wave without crossings.
@@ -189,7 +191,8 @@ impl ModesAtSpeed<'_> {
     fn has_equal_senses(&mut self, diameter: i64, speeds: &[f64]) -> Result<bool> {
         for &speed in speeds {
             self.rotating.set_speed(Speed::Fixed(speed))?;
-            if !has_equal_senses(&self.rotating, diameter, self.contacts, self.interrupt)? {
+            let contacts = self.contacts.prepared(&self.rotating, self.interrupt)?;
+            if !has_equal_senses(&self.rotating, diameter, contacts.state())? {
                 return Ok(false);
             }
         }

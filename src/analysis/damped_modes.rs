@@ -83,7 +83,9 @@ pub fn damped_modes(
 ) -> Result<DampedModes> {
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Modes, 0.0)?;
-    let found = at_present_speed(model, diameter, contacts, count, &interrupt)?;
+    check(model, diameter, count)?;
+    let contacts = contacts.prepared(model, &interrupt)?;
+    let found = of_wave(model, diameter, contacts.state(), count, &interrupt)?;
     for k in 0..found.count() {
         if found.damping_ratio(k) < GROWS {
             let text = format!(
@@ -97,17 +99,10 @@ pub fn damped_modes(
     Ok(found)
 }
 
-/// The modes at the speed of the model.
-pub(super) fn at_present_speed(
-    model: &Model,
-    diameter: i64,
-    contacts: LinearContacts,
-    count: usize,
-    interrupt: &Interrupt<'_>,
-) -> Result<DampedModes> {
+/// Checks what is requested.
+pub(super) fn check(model: &Model, diameter: i64, count: usize) -> Result<()> {
     model.check_matrices(true)?;
-    let structure = model.structure();
-    structure.check_diameter(diameter)?;
+    model.structure().check_diameter(diameter)?;
     if count == 0 {
         return fail!(Argument, "count = 0, needs at least 1");
     }
@@ -117,8 +112,19 @@ pub(super) fn at_present_speed(
             "the speed is tied to the frequency, and a damped mode belongs to one speed: set a fixed speed"
         );
     }
-    let contacts = contacts.prepared(model, interrupt)?;
-    let matrices = WaveMatrices::new(model, diameter, contacts.state())?;
+    Ok(())
+}
+
+/// The modes at the speed of the model, checked.
+pub(super) fn of_wave(
+    model: &Model,
+    diameter: i64,
+    contacts: ContactState<'_>,
+    count: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<DampedModes> {
+    let structure = model.structure();
+    let matrices = WaveMatrices::new(model, diameter, contacts)?;
     let problem = Quadratic {
         mass: &matrices.mass,
         damping: &matrices.damping,
@@ -153,15 +159,9 @@ pub(super) fn at_present_speed(
 
 /// Whether the waves d and −d have the same eigenvalues: every matrix of the one is the transpose of that of the other. The
 /// directions of their modes are then opposite.
-pub(super) fn has_equal_senses(
-    model: &Model,
-    diameter: i64,
-    contacts: LinearContacts,
-    interrupt: &Interrupt<'_>,
-) -> Result<bool> {
-    let contacts = contacts.prepared(model, interrupt)?;
-    let one = WaveMatrices::new(model, diameter, contacts.state())?;
-    let other = WaveMatrices::new(model, -diameter, contacts.state())?;
+pub(super) fn has_equal_senses(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<bool> {
+    let one = WaveMatrices::new(model, diameter, contacts)?;
+    let other = WaveMatrices::new(model, -diameter, contacts)?;
     let pairs = [
         (&one.mass, &other.mass),
         (&one.damping, &other.damping),

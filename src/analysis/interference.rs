@@ -1,6 +1,6 @@
 //! Interference (SAFE) diagram: the damped modes of all waves of a wheel, in both senses of each nodal diameter.
 
-use crate::analysis::damped_modes::{DampedModes, GROWS, at_present_speed, has_equal_senses};
+use crate::analysis::damped_modes::{self, DampedModes, GROWS, has_equal_senses};
 use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_push};
 use crate::hooks::{Hooks, LogLevel};
@@ -81,7 +81,10 @@ pub fn interference(
             "interference needs a cyclic structure: a plain one has no nodal diameters"
         );
     }
+    damped_modes::check(model, 0, count)?;
     let interrupt = hooks.interrupt();
+    let contacts = contacts.prepared(model, &interrupt)?;
+    let state = contacts.state();
     let list = || Interference {
         count,
         ..Interference::default()
@@ -91,18 +94,18 @@ pub fn interference(
     let mut done = 0;
     for diameter in structure.all_diameters().filter(|d| *d >= 0) {
         interrupt.part(Phase::Modes, done, sectors)?;
-        let modes = at_present_speed(model, diameter, contacts, count, &interrupt)?;
+        let modes = damped_modes::of_wave(model, diameter, state, count, &interrupt)?;
         forward.add(diameter, &modes, 1)?;
         done += 1;
         if structure.signed_diameter(-diameter) == diameter {
             continue;
         }
         interrupt.part(Phase::Modes, done, sectors)?;
-        if has_equal_senses(model, diameter, contacts, &interrupt)? {
+        if has_equal_senses(model, diameter, state)? {
             backward.add(-diameter, &modes, -1)?;
         } else {
             is_equal = false;
-            let modes = at_present_speed(model, -diameter, contacts, count, &interrupt)?;
+            let modes = damped_modes::of_wave(model, -diameter, state, count, &interrupt)?;
             backward.add(-diameter, &modes, 1)?;
         }
         done += 1;

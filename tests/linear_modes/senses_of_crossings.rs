@@ -2,7 +2,10 @@
 //! not touch.
 
 use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::{Campbell, Hooks, LinearContacts, LogLevel, MatrixKind, Model, Speed, campbell, damped_modes};
+use hbvib::{
+    Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, ModeOptions, Model,
+    SolverOptions, Speed, campbell, damped_modes, nonlinear_mode,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -84,6 +87,56 @@ fn engine_orders_of_a_rotating_wheel_meet_the_waves_of_their_own_sense() {
         let steps: Vec<f64> = (0..=4000).map(|i| 0.2 + 44.8 * f64::from(i) / 4000.0).collect();
         let changes = steps.windows(2).filter(|pair| at(pair[0]) * at(pair[1]) < 0.0).count();
         assert_eq!(found.crossings.len(), changes, "EO {order}");
+    }
+}
+
+#[test]
+fn a_speed_tied_to_the_frequency_and_nonlinear_modes_have_the_sense_of_the_wave() {
+    for (order, known) in [
+        (9, [3.799_517_909_874_847_7, 4.057_803_869_088_63]),
+        (19, [1.710_413_476_178_725, 1.982_981_220_346_410_8]),
+    ] {
+        // At Ω = ω/EO the free motions are at the critical speeds.
+        let mut model = wheel();
+        model.set_speed(Speed::PerOmega(1.0 / order as f64)).unwrap();
+        let modes = model.linear_modes(order, ContactState::Free).unwrap();
+        for (omega, speed) in modes.omega.iter().zip(known) {
+            assert!((omega / (order as f64 * speed) - 1.0).abs() < 1e-11, "{omega}");
+        }
+        let other = model.linear_modes(-order, ContactState::Free).unwrap();
+        assert!((other.omega[0] / modes.omega[0] - 1.0).abs() > 1e-2);
+    }
+    let mut model = wheel();
+    model.set_speed(Speed::Fixed(5.0)).unwrap();
+    model.add_contact(&Contact::jenkins(0, None, 100.0, 0.3, 50.0)).unwrap();
+    let solver = SolverOptions {
+        harmonics: 3,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    };
+    for diameter in [1, -1, 9, -3, 5] {
+        let range = ModeOptions {
+            diameter: Some(diameter),
+            log10_start: -3.0,
+            log10_stop: -2.0,
+            ..ModeOptions::default()
+        };
+        let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
+        let linear = model.linear_modes(diameter, ContactState::Stuck).unwrap();
+        assert!((branch.omega()[0] / linear.omega[0] - 1.0).abs() < 1e-9, "{diameter}");
+        assert_eq!(
+            branch.mode().unwrap().engine_order,
+            model.structure().signed_diameter(diameter)
+        );
+        let mut in_wave = model.try_clone().unwrap();
+        in_wave.set_wave(diameter);
+        let own = ModeOptions {
+            diameter: None,
+            ..range
+        };
+        let own = nonlinear_mode(&in_wave, &solver, &own, &mut Hooks::default()).unwrap();
+        let last = |b: &Branch| b.omega().last().copied().unwrap();
+        assert!((last(&own) / last(&branch) - 1.0).abs() < 1e-12, "{diameter}");
     }
 }
 
