@@ -119,7 +119,7 @@ pub unsafe extern "C" fn hbvib_cyclic_set_diameter(
 #[repr(C)]
 pub enum hbvib_special_diameter {
     /// The wave that the engine order of the model excites, or that of the same call.
-    HBVIB_DIAMETER_OF_ENGINE_ORDER = -2147483647,
+    HBVIB_DIAMETER_OF_ENGINE_ORDER = -2_147_483_647,
 }
 
 /// Whether a nodal diameter is that of the engine order.

@@ -49,27 +49,41 @@ struct Ring {
     previous: DMatrix<f64>,
 }
 
-/// Features of a random sector.
-#[derive(Clone, Copy, Debug)]
-struct Traits {
-    gyroscopic: bool,
-    aero: bool,
-    complex_aero: bool,
-    unsymmetric: bool,
-    structural: bool,
+/// A feature of a random sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Feature {
+    Gyroscopic,
+    Aero,
+    ComplexAero,
+    Unsymmetric,
+    Structural,
     /// Rayleigh damping and a loss factor.
-    proportional: bool,
-    contact: bool,
-    per_diameter: bool,
+    Proportional,
+    Contact,
+    PerDiameter,
 }
 
-impl Traits {
-    /// Whether both senses must differ.
-    fn distinguishes(self) -> bool {
-        self.gyroscopic || self.aero || self.unsymmetric
+/// Random features of a sector of `n` degrees of freedom.
+fn features(random: &mut Random, n: usize) -> Vec<Feature> {
+    let mut features = Vec::new();
+    for (feature, share) in [
+        (Feature::Gyroscopic, if n > 1 { 0.7 } else { 0.0 }),
+        (Feature::Aero, 0.5),
+        (Feature::ComplexAero, 0.5),
+        (Feature::Unsymmetric, 0.4),
+        (Feature::Structural, 0.3),
+        (Feature::Proportional, 0.4),
+        (Feature::Contact, 0.5),
+        (Feature::PerDiameter, 0.3),
+    ] {
+        if random.chance(share) {
+            features.push(feature);
+        }
     }
+    features
 }
 
+/// A random sector.
 struct Sector {
     n: usize,
     sectors: usize,
@@ -78,22 +92,14 @@ struct Sector {
     /// Offsets and coefficients per displacement and per velocity.
     aero: [(Vec<i64>, Vec<DMatrix<Complex64>>); 2],
     stiffness_of_contact: f64,
-    traits: Traits,
+    features: Vec<Feature>,
 }
 
 impl Sector {
     fn new(random: &mut Random) -> Self {
         let (n, sectors) = (1 + random.below(4), 2 + random.below(8));
-        let traits = Traits {
-            gyroscopic: n > 1 && random.chance(0.7),
-            aero: random.chance(0.5),
-            complex_aero: random.chance(0.5),
-            unsymmetric: random.chance(0.4),
-            structural: random.chance(0.3),
-            proportional: random.chance(0.4),
-            contact: random.chance(0.5),
-            per_diameter: random.chance(0.3),
-        };
+        let features = features(random, n);
+        let has = |feature| features.contains(&feature);
         let symmetric = |random: &mut Random, diagonal: f64, size: f64| {
             let a = random.matrix(n, size);
             0.5 * (&a + a.transpose()) + DMatrix::from_diagonal_element(n, n, diagonal)
@@ -124,14 +130,14 @@ impl Sector {
                 1.0,
             ),
         ];
-        if traits.unsymmetric {
+        if has(Feature::Unsymmetric) {
             // General damping and a stiffness with circulatory forces, within the sector and between sectors.
             for (at, size) in [(1, 0.3), (2, 0.02)] {
                 rings[at].own += random.matrix(n, size);
                 rings[at].previous = random.matrix(n, 2.0 * size);
             }
         }
-        if traits.structural {
+        if has(Feature::Structural) {
             rings.push(ring(
                 MatrixKind::Structural,
                 symmetric(random, 0.2, 0.05),
@@ -139,7 +145,7 @@ impl Sector {
                 1.0,
             ));
         }
-        if traits.gyroscopic {
+        if has(Feature::Gyroscopic) {
             let a = random.matrix(n, 0.8);
             rings.push(ring(
                 MatrixKind::Gyroscopic,
@@ -155,14 +161,14 @@ impl Sector {
             ));
         }
         let mut aero: [(Vec<i64>, Vec<DMatrix<Complex64>>); 2] = Default::default();
-        if traits.aero {
+        if has(Feature::Aero) {
             for ((offsets, coefficients), size) in aero.iter_mut().zip([0.3, 0.02]) {
                 for offset in [0, 1, -1, 2].into_iter().take(sectors.min(4)) {
                     if offsets.iter().any(|k: &i64| (k - offset) % sectors as i64 == 0) {
                         continue;
                     }
                     offsets.push(offset);
-                    let part = if traits.complex_aero { 1.0 } else { 0.0 };
+                    let part = if has(Feature::ComplexAero) { 1.0 } else { 0.0 };
                     coefficients.push(DMatrix::from_fn(n, n, |_, _| {
                         Complex64::new(random.next(), part * random.next()) * size
                     }));
@@ -175,16 +181,31 @@ impl Sector {
             speed: 0.3 + 0.3 * (random.next() + 1.0),
             rings,
             aero,
-            stiffness_of_contact: if traits.contact { 0.5 + 0.4 * random.next() } else { 0.0 },
-            traits,
+            stiffness_of_contact: if has(Feature::Contact) {
+                0.5 + 0.4 * random.next()
+            } else {
+                0.0
+            },
+            features,
         }
+    }
+
+    fn has(&self, feature: Feature) -> bool {
+        self.features.contains(&feature)
+    }
+
+    /// Whether both senses must differ.
+    fn distinguishes(&self) -> bool {
+        [Feature::Gyroscopic, Feature::Aero, Feature::Unsymmetric]
+            .into_iter()
+            .any(|feature| self.has(feature))
     }
 
     fn model(&self) -> Model {
         let n = self.n;
         let mut model = Model::cyclic(n, self.sectors).unwrap();
         for ring in &self.rings {
-            if self.traits.per_diameter {
+            if self.has(Feature::PerDiameter) {
                 // Every wave by its signed number, beyond one turn too.
                 for diameter in model.structure().all_diameters() {
                     let turn = self.sectors as i64 * (diameter.rem_euclid(3) - 1);
@@ -222,14 +243,14 @@ impl Sector {
                 model.set_aero(&dofs, &list, offsets, form).unwrap();
             }
         }
-        if self.traits.contact {
+        if self.has(Feature::Contact) {
             let contact = Contact {
                 sector_offset: 1,
                 ..Contact::jenkins(n - 1, Some(0), self.stiffness_of_contact, 1.0, 1.0)
             };
             model.add_contact(&contact).unwrap();
         }
-        if self.traits.proportional {
+        if self.has(Feature::Proportional) {
             model.set_rayleigh(ALPHA, BETA).unwrap();
             model.set_loss_factor(ETA).unwrap();
         }
@@ -261,10 +282,10 @@ impl Sector {
             for (offset, a) in [(0, &ring.own), (1, &ring.next), (-1, &ring.previous)] {
                 let a = a.map(Complex64::from);
                 place(to, factor, offset, &a);
-                if self.traits.proportional && ring.kind == MatrixKind::Mass {
+                if self.has(Feature::Proportional) && ring.kind == MatrixKind::Mass {
                     place(1, ALPHA.into(), offset, &a);
                 }
-                if self.traits.proportional && ring.kind == MatrixKind::Stiffness {
+                if self.has(Feature::Proportional) && ring.kind == MatrixKind::Stiffness {
                     place(1, BETA.into(), offset, &a);
                     place(2, Complex64::new(0.0, ETA), offset, &a);
                 }
@@ -320,7 +341,7 @@ fn all_signed_diameters_of_200_random_sectors_have_the_eigenvalues_of_the_wheel_
             found.extend(modes.eigenvalue);
         }
         let gap = worst_match(found, &known);
-        assert!(gap < 1e-9, "case {case}, {:?}: {gap:e}", sector.traits);
+        assert!(gap < 1e-9, "case {case}, {:?}: {gap:e}", sector.features);
         worst = worst.max(gap);
         all += known.len();
         // The diagram has the same, and the same says which sectors distinguish the senses.
@@ -331,14 +352,14 @@ fn all_signed_diameters_of_200_random_sectors_have_the_eigenvalues_of_the_wheel_
             Complex64::new(-ratio * omega / (1.0 - ratio * ratio).sqrt(), omega)
         });
         let gap = worst_match(values.collect(), &known);
-        assert!(gap < 1e-9, "case {case}, {:?}, diagram: {gap:e}", sector.traits);
+        assert!(gap < 1e-9, "case {case}, {:?}, diagram: {gap:e}", sector.features);
         // A wheel of two sectors has no wave with a sense.
         if sector.sectors > 2 {
             assert_eq!(
                 diagram.has_equal_senses,
-                !sector.traits.distinguishes(),
+                !sector.distinguishes(),
                 "{:?}",
-                sector.traits
+                sector.features
             );
             distinguished += usize::from(!diagram.has_equal_senses);
         }
@@ -357,7 +378,7 @@ fn undamped_modes_of_both_senses_are_those_of_the_rotating_wheel() {
             .rings
             .retain(|ring| !matches!(ring.kind, MatrixKind::Damping | MatrixKind::Structural));
         sector.aero = Default::default();
-        sector.traits.proportional = false;
+        sector.features.retain(|feature| *feature != Feature::Proportional);
         for ring in sector
             .rings
             .iter_mut()
@@ -377,7 +398,7 @@ fn undamped_modes_of_both_senses_are_those_of_the_rotating_wheel() {
                 assert!((a - b).abs() < 1e-12 * a);
             }
             let opposite = model.linear_modes(-diameter, ContactState::Stuck).unwrap();
-            if !sector.traits.gyroscopic && !sector.traits.per_diameter && diameter > 0 {
+            if !sector.has(Feature::Gyroscopic) && !sector.has(Feature::PerDiameter) && diameter > 0 {
                 // The other sense is the conjugate, to the last bit.
                 assert_eq!(modes.omega, opposite.omega);
                 if 2 * diameter != sector.sectors as i64 {
@@ -399,9 +420,9 @@ fn undamped_modes_of_both_senses_are_those_of_the_rotating_wheel() {
             }
             found.extend(modes.omega.iter().map(|omega| Complex64::new(0.0, *omega)));
         }
-        rotating += usize::from(sector.traits.gyroscopic);
+        rotating += usize::from(sector.has(Feature::Gyroscopic));
         let gap = worst_match(found, &known);
-        assert!(gap < 1e-9, "{:?}: {gap:e}", sector.traits);
+        assert!(gap < 1e-9, "{:?}: {gap:e}", sector.features);
     }
     assert!(rotating > 20);
 }

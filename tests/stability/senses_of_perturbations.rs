@@ -15,15 +15,16 @@ const N: usize = 5;
 const SECTORS: usize = 7;
 const OMEGA: f64 = 1.9;
 
+fn view(a: &[f64]) -> MatrixView<'_> {
+    MatrixView::dense(N, a)
+}
+
 /// A sector of five masses with Coriolis forces in a flow, and friction that sticks between two sectors.
 fn sector(engine_order: i64, held: &[usize]) -> Model {
     let mut model = Model::cyclic(N, SECTORS).unwrap();
     let at = |i: usize, j: usize, size: f64| size * (1.3 * i as f64 + 2.1 * j as f64 + 0.7).sin();
     let dense = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f64> { (0..N * N).map(|k| value(k % N, k / N)).collect() };
     let diagonal = |i: usize, j: usize, value: f64| if i == j { value } else { 0.0 };
-    fn view(a: &[f64]) -> MatrixView<'_> {
-        MatrixView::dense(N, a)
-    }
     for (kind, own) in [
         (MatrixKind::Mass, dense(&|i, j| diagonal(i, j, 1.0 + 0.1 * i as f64))),
         (MatrixKind::Damping, dense(&|i, j| diagonal(i, j, 0.2))),
