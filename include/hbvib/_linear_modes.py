@@ -1,6 +1,7 @@
 """Natural modes of the linear model, and Campbell diagrams."""
 from __future__ import annotations
 
+import copy
 import ctypes
 import warnings
 from typing import TYPE_CHECKING, Any, Optional, Sequence
@@ -187,6 +188,6 @@ class _LinearModes(_Matrices):
         from . import _plots
         if self.sectors == 1:
             raise ValueError("plot_interference needs a cyclic structure: a plain one has no nodal diameters")
-        rotating = self.clone()
+        rotating = copy.copy(self)
         rotating.set_speed(speed)
         return _plots.interference(rotating.interference(count, contacts), speed, engine_orders, ax, hertz, line)

@@ -127,7 +127,7 @@ def interference(waves: Interference, speed: float, orders: Sequence[int], ax: A
     highest = min(int(top * unit / abs(speed)), 100 * sectors) + 1 if speed else 0
     zigzag = np.arange(highest + 1)
     # A line of signed waves begins again where it leaves the diagram.
-    turns = [] if folded else np.flatnonzero(np.diff(wave(zigzag)) < 0) + 1
+    turns: Any = [] if folded else np.flatnonzero(np.diff(wave(zigzag)) < 0) + 1
     for ray in np.split(zigzag, turns):
         ax.plot(wave(ray), ray * abs(speed) / unit, "--", color="0.6", linewidth=1)
     for order in orders:

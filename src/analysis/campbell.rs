@@ -81,16 +81,17 @@ pub fn campbell(
         count,
         interrupt: &interrupt,
     };
+    let is_wheel = structure.sectors() > 1;
     let own = structure.signed_diameter(diameter);
     let other = structure.signed_diameter(-own);
     let mut found = modes.lines(own, speeds)?;
-    tell_growth(&found, hooks);
+    tell_growth(&found, is_wheel, hooks);
     let stretches = modes.stretches(&found)?;
     let is_other = |order: i64| structure.signed_diameter(order) == other;
     let mut opposite = None;
     if other != own && engine_orders.iter().any(|&order| is_other(order)) && !modes.has_equal_senses(own, speeds)? {
         let lines = modes.lines(other, speeds)?;
-        tell_growth(&lines, hooks);
+        tell_growth(&lines, is_wheel, hooks);
         opposite = Some(modes.stretches(&lines)?);
     }
     for &engine_order in engine_orders {
@@ -351,7 +352,7 @@ fn meetings(
 }
 
 /// Tells the first mode that grows, and at how many speeds one does.
-fn tell_growth(found: &Campbell, hooks: &mut Hooks<'_>) {
+fn tell_growth(found: &Campbell, is_wheel: bool, hooks: &mut Hooks<'_>) {
     let grows = |row: &[f64]| row.iter().position(|ratio| *ratio < GROWS);
     let mut growing = found
         .damping_ratio
@@ -359,8 +360,13 @@ fn tell_growth(found: &Campbell, hooks: &mut Hooks<'_>) {
         .enumerate()
         .filter_map(|(i, row)| grows(row).map(|k| (i, k)));
     let Some((i, k)) = growing.next() else { return };
+    let wave = if is_wheel {
+        format!(" in the wave of the nodal diameter {}", found.diameter)
+    } else {
+        String::new()
+    };
     let text = format!(
-        "modes grow at {} of {} speeds: mode {k} at the speed {} has the damping ratio {:.3e}",
+        "modes grow at {} of {} speeds: mode {k} at the speed {} has the damping ratio {:.3e}{wave}",
         1 + growing.count(),
         found.speeds.len(),
         found.speeds[i],

@@ -3,7 +3,7 @@
 
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::{
-    Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, ModeOptions, Model,
+    AeroForm, Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, ModeOptions, Model,
     SolverOptions, Speed, campbell, damped_modes, nonlinear_mode,
 };
 use num_complex::Complex64;
@@ -160,6 +160,39 @@ fn an_engine_order_of_another_diameter_meets_no_mode_and_is_told() {
         .iter()
         .any(|(_, line)| line.contains("engine order 2 excites the nodal diameter 2"));
     assert!(told, "{lines:?}");
+}
+
+#[test]
+fn growth_of_the_sense_that_an_engine_order_excites_is_told_with_its_wave() {
+    let mut model = wheel();
+    model.set_rayleigh(0.5, 0.0).unwrap();
+    // A(d) = −2ig sin(2πd/10) feeds waves of negative diameters.
+    let coefficients = [60.0, 0.0, 0.0, 60.0, -60.0, 0.0, 0.0, -60.0].map(Complex64::from);
+    model
+        .set_aero(&[0, 1], &coefficients, &[1, -1], AeroForm::Displacement)
+        .unwrap();
+    let speeds: Vec<f64> = (1..=12).map(|i| 0.5 * f64::from(i)).collect();
+    let told = |order: i64| {
+        let mut lines = Vec::new();
+        let mut log = |_: LogLevel, line: &str| lines.push(line.to_owned());
+        let mut hooks = Hooks {
+            log: Some(&mut log),
+            ..Hooks::default()
+        };
+        let at = (1, LinearContacts::Stuck, 2);
+        let found = campbell(&model, &speeds, at, &[order], &mut hooks).unwrap();
+        assert!(found.damping_ratio.iter().all(|ratio| *ratio > 0.0));
+        lines
+            .into_iter()
+            .filter(|line| line.contains("grow"))
+            .collect::<Vec<_>>()
+    };
+    assert!(told(11).is_empty());
+    let of_other = told(9);
+    assert!(
+        of_other.len() == 1 && of_other[0].contains("nodal diameter -1"),
+        "{of_other:?}"
+    );
 }
 
 #[test]
