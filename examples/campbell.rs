@@ -26,7 +26,7 @@ use model::{LARGEST_DIAMETER, Parameters, SECTORS};
 use plot::{Figure, Series, Style};
 
 /// Nodal diameter of the Campbell diagram.
-const DIAMETER: usize = 2;
+const DIAMETER: i64 = 2;
 
 /// Engine orders that excite it: EO = 2, 22, 26, … on 24 sectors.
 const ENGINE_ORDERS: [i64; 3] = [2, 22, 26];

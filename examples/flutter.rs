@@ -32,7 +32,7 @@ use model::{B2, Parameters, SECTORS};
 use plot::{Figure, Series, Style};
 
 /// Nodal diameter of the wave that the flow drives.
-const DIAMETER: usize = 2;
+const DIAMETER: i64 = 2;
 
 /// Aerodynamic damping ratios of the stuck mode, percent.
 const AERODYNAMIC: [f64; 8] = [-0.12, -0.15, -0.2, -0.28, -0.36, -0.42, -0.45, -0.47];
@@ -104,7 +104,7 @@ fn fluttering(ratio: f64) -> Result<Model, Box<dyn Error>> {
     let (omega, tip) = (stuck.omega[0], stuck.shapes[B2].norm_sqr());
     let gain = -2.0 * omega * omega * ratio / tip;
     let sectors = SECTORS as f64;
-    let coefficient = |k: usize| -2.0 * gain / sectors * (TAU * (DIAMETER * k) as f64 / sectors).sin();
+    let coefficient = |k: usize| -2.0 * gain / sectors * (TAU * (DIAMETER * k as i64) as f64 / sectors).sin();
     let coefficients: Vec<Complex64> = (0..SECTORS).map(|k| coefficient(k).into()).collect();
     let offsets: Vec<i64> = (0..SECTORS as i64).collect();
     model.set_aero(&[B2], &coefficients, &offsets, AeroForm::Displacement)?;

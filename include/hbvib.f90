@@ -54,6 +54,8 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
    ! hbvib_block
    integer(c_int32_t), parameter, public :: HBVIB_BLOCK_OWN = 0, HBVIB_BLOCK_NEXT = 1, HBVIB_BLOCK_PREVIOUS = 2
+   ! hbvib_special_diameter
+   integer(c_int32_t), parameter, public :: HBVIB_DIAMETER_OF_ENGINE_ORDER = -2147483647
    ! hbvib_aero_form
    integer(c_int32_t), parameter, public :: HBVIB_AERO_DISPLACEMENT = 0, HBVIB_AERO_VELOCITY = 1
    ! hbvib_sector_frame
@@ -266,7 +268,7 @@ module hbvib
    type, bind(c) :: hbvib_mode_options
       integer(c_int32_t) :: struct_size = 128, damping_form = 0
       real(c_double) :: log10_start = 0, log10_stop = 0
-      integer(c_int64_t) :: diameter = -1, mode_index = 1
+      integer(c_int64_t) :: diameter = HBVIB_DIAMETER_OF_ENGINE_ORDER, mode_index = 1
       real(c_double) :: near_omega = 0
       type(c_ptr) :: shape = c_null_ptr
       integer(c_int64_t) :: shape_len = 0, amplitude_contact = -1
@@ -667,6 +669,14 @@ module hbvib
          type(hbvib_matrix), intent(in) :: a
          integer(c_int32_t) :: status
       end function hbvib_cyclic_set_diameter
+
+      function hbvib_cyclic_signed_diameter(model, waves, diameter) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: waves
+         integer(c_int64_t), intent(inout) :: diameter
+         integer(c_int32_t) :: status
+      end function hbvib_cyclic_signed_diameter
 
       function hbvib_cyclic_set_wave(model, engine_order) bind(c) result(status)
          import
@@ -1170,6 +1180,20 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_campbell_crossings
 
+      function hbvib_interference(model, contacts, count, capacity, diameter, omega, damping_ratio, direction, equal_senses, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int32_t), value :: contacts
+         integer(c_int64_t), value :: count, capacity
+         integer(c_int64_t), intent(inout) :: diameter(*)
+         real(c_double), intent(inout) :: omega(*)
+         real(c_double), intent(inout), optional :: damping_ratio(*)
+         integer(c_int64_t), intent(inout), optional :: direction(*), equal_senses
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_interference
+
       function hbvib_mode_options_init(o, size_of_o) bind(c) result(status)
          import
          type(hbvib_mode_options), intent(inout) :: o
@@ -1620,6 +1644,8 @@ module hbvib
       procedure :: damped_modes => model_damped_modes
       procedure :: campbell => model_campbell
       procedure :: campbell_crossings => model_campbell_crossings
+      procedure :: interference => model_interference
+      procedure :: signed_diameter => model_signed_diameter
       procedure :: forced_response => model_forced_response
       procedure :: nonlinear_mode => model_nonlinear_mode
       procedure :: time_response => model_time_response
@@ -1682,7 +1708,8 @@ module hbvib
    private :: set_sparse_real, couple_real, couple_sparse_real, set_complex, set_sparse_complex, couple_complex
    private :: couple_sparse_complex, set_struct, couple_struct, model_set_rayleigh, model_set_wave, add_force_complex
    private :: model_set_aero, model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
-   private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings
+   private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings, model_interference, &
+      model_signed_diameter
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -2437,7 +2464,7 @@ contains
    end function model_clear_forces
 
    !> Undamped natural modes: the lowest size(omega) of them, shapes(ndof, size(omega)). contacts: HBVIB_CONTACTS_STUCK (default) or
-   !> HBVIB_CONTACTS_FREE. diameter: default 0.
+   !> HBVIB_CONTACTS_FREE. diameter: signed, modulo the sectors, default 0.
    function model_linear_modes(self, omega, shapes, diameter, contacts, hooks) result(status)
       class(hbvib_model), intent(in) :: self
       real(dp), intent(inout), contiguous :: omega(:)
@@ -2461,7 +2488,7 @@ contains
    end function model_linear_modes
 
    !> Damped natural modes at the speed of the model: the lowest size(eigenvalue) of them, shapes(ndof, size(eigenvalue)); direction is 1
-   !> (forward), -1 (backward) or 0. contacts: HBVIB_CONTACTS_STUCK (default) or HBVIB_CONTACTS_FREE. diameter: default 0.
+   !> (forward), -1 (backward) or 0. contacts: HBVIB_CONTACTS_STUCK (default) or HBVIB_CONTACTS_FREE. diameter: signed, default 0.
    function model_damped_modes(self, eigenvalue, shapes, direction, diameter, contacts, hooks) result(status)
       class(hbvib_model), intent(in) :: self
       complex(dp), intent(inout), contiguous :: eigenvalue(:)
@@ -2510,7 +2537,8 @@ contains
                                                       omega, damping_ratio, direction, hooks)
    end function model_campbell
 
-   !> The speeds at which an engine order meets one of count modes between neighbours of the given speeds; found of them.
+   !> The speeds at which an engine order meets one of count modes of the wave that it excites between neighbours of the given speeds;
+   !> found of them. diameter: default HBVIB_DIAMETER_OF_ENGINE_ORDER; none is found where the engine order excites another one.
    function model_campbell_crossings(self, speeds, count, engine_order, speed, omega, found, direction, diameter, contacts, hooks) &
       result(status)
       class(hbvib_model), intent(in) :: self
@@ -2525,7 +2553,7 @@ contains
       integer(i32) :: status, state
       integer(i64) :: d, number
       status = HBVIB_OK
-      d = 0
+      d = HBVIB_DIAMETER_OF_ENGINE_ORDER
       number = 0
       state = HBVIB_CONTACTS_STUCK
       if (present(diameter)) d = diameter
@@ -2537,6 +2565,42 @@ contains
                                                                 size(speed, kind=i64), speed, omega, direction, number, hooks)
       if (status == HBVIB_OK) found = int(number)
    end function model_campbell_crossings
+
+   !> Damped modes of all waves of a wheel at the speed of the model, in both senses of each nodal diameter: diameters(sectors), signed
+   !> and rising, and omega(count, sectors); damping_ratio and direction likewise. equal_senses: both senses have the same ones.
+   function model_interference(self, diameters, omega, damping_ratio, direction, equal_senses, contacts, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      integer(i64), intent(inout), contiguous :: diameters(:)
+      real(dp), intent(inout), contiguous :: omega(:, :)
+      real(dp), intent(inout), contiguous, optional :: damping_ratio(:, :)
+      integer(i64), intent(inout), contiguous, optional :: direction(:, :)
+      logical, intent(inout), optional :: equal_senses
+      integer(i32), intent(in), optional :: contacts
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status, state
+      integer(i64) :: equal
+      status = HBVIB_OK
+      state = HBVIB_CONTACTS_STUCK
+      if (present(contacts)) state = contacts
+      call same_length(status, 'omega(1, :)', size(omega, 2, i64), size(diameters, kind=i64))
+      if (present(damping_ratio)) call same_length(status, 'damping_ratio', size(damping_ratio, kind=i64), size(omega, kind=i64))
+      if (present(direction)) call same_length(status, 'direction', size(direction, kind=i64), size(omega, kind=i64))
+      if (status == HBVIB_OK) status = hbvib_interference(self%handle, state, size(omega, 1, i64), size(diameters, kind=i64), &
+                                                          diameters, omega, damping_ratio, direction, equal, hooks)
+      if (status == HBVIB_OK .and. present(equal_senses)) equal_senses = equal /= 0
+   end function model_interference
+
+   !> diameter receives the signed nodal diameter of a number of waves per turn, or of the wave that an engine order excites.
+   function model_signed_diameter(self, waves, diameter) result(status)
+      class(hbvib_model), intent(in) :: self
+      integer, intent(in) :: waves
+      integer, intent(inout) :: diameter
+      integer(i32) :: status
+      integer(i64) :: number
+      number = diameter
+      status = hbvib_cyclic_signed_diameter(self%handle, int(waves, i64), number)
+      if (status == HBVIB_OK) diameter = int(number)
+   end function model_signed_diameter
 
    !> id receives the number of the contact, from 1.
    function model_add_contact(self, contact, id) result(status)

@@ -681,19 +681,37 @@ hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model,
                                                 const hbvib_matrix *to_previous);
 
 /// Sets the matrix of the wave in which sector s + 1 lags by 2 pi diameter / N, instead of sector
-/// blocks. Waves in the other direction have its conjugate. A solve that needs a harmonic without a
-/// matrix of its nodal diameter is refused.
+/// blocks. A wave of which only the other sense was given has the conjugate of that. A solve that
+/// needs a harmonic without a matrix of its nodal diameter is refused.
 ///
 /// which     HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
-/// diameter  nodal diameter, 0 .. N/2.
+/// diameter  signed nodal diameter, modulo N: -N/2 < d <= N/2; 0 for a plain structure.
 /// a         ndof x ndof, Hermitian; all but M may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
-/// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
-/// matrices that were given by sector blocks. Threads: one at a time per model.
+/// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter of a plain structure
+/// and for matrices that were given by sector blocks. Threads: one at a time per model.
 HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,
                                        int32_t which,
                                        int64_t diameter,
                                        const hbvib_matrix *a);
+
+/// A nodal diameter that is no number of waves; these are signed and count modulo N.
+typedef enum {
+  /// The wave that the engine order of the model excites, or that of the same call.
+  HBVIB_DIAMETER_OF_ENGINE_ORDER = -2147483647,
+} hbvib_special_diameter;
+
+/// The signed nodal diameter of a number of waves per turn, as results have it: waves mod N in
+/// -N/2 < d <= N/2. It is the wave that the engine order `waves` excites; in harmonic p that of
+/// p waves. 0 for a plain structure.
+///
+/// diameter  receives it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one
+/// model.
+HBVIB_NODISCARD
+hbvib_status hbvib_cyclic_signed_diameter(const hbvib_model *model,
+                                          int64_t waves,
+                                          int64_t *diameter);
 
 /// Sets the engine order EO of the excitation: sector s + 1 lags behind sector s by 2 pi EO / N per
 /// harmonic, so that harmonic p has the nodal diameter p EO mod N. Any sign and size; without
@@ -2213,7 +2231,8 @@ typedef enum {
 /// Undamped natural modes, in ascending order of frequency. A singular mass matrix has fewer modes
 /// than degrees of freedom.
 ///
-/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// diameter  signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
+///           structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
@@ -2234,7 +2253,8 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
 /// The same as hbvib_linear_modes; a hook or the cancel flag may stop it. The status
 /// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
 ///
-/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// diameter  signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
+///           structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
@@ -2255,7 +2275,8 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
 /// lambda in the upper half plane of lambda^2 M + lambda (C + Omega G) + K + Omega^2 K1 + i D.
 /// Motions that do not oscillate are not counted. A mode that grows is told to the log.
 ///
-/// diameter    nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain one.
+/// diameter    signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
+///             structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts    HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count       number of requested modes, 1 .. ndof.
 /// eigenvalue  receives `count` complex numbers: the damped angular frequency is the imaginary
@@ -2284,7 +2305,7 @@ hbvib_status hbvib_damped_modes(const hbvib_model *model,
 ///
 /// n              number of speeds, at least 1.
 /// speeds         rising speeds, rad per time unit; n numbers.
-/// diameter       nodal diameter 0 .. N/2; 0 for a plain structure.
+/// diameter       signed nodal diameter, as hbvib_damped_modes.
 /// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count          number of modes at each speed, 1 .. ndof.
 /// omega          receives n * count damped angular frequencies, those of one speed rising, one
@@ -2306,12 +2327,15 @@ hbvib_status hbvib_campbell(const hbvib_model *model,
                             int64_t *direction,
                             const hbvib_hooks *hooks);
 
-/// The speeds at which an engine order meets a mode of the Campbell diagram, omega = engine_order *
-/// Omega, found between neighbours of the given speeds and then to rounding.
+/// The speeds at which an engine order meets a mode of the wave that it excites, omega =
+/// engine_order * Omega, found between neighbours of the given speeds and then to rounding. The
+/// wave has the signed nodal diameter engine_order mod N: engine order 9 of 10 sectors meets the
+/// modes of -1.
 ///
 /// n             number of speeds, at least 1.
 /// speeds        rising speeds, rad per time unit; n numbers.
-/// diameter      nodal diameter 0 .. N/2; 0 for a plain structure.
+/// diameter      nodal diameter of the diagram, of either sense: an engine order that excites
+///               another one meets no mode of it. HBVIB_DIAMETER_OF_ENGINE_ORDER: its own.
 /// contacts      HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count         number of modes at each speed, 1 .. ndof.
 /// engine_order  at least 1.
@@ -2338,6 +2362,37 @@ hbvib_status hbvib_campbell_crossings(const hbvib_model *model,
                                       int64_t *found,
                                       const hbvib_hooks *hooks);
 
+/// Interference (SAFE) diagram: the lowest damped modes of all N waves of a wheel at the speed of
+/// the model, as hbvib_damped_modes. Together they are the modes of the wheel, each once. Both
+/// senses of a diameter are computed where they differ: with gyroscopic or aerodynamic forces and
+/// with unsymmetric matrices. The waves that grow are told to the log.
+///
+/// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
+/// count          number of modes of each wave, 1 .. ndof.
+/// capacity       room of the arrays in waves, at least N.
+/// diameter       receives N numbers: signed nodal diameters -N/2 < d <= N/2, rising.
+/// omega          receives N * count damped angular frequencies, those of one wave rising, one wave
+///                after the other; NaN where fewer motions oscillate.
+/// damping_ratio  receives N * count damping ratios likewise, negative where the motion grows; or
+///                NULL.
+/// direction      receives N * count numbers likewise, as hbvib_damped_modes; or NULL.
+/// equal_senses   receives 1 where both senses of each diameter have the same frequencies and
+///                damping ratios, else 0; or NULL.
+/// hooks          phase, log and cancellation; progress is not called. NULL: none.
+/// Errors: HBVIB_E_UNSUPPORTED for a plain structure; HBVIB_E_DIMENSION (count, capacity), and
+/// those of hbvib_damped_modes. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_interference(const hbvib_model *model,
+                                int32_t contacts,
+                                int64_t count,
+                                int64_t capacity,
+                                int64_t *diameter,
+                                double *omega,
+                                double *damping_ratio,
+                                int64_t *direction,
+                                int64_t *equal_senses,
+                                const hbvib_hooks *hooks);
+
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
 typedef enum {
   /// The term -2 D omega M x'.
@@ -2357,8 +2412,8 @@ typedef struct {
   double log10_start;
   /// log10 of the last amplitude, above the first.
   double log10_stop;
-  /// -1 (default): the wave of the model's engine order. 0 .. sectors / 2: the forward wave of
-  /// this nodal diameter.
+  /// HBVIB_DIAMETER_OF_ENGINE_ORDER (default): the wave of the model's engine order. Else a signed
+  /// nodal diameter d, modulo N: the wave in which sector s + 1 lags by 2 pi d / N.
   int64_t diameter;
   /// Number of the linear mode, contacts stuck, from 0 (default) by rising frequency.
   int64_t mode_index;

@@ -787,11 +787,12 @@ struct DampedModes {
   double omega(std::size_t k) const { return eigenvalue[k].imag(); }
   double damping_ratio(std::size_t k) const { return -eigenvalue[k].real() / std::abs(eigenvalue[k]); }
 };
-/// An engine order at the frequency of a mode.
+/// An engine order at the frequency of a mode of the wave that it excites, whose signed nodal diameter is `diameter`.
 struct Crossing {
   Index engine_order;
   double speed, omega;
   Index direction;
+  Index diameter;
 };
 /// Damped modes over speeds: count numbers for each speed, one after the other.
 struct Campbell {
@@ -799,6 +800,14 @@ struct Campbell {
   std::vector<double> omega, damping_ratio;
   std::vector<Index> direction;
   std::vector<Crossing> crossings;
+};
+/// Damped modes of all waves of a wheel: signed nodal diameters, and count numbers for each, one after the other.
+struct Interference {
+  Index count;
+  std::vector<Index> diameters;
+  std::vector<double> omega, damping_ratio;
+  std::vector<Index> direction;
+  bool equal_senses;  ///< The waves d and -d have the same frequencies and damping ratios.
 };
 /// Natural angular frequencies, and shapes count x ndof.
 struct LinearModes {
@@ -1247,7 +1256,7 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     modes.shapes = shapes.view({count, n});
     return modes;
   }
-  /// Damped modes at rising speeds, and where engine orders meet them.
+  /// Damped modes of a signed nodal diameter at rising speeds, and where engine orders meet those of the sense that they excite.
   Campbell campbell(In<double> speeds, Index diameter, hbvib_contact_state contacts, Index count, In<Index> engine_orders) const {
     const Index n = speeds.length(), room = n * count;
     Campbell c{count, std::vector<double>(detail::room(room)), std::vector<double>(detail::room(room)), std::vector<Index>(detail::room(room)), {}};
@@ -1258,9 +1267,26 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
       Index found = 0;
       const Index order = engine_orders.data()[k];
       use(hbvib_campbell_crossings, n, speeds.data(), diameter, contacts, count, order, room, at.data(), omega.data(), sense.data(), &found, nullptr);
-      for (std::size_t i = 0; i < detail::extent(found); i++) c.crossings.push_back({order, at[i], omega[i], sense[i]});
+      const Index wave = signed_diameter(order);
+      for (std::size_t i = 0; i < detail::extent(found); i++) c.crossings.push_back({order, at[i], omega[i], sense[i], wave});
     }
     return c;
+  }
+  /// Damped modes of all waves of a wheel, in both senses of each nodal diameter, at the speed of the model.
+  Interference interference(hbvib_contact_state contacts, Index count) const {
+    const Index waves = sectors(), room = waves * count;
+    Interference all{count, std::vector<Index>(detail::room(waves)), std::vector<double>(detail::room(room)),
+                     std::vector<double>(detail::room(room)), std::vector<Index>(detail::room(room)), false};
+    Index equal = 0;
+    use(hbvib_interference, contacts, count, waves, all.diameters.data(), all.omega.data(), all.damping_ratio.data(), all.direction.data(), &equal,
+        nullptr);
+    all.equal_senses = equal != 0;
+    return all;
+  }
+  /// The signed nodal diameter of a number of waves per turn, or of the wave that an engine order excites.
+  Index signed_diameter(Index waves) const {
+    Index diameter = 0;
+    return use(hbvib_cyclic_signed_diameter, waves, &diameter), diameter;
   }
   /// A contact, read back. Its kind may be HBVIB_TABLE, HBVIB_POLYNOMIAL or HBVIB_CALLER_LAW, which have no constants.
   Contact contact(Index id) const {

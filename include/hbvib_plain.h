@@ -76,6 +76,9 @@ typedef enum {
   HBVIB_BLOCK_PREVIOUS = 2
 } hbvib_block;
 typedef enum {
+  HBVIB_DIAMETER_OF_ENGINE_ORDER = -2147483647
+} hbvib_special_diameter;
+typedef enum {
   HBVIB_AERO_DISPLACEMENT = 0,
   HBVIB_AERO_VELOCITY = 1
 } hbvib_aero_form;
@@ -663,6 +666,7 @@ hbvib_status hbvib_cyclic_new(int64_t ndof_sector, int64_t sectors, hbvib_model 
 hbvib_status hbvib_cyclic_set_coupling(hbvib_model *model, int32_t which, const hbvib_matrix *to_next);
 hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model, int32_t which, const hbvib_matrix *to_previous);
 hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model, int32_t which, int64_t diameter, const hbvib_matrix *a);
+hbvib_status hbvib_cyclic_signed_diameter(const hbvib_model *model, int64_t waves, int64_t *diameter);
 hbvib_status hbvib_cyclic_set_wave(hbvib_model *model, int64_t engine_order);
 hbvib_status hbvib_cyclic_set_aero(hbvib_model *model, int64_t n_dofs, const int64_t *dofs, int64_t n_offsets, const double *coefficients, const int64_t *offsets, int32_t form);
 hbvib_status hbvib_cyclic_aero(const hbvib_model *model, int32_t form, int64_t capacity, int64_t *dof_force, int64_t *dof_motion, int64_t *offset, double *coefficient, int64_t *count);
@@ -718,6 +722,7 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model, int64_t dia
 hbvib_status hbvib_damped_modes(const hbvib_model *model, int64_t diameter, int32_t contacts, int64_t count, double *eigenvalue, double *shapes, int64_t *direction, const hbvib_hooks *hooks);
 hbvib_status hbvib_campbell(const hbvib_model *model, int64_t n, const double *speeds, int64_t diameter, int32_t contacts, int64_t count, double *omega, double *damping_ratio, int64_t *direction, const hbvib_hooks *hooks);
 hbvib_status hbvib_campbell_crossings(const hbvib_model *model, int64_t n, const double *speeds, int64_t diameter, int32_t contacts, int64_t count, int64_t engine_order, int64_t capacity, double *speed, double *omega, int64_t *direction, int64_t *found, const hbvib_hooks *hooks);
+hbvib_status hbvib_interference(const hbvib_model *model, int32_t contacts, int64_t count, int64_t capacity, int64_t *diameter, double *omega, double *damping_ratio, int64_t *direction, int64_t *equal_senses, const hbvib_hooks *hooks);
 hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
 hbvib_status hbvib_nonlinear_mode(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_mode_options *mode, const hbvib_hooks *hooks, hbvib_branch **out);
 hbvib_status hbvib_mode_point_init(hbvib_mode_point *p, size_t size_of_p);

@@ -125,6 +125,7 @@ pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
+pub use analysis::interference::{Interference, interference};
 pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::parameter_range::{Follow, ParameterRange};

@@ -49,8 +49,8 @@ fn diameters(sector: &Sector, folder: &Path, screen: &mut impl Write) -> Outcome
         ("no contact", Interface::Absent, ContactState::Free, Style::Markers),
         ("stuck", Interface::Friction2d, ContactState::Stuck, Style::Line),
     ];
-    let highest = SECTORS / 2;
-    let mut bar = Bar::new("natural frequencies", (states.len() * (highest + 1)) as u64);
+    let highest = SECTORS as i64 / 2;
+    let mut bar = Bar::new("natural frequencies", (states.len() as i64 * (highest + 1)) as u64);
     let mut columns = Vec::new();
     let mut series = Vec::new();
     for (label, interface, state, style) in states {
@@ -59,8 +59,8 @@ fn diameters(sector: &Sector, folder: &Path, screen: &mut impl Write) -> Outcome
         for diameter in 0..=highest {
             let omega = natural_frequencies(&model, diameter, state, MODES)?;
             of_diameter.push(omega.iter().map(|w| w / TAU).collect::<Vec<_>>());
-            let done = columns.len() * (highest + 1) + diameter + 1;
-            bar.set(done as f64 / (states.len() * (highest + 1)) as f64);
+            let done = columns.len() as i64 * (highest + 1) + diameter + 1;
+            bar.set(done as f64 / (states.len() as i64 * (highest + 1)) as f64);
         }
         for mode in 0..MODES {
             let family = of_diameter.iter().enumerate();
@@ -81,7 +81,7 @@ fn diameters(sector: &Sector, folder: &Path, screen: &mut impl Write) -> Outcome
     }
     let mut rows = Vec::new();
     for diameter in 0..=highest {
-        let frequencies = columns.iter().flat_map(|c| c[diameter].iter().copied());
+        let frequencies = columns.iter().flat_map(|c| c[diameter as usize].iter().copied());
         let row: Vec<f64> = std::iter::once(diameter as f64).chain(frequencies).collect();
         write!(screen, "{diameter:>4}")?;
         for (i, f) in row[1..].iter().enumerate() {

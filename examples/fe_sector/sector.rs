@@ -167,7 +167,7 @@ impl Sector {
 /// Those of the library.
 pub fn natural_frequencies(
     model: &Model,
-    diameter: usize,
+    diameter: i64,
     state: ContactState,
     count: usize,
 ) -> hbvib::error::Result<Vec<f64>> {

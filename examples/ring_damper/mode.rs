@@ -63,7 +63,7 @@ impl Request {
         let diameter = flags.value(
             "--diameter",
             &format!("an integer 0 to {LARGEST_DIAMETER}"),
-            |d: &usize| *d <= LARGEST_DIAMETER,
+            |d: &i64| (0..=LARGEST_DIAMETER).contains(d),
         )?;
         let family = flags.value("--family", &format!("an integer 1 to {}", DOFS.len()), |k: &usize| {
             (1..=DOFS.len()).contains(k)
@@ -80,7 +80,7 @@ impl Request {
             parameters: Parameters {
                 ring_mass: positive("--ring-mass", base.ring_mass)?,
                 rpm: positive("--rpm", base.rpm)?,
-                engine_order: diameter.map_or(base.engine_order, |d| d as i64),
+                engine_order: diameter.unwrap_or(base.engine_order),
                 kt: positive("--kt", base.kt)?,
                 beta: flags.amount("--beta")?.unwrap_or(0.0),
                 ..base

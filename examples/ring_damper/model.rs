@@ -132,7 +132,7 @@ impl Parameters {
 /// # Errors
 ///
 /// If there is no such nodal diameter.
-pub fn modes_without_ring(diameter: usize) -> Result<LinearModes, Box<dyn Error>> {
+pub fn modes_without_ring(diameter: i64) -> Result<LinearModes, Box<dyn Error>> {
     Ok(structure(None)?.linear_modes(diameter, ContactState::Free)?)
 }
 
@@ -141,12 +141,12 @@ pub fn modes_without_ring(diameter: usize) -> Result<LinearModes, Box<dyn Error>
 /// # Errors
 ///
 /// If there is no such nodal diameter.
-pub fn modes_with_ring_stuck(parameters: &Parameters, diameter: usize) -> Result<LinearModes, Box<dyn Error>> {
+pub fn modes_with_ring_stuck(parameters: &Parameters, diameter: i64) -> Result<LinearModes, Box<dyn Error>> {
     Ok(parameters.model()?.linear_modes(diameter, ContactState::Stuck)?)
 }
 
 /// The largest nodal diameter.
-pub const LARGEST_DIAMETER: usize = SECTORS / 2;
+pub const LARGEST_DIAMETER: i64 = SECTORS as i64 / 2;
 
 /// Masses and springs of a sector, with the ring if it has a mass.
 fn structure(ring_mass: Option<f64>) -> Result<Model, Box<dyn Error>> {

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ._branch import Branch
 from ._c import DampingForm, Flexibility, Follow, LogLevel, Stability, Status
 from ._calls import _call, _Guard, _hooks, _stoppable
-from ._convert import _array, _counted_array, _member, _range
+from ._convert import _array, _counted_array, _diameter, _member, _range
 from ._errors import StoppedEarly, _sentence
 from ._matrices import _Matrices
 from ._origin import Origin
@@ -98,9 +98,10 @@ class _Analyses(_Matrices):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
-                       shape: Optional[ArrayLike] = None, damping_form: DampingForms = DampingForm.MASS, diameter: int = -1,
-                       mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1, reference_dof: int = -1,
-                       guess: Optional[ArrayLike] = None, guess_omega: float = 0, guess_damping: float = 0,
+                       shape: Optional[ArrayLike] = None, damping_form: DampingForms = DampingForm.MASS,
+                       diameter: Optional[int] = None, mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1,
+                       reference_dof: int = -1, guess: Optional[ArrayLike] = None, guess_omega: float = 0,
+                       guess_damping: float = 0,
                        progress: Union[bool, Callable[[Progress], Any], None] = None,
                        log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                        cancel: Optional[CancelFlag] = None,
@@ -112,7 +113,8 @@ class _Analyses(_Matrices):
         mode_index, near_omega, shape   the linear mode to start from: by number, frequency or likeness (ndof complex).
         guess, guess_omega, guess_damping   a motion near the first point with its frequency and damping ratio, such as a
                           point of another mode: branch.harmonics(p), branch.omega[p], branch.damping_ratio[p].
-        damping_form      "mass" or "stiffness".     diameter, reference_dof   -1: chosen by the library.
+        damping_form      "mass" or "stiffness".     reference_dof   -1: chosen by the library.
+        diameter          signed nodal diameter of the wave, modulo the sectors; None: that of the engine order.
         progress, log, log_level, cancel, phase   as in forced_response.
         Options of the solver, as there:
 
@@ -127,7 +129,7 @@ class _Analyses(_Matrices):
         1.4142 1.0043
         """
         start, stop = _range("log10_amplitude", log10_amplitude, "nonlinear_mode((-6, -2), at=log10_amplitude)")
-        options = _new("hbvib_mode_options", log10_start=start, log10_stop=stop, diameter=diameter,
+        options = _new("hbvib_mode_options", log10_start=start, log10_stop=stop, diameter=_diameter(diameter),
                        damping_form=_member(DampingForm, damping_form), mode_index=mode_index, near_omega=near_omega,
                        amplitude_contact=amplitude_contact, reference_dof=reference_dof, **_counted_array("at", at),
                        guess_omega=guess_omega, guess_damping=guess_damping,

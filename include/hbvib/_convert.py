@@ -7,6 +7,7 @@ from typing import Any, Optional, Sequence
 
 import numpy as np
 
+from ._c import DIAMETER_OF_ENGINE_ORDER
 from ._library import _ARGUMENTS
 
 
@@ -19,6 +20,11 @@ def _whole(value: Any, bits: int = 64, name: str = "") -> int:
     if not -(1 << bits - 1) <= number < 1 << bits - 1:
         raise OverflowError(f"{name}{' = ' * bool(name)}{number} does not fit into {bits} bits")
     return number
+
+
+def _diameter(value: Optional[int]) -> int:
+    """A nodal diameter, that of the engine order for None."""
+    return DIAMETER_OF_ENGINE_ORDER if value is None else _whole(value, name="diameter")
 
 
 def _real(value: Any) -> float:

@@ -236,7 +236,8 @@ class _Matrices(_Owner):
         self._call("hbvib_cyclic_set_coupling_previous", kind, coupling)
 
     def set_diameter(self, which: MatrixKinds, diameter: int, matrix: Any, part: Parts = Part.FULL) -> None:
-        """The complex matrix of the wave of a nodal diameter 0 .. sectors / 2, instead of sector blocks.
+        """The complex matrix of the wave of a signed nodal diameter, modulo the sectors, instead of sector blocks. A wave
+        of which only the other sense was given has the conjugate of that.
 
         >>> import hbvib
         >>> model = hbvib.Model.cyclic(1, sectors=4, engine_order=1)

@@ -1,12 +1,12 @@
 """Figures of branches and models on matplotlib, which is imported on first use."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 import numpy as np
 
 from ._errors import ArgumentError
-from ._results import Campbell
+from ._results import Campbell, Interference
 
 if TYPE_CHECKING:
     from ._branch import Branch
@@ -87,12 +87,16 @@ def loop(branch: Branch, point: int, contact: int, direction: int, n: int, ax: A
     return ax
 
 
-def campbell(diagram: Campbell, orders: Sequence[int], ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
+def campbell(diagram: Campbell, opposite: Optional[Campbell], orders: Sequence[int], ax: Any, hertz: bool,
+             line: dict[str, Any]) -> Any:
     """See Model.plot_campbell."""
     ax = axes() if ax is None else ax
     unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
     speeds = diagram.speeds / unit
     ax.plot(speeds, diagram.omega / unit, **line)
+    if opposite is not None:
+        ax.set_prop_cycle(None)
+        ax.plot(speeds, opposite.omega / unit, **{**line, "alpha": 0.4})
     top = ax.get_ylim()[1]
     for order in orders:
         ax.plot(speeds, order * speeds, "--", color="0.6", linewidth=1)
@@ -104,23 +108,32 @@ def campbell(diagram: Campbell, orders: Sequence[int], ax: Any, hertz: bool, lin
     return ax
 
 
-def interference(omega: Any, sectors: int, speed: float, orders: Sequence[int], ax: Any, hertz: bool,
+def interference(waves: Interference, speed: float, orders: Sequence[int], ax: Any, hertz: bool,
                  line: dict[str, Any]) -> Any:
     """See Model.plot_interference."""
     ax = axes() if ax is None else ax
     unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
-    diameters = np.arange(len(omega))
+    sectors, folded = len(waves.diameters), waves.equal_senses
+
+    def wave(order: Any) -> Any:
+        signed = (order + (sectors - 1) // 2) % sectors - (sectors - 1) // 2
+        return np.abs(signed) if folded else signed
+
+    shown = waves.diameters >= (0 if folded else waves.diameters[0])
+    diameters, omega = waves.diameters[shown], waves.omega[shown]
     top = 1.05 * np.nanmax(omega) / unit
     for mode in omega.T:
         ax.plot(diameters, mode / unit, **{"linestyle": "none", "marker": "o", "markersize": 4, **line})
     highest = min(int(top * unit / abs(speed)), 100 * sectors) + 1 if speed else 0
     zigzag = np.arange(highest + 1)
-    folded = np.abs((zigzag + sectors // 2) % sectors - sectors // 2)
-    ax.plot(folded, zigzag * abs(speed) / unit, "--", color="0.6", linewidth=1)
+    # A line of signed waves begins again where it leaves the diagram.
+    turns: Any = [] if folded else np.flatnonzero(np.diff(wave(zigzag)) < 0) + 1
+    for ray in np.split(zigzag, turns):
+        ax.plot(wave(ray), ray * abs(speed) / unit, "--", color="0.6", linewidth=1)
     for order in orders:
-        at = (abs((order + sectors // 2) % sectors - sectors // 2), abs(order * speed) / unit)
+        at = (wave(order), abs(order * speed) / unit)
         if at[1] <= top:
             ax.plot(*at, "s", color="0.2", markersize=4)
             ax.annotate(f"EO {order}", at, textcoords="offset points", xytext=(6, 0), va="center")
-    ax.set(xlabel="nodal diameter", ylabel=name, xlim=(-0.5, sectors // 2 + 0.5), ylim=(0, top))
+    ax.set(xlabel="nodal diameter", ylabel=name, xlim=(diameters[0] - 0.5, sectors // 2 + 0.5), ylim=(0, top))
     return ax

@@ -75,7 +75,8 @@ class DampedModes(NamedTuple):
 
 
 class Crossings(NamedTuple):
-    """Crossings of natural frequencies with engine orders: omega = engine_order * speed.
+    """Crossings of natural frequencies with engine orders: omega = engine_order * speed. diameter is the signed nodal
+    diameter of the wave that the engine order excites.
 
     >>> import hbvib
     >>> rotor = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])
@@ -88,10 +89,12 @@ class Crossings(NamedTuple):
     speed: FloatArray
     omega: FloatArray
     direction: IntArray
+    diameter: IntArray
 
 
 class Campbell(NamedTuple):
-    """A Campbell diagram: omega, damping_ratio and direction (speeds, count), NaN where fewer motions oscillate.
+    """A Campbell diagram: omega, damping_ratio and direction (speeds, count), NaN where fewer motions oscillate, of the
+    signed nodal diameter `diameter`.
 
     >>> import hbvib
     >>> rotor = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])
@@ -105,6 +108,25 @@ class Campbell(NamedTuple):
     damping_ratio: FloatArray
     direction: IntArray
     crossings: Crossings
+    diameter: int
+
+
+class Interference(NamedTuple):
+    """Damped modes of all waves of a wheel: signed diameters (sectors), rising, and omega, damping_ratio and direction
+    (sectors, count), NaN where fewer motions oscillate. equal_senses: the waves d and -d have the same omega and
+    damping_ratio.
+
+    >>> import hbvib
+    >>> wheel = hbvib.Model.cyclic(1, sectors=4, mass=1, stiffness=3, coupling=dict(stiffness=-1))
+    >>> found = wheel.interference(1)
+    >>> found.diameters.tolist(), found.omega[:, 0].round(6).tolist(), found.equal_senses
+    ([-1, 0, 1, 2], [1.732051, 1.0, 1.732051, 2.236068], True)
+    """
+    diameters: IntArray
+    omega: FloatArray
+    damping_ratio: FloatArray
+    direction: IntArray
+    equal_senses: bool
 
 
 class Points(NamedTuple):

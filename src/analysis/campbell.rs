@@ -1,6 +1,6 @@
 //! Campbell diagram: damped modes over the speed of rotation, and the speeds at which engine orders meet them.
 
-use crate::analysis::damped_modes::{DampedModes, GROWS, at_present_speed};
+use crate::analysis::damped_modes::{self, DampedModes, GROWS, has_equal_senses};
 use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_copy, try_push};
 use crate::hooks::{Hooks, LogLevel};
@@ -29,21 +29,25 @@ pub struct Campbell {
     pub speeds: Vec<f64>,
     /// Modes per speed.
     pub count: usize,
+    /// Signed nodal diameter of the modes, −N/2 < d ≤ N/2.
+    pub diameter: i64,
     /// Damped angular frequencies, rising at each speed; NaN where fewer motions oscillate.
     pub omega: Vec<f64>,
     /// Damping ratios.
     pub damping_ratio: Vec<f64>,
     /// Directions as in [`DampedModes::direction`].
     pub direction: Vec<i64>,
-    /// Speeds at which EO·Ω is a natural frequency, by engine order, then by speed.
+    /// Speeds at which EO·Ω is a natural frequency of the wave that EO excites, by engine order, then by speed.
     pub crossings: Vec<Crossing>,
 }
 
-/// An engine order at the frequency of a mode.
+/// An engine order at the frequency of a mode of the wave that it excites.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// EO
     pub engine_order: i64,
+    /// Signed nodal diameter EO mod N of the wave, −N/2 < d ≤ N/2.
+    pub diameter: i64,
     /// Ω
     pub speed: f64,
     /// ω = EO·Ω
@@ -52,8 +56,10 @@ pub struct Crossing {
     pub direction: i64,
 }
 
-/// The `count` lowest damped modes at each of `speeds`, which rise, and the speeds between them at which one of
-/// `engine_orders` meets a mode. The speed of the model has no effect.
+/// The `count` lowest damped modes of a signed nodal diameter, modulo N, at each of `speeds`, which rise, and the speeds
+/// between them at which one of `engine_orders` meets a mode. An engine order excites the wave EO mod N: it meets the modes of
+/// that sense of the diameter, whichever sense was given, and none of another diameter, which is told to the log. The speed of
+/// the model has no effect.
 ///
 /// # Errors
 /// `Dimension`, `NotFinite` or `Argument` for the speeds, the count or an engine order; those of
@@ -61,57 +67,138 @@ pub struct Crossing {
 pub fn campbell(
     model: &Model,
     speeds: &[f64],
-    (diameter, contacts, count): (usize, LinearContacts, usize),
+    (diameter, contacts, count): (i64, LinearContacts, usize),
     engine_orders: &[i64],
     hooks: &mut Hooks<'_>,
 ) -> Result<Campbell> {
     check(speeds, engine_orders)?;
+    model.structure().check_diameter(diameter)?;
+    let structure = model.structure();
     let interrupt = hooks.interrupt();
-    let mut rotating = model.try_clone()?;
-    let mut at = |speed: f64| {
-        rotating.set_speed(Speed::Fixed(speed))?;
-        at_present_speed(&rotating, diameter, contacts, count, &interrupt)
-    };
-    let mut found = Campbell {
+    let mut modes = ModesAtSpeed {
+        rotating: model.try_clone()?,
+        contacts,
         count,
-        ..Campbell::default()
+        interrupt: &interrupt,
     };
-    for (i, &speed) in speeds.iter().enumerate() {
-        interrupt.part(Phase::Modes, i, speeds.len())?;
-        let modes = at(speed)?;
-        try_push(&mut found.speeds, speed, CONTEXT)?;
-        for k in 0..count {
-            let known = k < modes.count();
-            let omega = if known { modes.omega(k) } else { f64::NAN };
-            let ratio = if known { modes.damping_ratio(k) } else { f64::NAN };
-            try_push(&mut found.omega, omega, CONTEXT)?;
-            try_push(&mut found.damping_ratio, ratio, CONTEXT)?;
-            try_push(
-                &mut found.direction,
-                modes.direction.get(k).copied().unwrap_or(0),
-                CONTEXT,
-            )?;
-        }
-    }
-    let mut stretches = Vec::new();
-    for i in 1..speeds.len() {
-        let end = |i: usize| known(&found, i);
-        let whole = Stretch {
-            low: end(i - 1)?,
-            high: end(i)?,
-            is_first: i == 1,
-        };
-        divide(&mut at, whole, &mut stretches, &interrupt)?;
+    let is_wheel = structure.sectors() > 1;
+    let own = structure.signed_diameter(diameter);
+    let other = structure.signed_diameter(-own);
+    let mut found = modes.lines(own, speeds)?;
+    tell_growth(&found, is_wheel, hooks);
+    let stretches = modes.stretches(&found)?;
+    let is_other = |order: i64| structure.signed_diameter(order) == other;
+    let mut opposite = None;
+    if other != own && engine_orders.iter().any(|&order| is_other(order)) && !modes.has_equal_senses(own, speeds)? {
+        let lines = modes.lines(other, speeds)?;
+        tell_growth(&lines, is_wheel, hooks);
+        opposite = Some(modes.stretches(&lines)?);
     }
     for &engine_order in engine_orders {
+        let wave = structure.signed_diameter(engine_order);
+        // Equal senses have equal frequencies, but opposite directions.
+        let (stretches, of, sign) = match &opposite {
+            _ if wave == own => (&stretches, own, 1),
+            Some(stretches) if wave == other => (stretches, other, 1),
+            None if wave == other => (&stretches, own, -1),
+            _ => {
+                let text = format!(
+                    "engine order {engine_order} excites the nodal diameter {wave} and meets no mode of the diameter {own}"
+                );
+                hooks.log(LogLevel::Info, &text);
+                continue;
+            }
+        };
         let first = found.crossings.len();
-        for stretch in &stretches {
-            meetings(&mut at, stretch, engine_order, &mut found.crossings, &interrupt)?;
+        for stretch in stretches {
+            meetings(
+                &mut |speed| modes.at(of, speed),
+                stretch,
+                engine_order,
+                &mut found.crossings,
+                &interrupt,
+            )?;
+        }
+        for crossing in &mut found.crossings[first..] {
+            crossing.diameter = wave;
+            crossing.direction *= sign;
         }
         found.crossings[first..].sort_by(|a, b| a.speed.total_cmp(&b.speed));
     }
-    tell_growth(&found, hooks);
     Ok(found)
+}
+
+/// The modes of waves at any speed.
+struct ModesAtSpeed<'a> {
+    rotating: Model,
+    contacts: LinearContacts,
+    count: usize,
+    interrupt: &'a Interrupt<'a>,
+}
+
+impl ModesAtSpeed<'_> {
+    fn at(&mut self, diameter: i64, speed: f64) -> Result<DampedModes> {
+        self.rotating.set_speed(Speed::Fixed(speed))?;
+        damped_modes::check(&self.rotating, diameter, self.count)?;
+        let contacts = self.contacts.prepared(&self.rotating, self.interrupt)?;
+        damped_modes::of_wave(&self.rotating, diameter, contacts.state(), self.count, self.interrupt)
+    }
+
+    /// The diagram of a wave without crossings.
+    fn lines(&mut self, diameter: i64, speeds: &[f64]) -> Result<Campbell> {
+        let mut found = Campbell {
+            count: self.count,
+            diameter,
+            ..Campbell::default()
+        };
+        for (i, &speed) in speeds.iter().enumerate() {
+            self.interrupt.part(Phase::Modes, i, speeds.len())?;
+            let modes = self.at(diameter, speed)?;
+            try_push(&mut found.speeds, speed, CONTEXT)?;
+            for k in 0..self.count {
+                let known = k < modes.count();
+                let omega = if known { modes.omega(k) } else { f64::NAN };
+                let ratio = if known { modes.damping_ratio(k) } else { f64::NAN };
+                let direction = modes.direction.get(k).copied().unwrap_or(0);
+                try_push(&mut found.omega, omega, CONTEXT)?;
+                try_push(&mut found.damping_ratio, ratio, CONTEXT)?;
+                try_push(&mut found.direction, direction, CONTEXT)?;
+            }
+        }
+        Ok(found)
+    }
+
+    /// The parts between the speeds of a diagram in which equally many motions oscillate.
+    fn stretches(&mut self, lines: &Campbell) -> Result<Vec<Stretch>> {
+        let mut stretches = Vec::new();
+        for i in 1..lines.speeds.len() {
+            let whole = Stretch {
+                low: known(lines, i - 1)?,
+                high: known(lines, i)?,
+                is_first: i == 1,
+            };
+            let interrupt = self.interrupt;
+            divide(
+                &mut |speed| self.at(lines.diameter, speed),
+                whole,
+                &mut stretches,
+                interrupt,
+            )?;
+        }
+        Ok(stretches)
+    }
+
+    /// Whether both senses of a diameter have the same frequencies at all speeds.
+    fn has_equal_senses(&mut self, diameter: i64, speeds: &[f64]) -> Result<bool> {
+        for &speed in speeds {
+            self.rotating.set_speed(Speed::Fixed(speed))?;
+            let contacts = self.contacts.prepared(&self.rotating, self.interrupt)?;
+            if !has_equal_senses(&self.rotating, diameter, contacts.state())? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
 }
 
 fn check(speeds: &[f64], engine_orders: &[i64]) -> Result<()> {
@@ -254,6 +341,7 @@ fn meetings(
         };
         let crossing = Crossing {
             engine_order,
+            diameter: 0,
             speed,
             omega: modes.omega(k),
             direction: modes.direction[k],
@@ -264,7 +352,7 @@ fn meetings(
 }
 
 /// Tells the first mode that grows, and at how many speeds one does.
-fn tell_growth(found: &Campbell, hooks: &mut Hooks<'_>) {
+fn tell_growth(found: &Campbell, is_wheel: bool, hooks: &mut Hooks<'_>) {
     let grows = |row: &[f64]| row.iter().position(|ratio| *ratio < GROWS);
     let mut growing = found
         .damping_ratio
@@ -272,8 +360,13 @@ fn tell_growth(found: &Campbell, hooks: &mut Hooks<'_>) {
         .enumerate()
         .filter_map(|(i, row)| grows(row).map(|k| (i, k)));
     let Some((i, k)) = growing.next() else { return };
+    let wave = if is_wheel {
+        format!(" in the wave of the nodal diameter {}", found.diameter)
+    } else {
+        String::new()
+    };
     let text = format!(
-        "modes grow at {} of {} speeds: mode {k} at the speed {} has the damping ratio {:.3e}",
+        "modes grow at {} of {} speeds: mode {k} at the speed {} has the damping ratio {:.3e}{wave}",
         1 + growing.count(),
         found.speeds.len(),
         found.speeds[i],

@@ -8,6 +8,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
+use crate::model::linear_modes::ContactState;
 use crate::model::quadratic_modes::Quadratic;
 use crate::model::speed::Speed;
 use crate::model::spring_stiffness::Wave;
@@ -19,6 +20,12 @@ const EQUAL: f64 = 1e-7;
 
 /// Change of the frequency with the speed, over the size of its terms, that is rounding.
 const NO_CHANGE: f64 = 1e-9;
+
+/// Change of the frequency with the speed, over the largest of a degree of freedom alone, that is rounding.
+const UNTOUCHED: f64 = 1e-10;
+
+/// Difference of two matrices, relative to their largest entry, that is rounding.
+const EQUAL_MATRICES: f64 = 4e-15;
 
 /// Relative distance of the shift from an eigenvalue.
 const OFFSET: f64 = 1e-8;
@@ -60,22 +67,25 @@ impl DampedModes {
     }
 }
 
-/// The `count` lowest damped modes of nodal diameter `diameter`, fewer if fewer motions oscillate. A mode that grows
-/// is told to the log.
+/// The `count` lowest damped modes of the signed nodal diameter `diameter`, modulo N, fewer if fewer motions oscillate: the
+/// wave in which sector s + 1 lags by 2π·diameter/N. With gyroscopic or aerodynamic forces, unsymmetric or complex matrices
+/// the wave of −`diameter` has other modes. A mode that grows is told to the log.
 ///
 /// # Errors
-/// `Argument` for a diameter or count out of range and for a speed that is tied to the frequency; those of the
+/// `Argument` for a diameter of a plain structure, a count of 0 and for a speed that is tied to the frequency; those of the
 /// matrices and eigensolvers; `NoConvergence` or `Singular` without a static state; `StoppedByCaller`.
 pub fn damped_modes(
     model: &Model,
-    diameter: usize,
+    diameter: i64,
     contacts: LinearContacts,
     count: usize,
     hooks: &mut Hooks<'_>,
 ) -> Result<DampedModes> {
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Modes, 0.0)?;
-    let found = at_present_speed(model, diameter, contacts, count, &interrupt)?;
+    check(model, diameter, count)?;
+    let contacts = contacts.prepared(model, &interrupt)?;
+    let found = of_wave(model, diameter, contacts.state(), count, &interrupt)?;
     for k in 0..found.count() {
         if found.damping_ratio(k) < GROWS {
             let text = format!(
@@ -89,24 +99,10 @@ pub fn damped_modes(
     Ok(found)
 }
 
-/// The modes at the speed of the model.
-pub(super) fn at_present_speed(
-    model: &Model,
-    diameter: usize,
-    contacts: LinearContacts,
-    count: usize,
-    interrupt: &Interrupt<'_>,
-) -> Result<DampedModes> {
+/// Checks what is requested.
+pub(super) fn check(model: &Model, diameter: i64, count: usize) -> Result<()> {
     model.check_matrices(true)?;
-    let structure = model.structure();
-    let highest = structure.sectors() / 2;
-    if diameter > highest {
-        return fail!(
-            Argument,
-            "diameter = {diameter}, needs 0 .. {highest} for {} sectors",
-            structure.sectors()
-        );
-    }
+    model.structure().check_diameter(diameter)?;
     if count == 0 {
         return fail!(Argument, "count = 0, needs at least 1");
     }
@@ -116,25 +112,27 @@ pub(super) fn at_present_speed(
             "the speed is tied to the frequency, and a damped mode belongs to one speed: set a fixed speed"
         );
     }
-    let wave = Wave::Diameter(diameter);
-    let mass = structure.of_wave(MatrixKind::Mass, wave)?;
-    let damping = structure.of_wave(MatrixKind::Damping, wave)?;
-    let structural = structure.of_wave(MatrixKind::Structural, wave)?;
-    let contacts = contacts.prepared(model, interrupt)?;
-    let sprung = model.stiffness_at_small_motion(wave, contacts.state())?;
-    let terms = [
-        (Complex64::ONE, &sprung, Form::Plain),
-        (Complex64::I, &structural, Form::Plain),
-    ];
-    let stiffness = Csc::sum(mass.rows, &terms)?;
+    Ok(())
+}
+
+/// The modes at the speed of the model, checked.
+pub(super) fn of_wave(
+    model: &Model,
+    diameter: i64,
+    contacts: ContactState<'_>,
+    count: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<DampedModes> {
+    let structure = model.structure();
+    let matrices = WaveMatrices::new(model, diameter, contacts)?;
     let problem = Quadratic {
-        mass: &mass,
-        damping: &damping,
-        stiffness: &stiffness,
+        mass: &matrices.mass,
+        damping: &matrices.damping,
+        stiffness: &matrices.stiffness,
     };
     // One more shows whether the last shares its frequency.
     let mut pairs = problem.lowest(count.saturating_add(1), interrupt)?;
-    let gyroscopic = structure.of_wave(MatrixKind::Gyroscopic, wave)?;
+    let gyroscopic = structure.of_wave(MatrixKind::Gyroscopic, Wave::Diameter(diameter))?;
     let mut found = DampedModes::default();
     for (k, (eigenvalue, shape)) in pairs.iter().enumerate().take(count) {
         interrupt.check()?;
@@ -157,6 +155,65 @@ pub(super) fn at_present_speed(
         try_extend(&mut found.shapes, &all, CONTEXT)?;
     }
     Ok(found)
+}
+
+/// Whether the waves d and −d have the same eigenvalues: every matrix of the one is the transpose of that of the other. The
+/// directions of their modes are then opposite.
+pub(super) fn has_equal_senses(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<bool> {
+    let one = WaveMatrices::new(model, diameter, contacts)?;
+    let other = WaveMatrices::new(model, -diameter, contacts)?;
+    let pairs = [
+        (&one.mass, &other.mass),
+        (&one.damping, &other.damping),
+        (&one.stiffness, &other.stiffness),
+    ];
+    for (a, b) in pairs {
+        let terms = [(Complex64::ONE, a, Form::Plain), ((-1.0).into(), b, Form::Transposed)];
+        if Csc::sum(a.rows, &terms)?.max_abs() > EQUAL_MATRICES * a.max_abs() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// M, C with ΩG, and K + Ω²K₁ + iD of a wave.
+struct WaveMatrices {
+    mass: Csc,
+    damping: Csc,
+    stiffness: Csc,
+}
+
+impl WaveMatrices {
+    fn new(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<Self> {
+        let structure = model.structure();
+        let wave = Wave::Diameter(diameter);
+        let mass = structure.of_wave(MatrixKind::Mass, wave)?;
+        let structural = structure.of_wave(MatrixKind::Structural, wave)?;
+        let sprung = model.stiffness_at_small_motion(wave, contacts)?;
+        let terms = [
+            (Complex64::ONE, &sprung, Form::Plain),
+            (Complex64::I, &structural, Form::Plain),
+        ];
+        Ok(Self {
+            damping: structure.of_wave(MatrixKind::Damping, wave)?,
+            stiffness: Csc::sum(mass.rows, &terms)?,
+            mass,
+        })
+    }
+}
+
+/// Largest |Gᵢⱼ|/√(MᵢᵢMⱼⱼ): no mode changes its frequency much faster with the speed.
+fn largest_change(mass: &Csc, gyroscopic: &Csc) -> f64 {
+    let mut largest = 0.0_f64;
+    for j in 0..gyroscopic.cols {
+        for (i, g) in gyroscopic.column(j) {
+            let inertia = (mass.get(i, i).re * mass.get(j, j).re).max(0.0).sqrt();
+            if inertia > 0.0 {
+                largest = largest.max(g.norm() / inertia);
+            }
+        }
+    }
+    largest
 }
 
 /// Sign of dω/dΩ at fixed K₁: dλ/dΩ = −λ yᴴGx / yᴴ(2λM + C)x with the left eigenvector y.
@@ -186,13 +243,15 @@ fn direction(
     let work = product(&forces);
     let size: f64 = left.iter().zip(&forces).map(|(a, b)| (a * b).norm()).sum();
     let change = -eigenvalue * work / product(&problem.slope_times(eigenvalue, x)?);
-    Ok(
-        if work.norm() <= NO_CHANGE * size || change.im.abs() <= NO_CHANGE * change.norm() {
-            0
-        } else if change.im > 0.0 {
-            1
-        } else {
-            -1
-        },
-    )
+    // A mode that gyroscopic forces do not touch moves their degrees of freedom by rounding, which has a sense of its own.
+    let is_rounding = work.norm() <= NO_CHANGE * size
+        || change.im.abs() <= NO_CHANGE * change.norm()
+        || change.im.abs() <= UNTOUCHED * largest_change(problem.mass, gyroscopic);
+    Ok(if is_rounding {
+        0
+    } else if change.im > 0.0 {
+        1
+    } else {
+        -1
+    })
 }

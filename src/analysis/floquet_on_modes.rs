@@ -241,7 +241,7 @@ fn refuse(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
     refuse_structural_damping(structure, omega)?;
     let highest = structure.sectors() / 2;
     for diameter in [0, highest] {
-        let wave = Wave::Diameter(diameter);
+        let wave = Wave::Diameter(diameter as i64);
         refuse_massless(&structure.of_wave(MatrixKind::Mass, wave)?, structure.ndof())?;
         let is_own_mirror = (2 * diameter).is_multiple_of(structure.sectors());
         for which in [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness] {

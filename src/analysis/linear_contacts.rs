@@ -55,13 +55,13 @@ impl PreparedContacts {
     }
 }
 
-/// The `count` lowest undamped modes of a nodal diameter; see [`Model::lowest_modes_with`].
+/// The `count` lowest undamped modes of a signed nodal diameter; see [`Model::lowest_modes_with`].
 ///
 /// # Errors
 /// As [`Model::lowest_modes_with`]; `NoConvergence` or `Singular` without an equilibrium.
 pub fn linear_modes(
     model: &Model,
-    diameter: usize,
+    diameter: i64,
     contacts: LinearContacts,
     count: usize,
     interrupt: &Interrupt<'_>,

@@ -17,6 +17,7 @@ mod forced_equations;
 pub mod forced_response;
 pub mod further_threads;
 pub mod harmonic_residual;
+pub mod interference;
 pub mod linear_contacts;
 mod mode_discretised;
 mod mode_equations;

@@ -91,7 +91,7 @@ pub fn nonlinear_mode(
         None => model,
         Some(diameter) => {
             let mut model = model.try_clone()?;
-            model.set_wave(diameter as i64);
+            model.set_wave(model.structure().signed_diameter(diameter));
             other_wave = model;
             &other_wave
         }

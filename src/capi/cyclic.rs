@@ -1,12 +1,14 @@
 //! Section "Cyclic structures" of the header.
 
+#![allow(non_camel_case_types)]
+
 use super::arrays::{check_pointer, count};
 use super::boundary::{WithArgument, call};
-use super::handles::{insert, write};
+use super::handles::{insert, read, write};
 use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
-use crate::error::{Error, Result, Status, fail};
+use crate::error::{Result, Status, fail};
 use crate::model::Model;
 
 /// Creates a cyclic structure, described by one of its sectors, under engine order 0: all matrices
@@ -82,14 +84,14 @@ pub unsafe extern "C" fn hbvib_cyclic_set_coupling_previous(
 }
 
 /// Sets the matrix of the wave in which sector s + 1 lags by 2 pi diameter / N, instead of sector
-/// blocks. Waves in the other direction have its conjugate. A solve that needs a harmonic without a
-/// matrix of its nodal diameter is refused.
+/// blocks. A wave of which only the other sense was given has the conjugate of that. A solve that
+/// needs a harmonic without a matrix of its nodal diameter is refused.
 ///
 /// which     HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
-/// diameter  nodal diameter, 0 .. N/2.
+/// diameter  signed nodal diameter, modulo N: -N/2 < d <= N/2; 0 for a plain structure.
 /// a         ndof x ndof, Hermitian; all but M may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
-/// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
-/// matrices that were given by sector blocks. Threads: one at a time per model.
+/// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter of a plain structure
+/// and for matrices that were given by sector blocks. Threads: one at a time per model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_cyclic_set_diameter(
     model: *mut hbvib_model,
@@ -100,26 +102,60 @@ pub unsafe extern "C" fn hbvib_cyclic_set_diameter(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let which = matrix_kind(which)?;
-        let diameter = nodal_diameter(&model, diameter, 3)?;
+        if is_of_engine_order(diameter) {
+            return fail!(
+                Argument,
+                "diameter = {diameter}, needs a number of waves: a matrix belongs to one"
+            )
+            .with_argument(3);
+        }
+        model.structure().check_diameter(diameter).with_argument(3)?;
         unsafe { with_matrix(a, 4, model.ndof(), |a| model.set_diameter(which, diameter, a)) }?;
         Ok(Status::Ok)
     })
 }
 
-pub(super) fn nodal_diameter(model: &Model, diameter: i64, argument: i32) -> Result<usize> {
-    let sectors = model.structure().sectors();
-    match usize::try_from(diameter) {
-        Ok(d) if d <= sectors / 2 => Ok(d),
-        _ => Err(Error::new(
-            Status::Argument,
-            format_args!(
-                "diameter = {diameter}, needs 0 .. {} for {sectors} sectors; a wave of {diameter} diameters is that of {}",
-                sectors / 2,
-                model.structure().fold(diameter).0
-            ),
-        )
-        .in_argument(argument)),
+/// A nodal diameter that is no number of waves; these are signed and count modulo N.
+#[repr(C)]
+pub enum hbvib_special_diameter {
+    /// The wave that the engine order of the model excites, or that of the same call.
+    HBVIB_DIAMETER_OF_ENGINE_ORDER = -2_147_483_647,
+}
+
+/// Whether a nodal diameter is that of the engine order.
+pub(super) fn is_of_engine_order(diameter: i64) -> bool {
+    diameter == hbvib_special_diameter::HBVIB_DIAMETER_OF_ENGINE_ORDER as i64
+}
+
+/// The signed nodal diameter of a number of waves per turn, or of an engine order.
+pub(super) fn nodal_diameter(model: &Model, diameter: i64, engine_order: i64, argument: i32) -> Result<i64> {
+    let structure = model.structure();
+    if is_of_engine_order(diameter) {
+        return Ok(structure.signed_diameter(engine_order));
     }
+    structure.check_diameter(diameter).with_argument(argument)?;
+    Ok(structure.signed_diameter(diameter))
+}
+
+/// The signed nodal diameter of a number of waves per turn, as results have it: waves mod N in
+/// -N/2 < d <= N/2. It is the wave that the engine order `waves` excites; in harmonic p that of
+/// p waves. 0 for a plain structure.
+///
+/// diameter  receives it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one
+/// model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cyclic_signed_diameter(
+    model: *const hbvib_model,
+    waves: i64,
+    diameter: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let model = read::<Model>(model, 1)?;
+        check_pointer(diameter, 3, "diameter")?;
+        unsafe { diameter.write(model.structure().signed_diameter(waves)) };
+        Ok(Status::Ok)
+    })
 }
 
 /// Sets the engine order EO of the excitation: sector s + 1 lags behind sector s by 2 pi EO / N per

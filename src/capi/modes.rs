@@ -4,6 +4,7 @@
 
 use super::arrays::{count, input};
 use super::boundary::{WithArgument, call};
+use super::cyclic::{hbvib_special_diameter, is_of_engine_order};
 use super::handles::read;
 use super::model::hbvib_model;
 use super::solve::{follow, hbvib_branch};
@@ -40,8 +41,8 @@ pub struct hbvib_mode_options {
     pub log10_start: f64,
     /// log10 of the last amplitude, above the first.
     pub log10_stop: f64,
-    /// -1 (default): the wave of the model's engine order. 0 .. sectors / 2: the forward wave of
-    /// this nodal diameter.
+    /// HBVIB_DIAMETER_OF_ENGINE_ORDER (default): the wave of the model's engine order. Else a signed
+    /// nodal diameter d, modulo N: the wave in which sector s + 1 lags by 2 pi d / N.
     pub diameter: i64,
     /// Number of the linear mode, contacts stuck, from 0 (default) by rising frequency.
     pub mode_index: i64,
@@ -87,7 +88,7 @@ unsafe impl VersionedStruct for hbvib_mode_options {
             damping_form: hbvib_damping_form::HBVIB_DAMPING_MASS as i32,
             log10_start: 0.0,
             log10_stop: 0.0,
-            diameter: -1,
+            diameter: hbvib_special_diameter::HBVIB_DIAMETER_OF_ENGINE_ORDER as i64,
             mode_index: 0,
             near_omega: 0.0,
             shape: ptr::null(),
@@ -176,17 +177,9 @@ unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> Result<Mode
         }
     };
     let sectors = model.structure().sectors();
-    let diameter = match usize::try_from(o.diameter) {
-        Ok(d) => Some(d),
-        Err(_) if o.diameter == -1 => None,
-        Err(_) => {
-            return fail!(
-                Argument,
-                "diameter = {}, needs 0 .. {} or -1 (the model's wave)",
-                o.diameter,
-                sectors / 2
-            );
-        }
+    let diameter = match o.diameter {
+        own if is_of_engine_order(own) => None,
+        other => Some(other),
     };
     let at_len = count(o.at_len, 3, "at_len")?;
     let contact = optional(

@@ -17,7 +17,7 @@ use crate::error::{Result, Status, fail};
 use crate::model::Model;
 
 /// A number of modes, 1 .. ndof.
-fn modes(count: i64, model: &Model, argument: i32) -> Result<usize> {
+pub(super) fn modes(count: i64, model: &Model, argument: i32) -> Result<usize> {
     match usize::try_from(count) {
         Ok(modes) if modes > 0 && modes <= model.ndof() => Ok(modes),
         _ => fail!(Dimension, "count = {count}, needs 1 .. ndof = {}", model.ndof()).with_argument(argument),
@@ -28,7 +28,8 @@ fn modes(count: i64, model: &Model, argument: i32) -> Result<usize> {
 /// lambda in the upper half plane of lambda^2 M + lambda (C + Omega G) + K + Omega^2 K1 + i D.
 /// Motions that do not oscillate are not counted. A mode that grows is told to the log.
 ///
-/// diameter    nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain one.
+/// diameter    signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
+///             structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts    HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count       number of requested modes, 1 .. ndof.
 /// eigenvalue  receives `count` complex numbers: the damped angular frequency is the imaginary
@@ -56,7 +57,7 @@ pub unsafe extern "C" fn hbvib_damped_modes(
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 8) }?;
         let model = read::<Model>(model, 1)?;
-        let diameter = nodal_diameter(&model, diameter, 2)?;
+        let diameter = nodal_diameter(&model, diameter, model.structure().engine_order(), 2)?;
         let state = contact_state_of(contacts, 3)?;
         let wanted = modes(count, &model, 4)?;
         check_pointer(eigenvalue, 5, "eigenvalue")?;
@@ -88,7 +89,7 @@ pub unsafe extern "C" fn hbvib_damped_modes(
 ///
 /// n              number of speeds, at least 1.
 /// speeds         rising speeds, rad per time unit; n numbers.
-/// diameter       nodal diameter 0 .. N/2; 0 for a plain structure.
+/// diameter       signed nodal diameter, as hbvib_damped_modes.
 /// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count          number of modes at each speed, 1 .. ndof.
 /// omega          receives n * count damped angular frequencies, those of one speed rising, one
@@ -113,7 +114,7 @@ pub unsafe extern "C" fn hbvib_campbell(
 ) -> hbvib_status {
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 10) }?;
-        let (model, speeds, at) = unsafe { diagram(model, (n, speeds), diameter, contacts, count) }?;
+        let (model, speeds, at) = unsafe { diagram(model, (n, speeds), (diameter, None), contacts, count) }?;
         check_pointer(omega, 7, "omega")?;
         if !damping_ratio.is_null() {
             check_pointer(damping_ratio, 8, "damping_ratio")?;
@@ -135,12 +136,15 @@ pub unsafe extern "C" fn hbvib_campbell(
     })
 }
 
-/// The speeds at which an engine order meets a mode of the Campbell diagram, omega = engine_order *
-/// Omega, found between neighbours of the given speeds and then to rounding.
+/// The speeds at which an engine order meets a mode of the wave that it excites, omega =
+/// engine_order * Omega, found between neighbours of the given speeds and then to rounding. The
+/// wave has the signed nodal diameter engine_order mod N: engine order 9 of 10 sectors meets the
+/// modes of -1.
 ///
 /// n             number of speeds, at least 1.
 /// speeds        rising speeds, rad per time unit; n numbers.
-/// diameter      nodal diameter 0 .. N/2; 0 for a plain structure.
+/// diameter      nodal diameter of the diagram, of either sense: an engine order that excites
+///               another one meets no mode of it. HBVIB_DIAMETER_OF_ENGINE_ORDER: its own.
 /// contacts      HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count         number of modes at each speed, 1 .. ndof.
 /// engine_order  at least 1.
@@ -170,7 +174,8 @@ pub unsafe extern "C" fn hbvib_campbell_crossings(
 ) -> hbvib_status {
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 13) }?;
-        let (model, speeds, at) = unsafe { diagram(model, (n, speeds), diameter, contacts, count) }?;
+        let (model, speeds, at) =
+            unsafe { diagram(model, (n, speeds), (diameter, Some(engine_order)), contacts, count) }?;
         if engine_order < 1 {
             return fail!(Argument, "engine_order = {engine_order}, needs at least 1").with_argument(7);
         }
@@ -204,7 +209,7 @@ pub unsafe extern "C" fn hbvib_campbell_crossings(
 }
 
 /// Nodal diameter, state of the contacts and number of modes.
-type Requested = (usize, LinearContacts, usize);
+type Requested = (i64, LinearContacts, usize);
 
 /// The model, the speeds, and what is requested at each:
 /// arguments 1 to 6 of the functions of a Campbell diagram.
@@ -214,14 +219,15 @@ type Requested = (usize, LinearContacts, usize);
 unsafe fn diagram<'a>(
     model: *const hbvib_model,
     (n, speeds): (i64, *const f64),
-    diameter: i64,
+    (diameter, engine_order): (i64, Option<i64>),
     contacts: i32,
     count: i64,
 ) -> Result<(Reading<Model>, &'a [f64], Requested)> {
     let model = read::<Model>(model, 1)?;
     let n = self::count(n, 2, "n")?;
     let speeds = unsafe { input(speeds, n, 3, "speeds") }?;
-    let diameter = nodal_diameter(&model, diameter, 4)?;
+    let engine_order = engine_order.unwrap_or(model.structure().engine_order());
+    let diameter = nodal_diameter(&model, diameter, engine_order, 4)?;
     let state = contact_state_of(contacts, 5)?;
     let wanted = modes(count, &model, 6)?;
     Ok((model, speeds, (diameter, state, wanted)))

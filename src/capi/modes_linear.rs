@@ -29,7 +29,8 @@ pub enum hbvib_contact_state {
 /// Undamped natural modes, in ascending order of frequency. A singular mass matrix has fewer modes
 /// than degrees of freedom.
 ///
-/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// diameter  signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
+///           structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
@@ -54,7 +55,8 @@ pub unsafe extern "C" fn hbvib_linear_modes(
 /// The same as hbvib_linear_modes; a hook or the cancel flag may stop it. The status
 /// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
 ///
-/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// diameter  signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
+///           structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
@@ -75,7 +77,7 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 7) }?;
         let model = read::<Model>(model, 1)?;
-        let diameter = nodal_diameter(&model, diameter, 2)?;
+        let diameter = nodal_diameter(&model, diameter, model.structure().engine_order(), 2)?;
         let state = contact_state_of(contacts, 3)?;
         let wanted = usize::try_from(count).unwrap_or(0);
         check_pointer(omega, 5, "omega")?;

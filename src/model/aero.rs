@@ -84,7 +84,11 @@ impl Structure {
         };
         let mut entries = Vec::new();
         influence.visit(self.wheel(), |offset, p, q, c| {
-            try_push(&mut entries, (p, q, -c * self.wave_phase(residue, offset)), CONTEXT)
+            try_push(
+                &mut entries,
+                (p, q, -c * self.wave_phase(residue as i64, offset)),
+                CONTEXT,
+            )
         })?;
         let mut matrix = Csc::from_triplets(self.ndof(), self.ndof(), entries)?;
         if real {

@@ -12,7 +12,8 @@ pub(super) struct Blocks {
     pub next: Option<KeptMatrix>,
     /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
     pub previous: Option<KeptMatrix>,
-    /// Matrices per nodal diameter 0 ..= N/2, instead of blocks.
+    /// Matrices per nodal diameter by its residue modulo N, instead of blocks: 0 ..= N/2, or 0 .. N where one was given for a
+    /// negative diameter.
     pub diameters: Vec<Option<KeptMatrix>>,
 }
 

@@ -19,7 +19,8 @@ const LOSS: Complex64 = Complex64::new(0.0, -0.5);
 
 impl Structure {
     /// Whether the stiffness is complex and not Hermitian, but symmetric, so that what is not Hermitian in it dissipates. A
-    /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror only.
+    /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror, and where that of −d was given,
+    /// which is then the transpose; of real sectors without symmetry it is the conjugate.
     #[must_use]
     pub fn has_complex_stiffness(&self) -> bool {
         let blocks = &self.blocks[MatrixKind::Stiffness as usize];
@@ -34,8 +35,13 @@ impl Structure {
                 .filter(|(_, a)| !has(a, Symmetry::Hermitian))
                 .peekable();
             let own_mirror = |d: usize| (2 * d).is_multiple_of(self.sectors());
+            let is_transposed = |d: usize, a: &KeptMatrix| {
+                let other = blocks.diameters.get((self.sectors() - d) % self.sectors());
+                other.and_then(Option::as_ref).is_none_or(|b| are_transposed(a, b))
+            };
             return lossy.peek().is_some()
-                && lossy.all(|(d, a)| !a.is_real() && (!own_mirror(d) || has(a, Symmetry::Plain)));
+                && lossy
+                    .all(|(d, a)| !a.is_real() && (!own_mirror(d) || has(a, Symmetry::Plain)) && is_transposed(d, a));
         }
         let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
             (Some(next), Some(previous)) => {
@@ -141,6 +147,16 @@ fn combined<A: Columns>(a: &A, mirror: &A, factor: Complex64) -> Result<Csc> {
             (factor.conj(), &mirrored, Form::Conjugated),
         ],
     )
+}
+
+/// Whether two matrices are the transposes of each other.
+fn are_transposed(a: &KeptMatrix, b: &KeptMatrix) -> bool {
+    let limit = ROUNDING * a.max_abs().max(b.max_abs());
+    let is_mirror = |a: &KeptMatrix, b: &KeptMatrix| {
+        let mut columns = 0..a.order();
+        columns.all(|j| a.column(j).all(|(i, v)| (v - b.get(j, i)).norm() <= limit))
+    };
+    is_mirror(a, b) && is_mirror(b, a)
 }
 
 fn transposed(a: &KeptMatrix) -> Result<KeptMatrix> {

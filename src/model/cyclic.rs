@@ -34,25 +34,12 @@ impl Structure {
         (i128::from(harmonic) * i128::from(self.engine_order())).rem_euclid(n) as usize
     }
 
-    /// The nodal diameter 0 ..= N/2 of a wave of `waves` waves per turn; `true` if it travels against the sense in
-    /// which sector s + 1 lags.
-    #[must_use]
-    pub fn fold(&self, waves: i64) -> (usize, bool) {
-        let n = self.sectors();
-        let residue = i128::from(waves).rem_euclid(n as i128) as usize;
-        if 2 * residue <= n {
-            (residue, false)
-        } else {
-            (n - residue, true)
-        }
-    }
-
     /// The wave of a harmonic as a key of equal matrices; `true` if they are the conjugates.
     pub(crate) fn wave_key(&self, harmonic: usize) -> (WaveKey, bool) {
         let mean = harmonic == 0;
         let residue = self.residue(harmonic as i64);
         let (diameter, backward) = self.fold(residue as i64);
-        if self.is_real() {
+        if self.has_conjugate_waves() {
             return (WaveKey { diameter, mean: false }, backward);
         }
         // Blocks that are complex themselves belong to one sense of travel.
@@ -63,10 +50,10 @@ impl Structure {
         (key, false)
     }
 
-    /// Nodal diameter of a harmonic of the wave.
+    /// Signed nodal diameter h·EO mod N of a harmonic of the wave, −N/2 < d ≤ N/2.
     #[must_use]
-    pub fn diameter_of(&self, harmonic: usize) -> usize {
-        self.fold(self.residue(harmonic as i64) as i64).0
+    pub fn diameter_of(&self, harmonic: usize) -> i64 {
+        self.signed_diameter(self.residue(harmonic as i64) as i64)
     }
 
     /// The lowest harmonic above 0 in which all sectors move alike: n·EO is a multiple of N only for multiples n of
@@ -83,14 +70,19 @@ impl Structure {
     /// e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at quarter turns.
     #[must_use]
     pub fn phase(&self, harmonic: usize, offset: i64) -> Complex64 {
-        self.wave_phase(self.residue(harmonic as i64), offset)
+        self.wave_phase(self.residue(harmonic as i64) as i64, offset)
     }
 
     /// e^{−2πi·diameter·offset/N}: the same for the wave of `diameter` waves per turn.
     #[must_use]
-    pub fn wave_phase(&self, diameter: usize, offset: i64) -> Complex64 {
+    pub fn wave_phase(&self, diameter: i64, offset: i64) -> Complex64 {
         let n = self.sectors() as i128;
-        self.lag((diameter as i128 * i128::from(offset)).rem_euclid(n) as usize)
+        self.lag((i128::from(diameter) * i128::from(offset)).rem_euclid(n) as usize)
+    }
+
+    /// Residue d mod N in 0 .. N of a nodal diameter.
+    fn residue_of(&self, diameter: i64) -> usize {
+        diameter.rem_euclid(self.sectors() as i64) as usize
     }
 
     /// e^{−2πi·residue/N}
@@ -116,8 +108,8 @@ impl Structure {
     ///
     /// # Errors
     /// As [`Self::wave_matrix`].
-    pub fn diameter_matrix(&self, which: MatrixKind, diameter: usize) -> Result<Csc> {
-        self.residue_matrix(which, diameter % self.sectors(), false)
+    pub fn diameter_matrix(&self, which: MatrixKind, diameter: i64) -> Result<Csc> {
+        self.residue_matrix(which, self.residue_of(diameter), false)
     }
 
     fn residue_matrix(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {
@@ -224,7 +216,7 @@ impl Structure {
     pub fn aero_of_wave(&self, form: AeroForm, wave: Wave) -> Result<Option<Csc>> {
         match wave {
             Wave::Harmonic(h) => self.aero_matrix(form, self.residue(h as i64), h == 0),
-            Wave::Diameter(d) => self.aero_matrix(form, d % self.sectors(), false),
+            Wave::Diameter(d) => self.aero_matrix(form, self.residue_of(d), false),
         }
     }
 
@@ -304,11 +296,9 @@ impl Structure {
 
     /// The matrix of the modal damping; `None` without such damping, or without modes of this diameter.
     fn modal_damping_of(&self, residue: usize, real: bool) -> Result<Option<Csc>> {
-        let (diameter, backward) = self.fold(residue as i64);
-        let Some(Some(matrix)) = self.modal_damping.get(diameter) else {
+        let Some((matrix, form)) = self.of_residue(&self.modal_damping, residue) else {
             return Ok(None);
         };
-        let form = if backward { Form::Conjugated } else { Form::Plain };
         let mut matrix = Csc::sum(self.ndof(), &[(Complex64::ONE, matrix, form)])?;
         if real {
             for v in &mut matrix.values {
@@ -318,9 +308,17 @@ impl Structure {
         Ok(Some(matrix))
     }
 
+    /// The matrix of a residue in a list by residues, or that of the other sense, to be conjugated.
+    fn of_residue<'a>(&self, list: &'a [Option<KeptMatrix>], residue: usize) -> Option<(&'a KeptMatrix, Form)> {
+        let at = |residue: usize| list.get(residue).and_then(Option::as_ref);
+        let other = (self.sectors() - residue) % self.sectors();
+        let own = at(residue).map(|a| (a, Form::Plain));
+        own.or_else(|| at(other).map(|a| (a, Form::Conjugated)))
+    }
+
     /// Refuses to conjugate a stiffness that no real matrices of sectors have: of a loss K(1 + iη), where A(−d) = A(d)ᵀ,
     /// the imaginary part would drive the backward wave.
-    fn check_backward(&self, which: MatrixKind, diameter: usize, matrix: &KeptMatrix) -> Result<()> {
+    fn check_backward(&self, which: MatrixKind, diameter: i64, matrix: &KeptMatrix) -> Result<()> {
         let which = match which {
             MatrixKind::Structural if self.loss_of_stiffness => MatrixKind::Stiffness,
             MatrixKind::Stiffness | MatrixKind::StiffnessSpeed2
@@ -332,9 +330,11 @@ impl Structure {
         };
         fail!(
             Unsupported,
-            "{} of nodal diameter {diameter} is complex and not Hermitian, and a carried harmonic is the backward wave of this \
-             diameter, whose matrix does not follow from it: give a loss K(1 + i eta) as loss factor, or as structural matrix eta K",
-            which.name()
+            "{} of nodal diameter {} is complex and not Hermitian, and that of the backward wave of this diameter, {diameter}, does not \
+             follow from it: give the matrix of diameter {diameter} too, or a loss K(1 + i eta) as loss factor, or as structural matrix \
+             eta K",
+            which.name(),
+            -diameter
         )
     }
 
@@ -353,8 +353,11 @@ impl Structure {
             };
             entry(&blocks.own) + lag * entry(&blocks.next) + lag.conj() * entry(previous)
         } else {
-            let (diameter, _) = self.fold(residue as i64);
-            blocks.diameters.get(diameter).map_or(Complex64::ZERO, entry)
+            match self.of_residue(&blocks.diameters, residue) {
+                Some((a, Form::Plain)) => a.get(p, p),
+                Some((a, _)) => a.get(p, p).conj(),
+                None => Complex64::ZERO,
+            }
         };
         if harmonic == 0 { sum.re.into() } else { sum }
     }
@@ -378,17 +381,16 @@ impl Structure {
             }
             Csc::sum(n, &terms)?
         } else {
-            let (diameter, backward) = self.fold(residue as i64);
-            let Some(matrix) = blocks.diameters.get(diameter).and_then(Option::as_ref) else {
+            let diameter = self.signed_diameter(residue as i64);
+            let Some((matrix, form)) = self.of_residue(&blocks.diameters, residue) else {
                 return fail!(
                     Argument,
-                    "the matrices of nodal diameter {diameter} are needed for a carried harmonic, but were not given"
+                    "the matrices of nodal diameter {diameter} are needed for this wave or a carried harmonic, but were not given"
                 );
             };
-            if backward {
+            if form == Form::Conjugated {
                 self.check_backward(which, diameter, matrix)?;
             }
-            let form = if backward { Form::Conjugated } else { Form::Plain };
             Csc::sum(n, &[(Complex64::ONE, matrix, form)])?
         };
         if real {
@@ -409,13 +411,13 @@ mod tests {
     fn harmonics_fold_onto_nodal_diameters() {
         let mut model = Model::cyclic(1, 24).unwrap();
         model.set_wave(2);
-        let diameters: Vec<usize> = [1, 3, 5, 7, 9, 11, 13, 12]
+        let diameters: Vec<i64> = [1, 3, 5, 7, 9, 11, 13, 12]
             .iter()
             .map(|&h| model.structure().diameter_of(h))
             .collect();
-        assert_eq!(diameters, [2, 6, 10, 10, 6, 2, 2, 0]);
+        assert_eq!(diameters, [2, 6, 10, -10, -6, -2, 2, 0]);
         model.set_wave(-2);
-        assert_eq!(model.structure().diameter_of(1), 2);
+        assert_eq!(model.structure().diameter_of(1), -2);
         assert_eq!(model.structure().fold(-2), (2, true));
         model.set_wave(12);
         assert_eq!(model.structure().diameter_of(1), 12);

@@ -164,7 +164,7 @@ impl Structure {
             let mut terms = Vec::new();
             for (d, a) in waves.iter().enumerate() {
                 interrupt.check_before(OF_ONE_ENTRY * a.values.len() as u64)?;
-                let turn = self.wave_phase(d * divisor, -(offset as i64));
+                let turn = self.wave_phase((d * divisor) as i64, -(offset as i64));
                 try_push(&mut terms, (share * turn, a, Form::Plain), "the matrices of the wheel")?;
             }
             let block = Csc::sum(ndof, &terms)?;

@@ -73,7 +73,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::linear_modes`]; `Argument` for a count of 0.
-    pub fn lowest_modes(&self, diameter: usize, contacts: ContactState<'_>, count: usize) -> Result<LinearModes> {
+    pub fn lowest_modes(&self, diameter: i64, contacts: ContactState<'_>, count: usize) -> Result<LinearModes> {
         self.lowest_modes_with(diameter, contacts, count, &Interrupt::none())
     }
 
@@ -83,7 +83,7 @@ impl Model {
     /// As [`Self::lowest_modes`]; `StoppedByCaller`.
     pub fn lowest_modes_with(
         &self,
-        diameter: usize,
+        diameter: i64,
         contacts: ContactState<'_>,
         count: usize,
         interrupt: &Interrupt<'_>,
@@ -93,25 +93,44 @@ impl Model {
             return fail!(Argument, "count = 0, needs at least 1");
         }
         interrupt.phase(Phase::Setup, 0.0)?;
-        let pencil = self.pencil(Wave::Diameter(diameter), contacts)?;
+        let (of, is_mirrored) = self.computed_sense(diameter)?;
+        let pencil = self.pencil(Wave::Diameter(of), contacts)?;
         interrupt.phase(Phase::Modes, 0.0)?;
-        self.expanded(pencil.lowest(count, interrupt)?, diameter)
+        self.expanded(pencil.lowest(count, interrupt)?.turned(is_mirrored), diameter)
     }
 
-    /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave whose sector
-    /// s + 1 lags. Motion without mass has no mode, so that a singular mass matrix gives fewer modes than degrees
+    /// All undamped natural modes of the signed nodal diameter `diameter`, modulo N (0 for a plain structure): the wave in
+    /// which sector s + 1 lags by 2π·diameter/N. With gyroscopic forces or complex blocks the wave of −`diameter` has other
+    /// modes; else it has the same frequencies and the conjugate shapes. Motion without mass has no mode, so that a singular mass matrix gives fewer modes than degrees
     /// of freedom. Dense algebra is meant for up to a few hundred degrees of freedom; [`Self::lowest_modes`] serves
     /// larger structures.
     ///
     /// # Errors
-    /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
+    /// `Argument` for a diameter of a plain structure, `NotHermitian` when K or M is not, and those of
     /// [`eigen::generalised`].
-    pub fn linear_modes(&self, diameter: usize, contacts: ContactState<'_>) -> Result<LinearModes> {
+    pub fn linear_modes(&self, diameter: i64, contacts: ContactState<'_>) -> Result<LinearModes> {
         self.check_matrices(true)?;
-        let modes = self
-            .pencil(Wave::Diameter(diameter), contacts)?
-            .all(&Interrupt::none())?;
-        self.expanded(modes, diameter)
+        let (of, is_mirrored) = self.computed_sense(diameter)?;
+        let modes = self.pencil(Wave::Diameter(of), contacts)?.all(&Interrupt::none())?;
+        self.expanded(modes.turned(is_mirrored), diameter)
+    }
+
+    /// Whether undamped waves of −d have the frequencies of those of d and the conjugate shapes.
+    #[must_use]
+    pub fn has_equal_senses(&self) -> bool {
+        self.structure().has_conjugate_waves() && !self.structure().is_gyroscopic()
+    }
+
+    /// The nodal diameter whose modes are computed, and whether their conjugates are requested: both senses have the same
+    /// modes where nothing distinguishes them.
+    fn computed_sense(&self, diameter: i64) -> Result<(i64, bool)> {
+        let structure = self.structure();
+        structure.check_diameter(diameter)?;
+        let signed = structure.signed_diameter(diameter);
+        if signed < 0 && self.has_equal_senses() {
+            return Ok((-signed, true));
+        }
+        Ok((signed, false))
     }
 
     /// Natural frequencies of harmonic `h`, ascending; `None` where they cannot be had, as where K or M is not Hermitian.
@@ -135,7 +154,7 @@ impl Model {
     }
 
     /// The modes with their shapes on all degrees of freedom of the caller.
-    fn expanded(&self, modes: LinearModes, diameter: usize) -> Result<LinearModes> {
+    fn expanded(&self, modes: LinearModes, diameter: i64) -> Result<LinearModes> {
         let degrees = self.structure().degrees();
         if degrees.is_identity() {
             return Ok(modes);
@@ -159,7 +178,7 @@ impl Model {
     ///
     /// # Errors
     /// `OutOfMemory`, and those of the eigensolvers; `StoppedByCaller`.
-    pub fn rigid_modes(&self, diameter: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
+    pub fn rigid_modes(&self, diameter: i64, interrupt: &Interrupt<'_>) -> Result<usize> {
         interrupt.check()?;
         let pencil = match self.pencil(Wave::Diameter(diameter), ContactState::Free) {
             Err(e) if e.status == Status::NotHermitian => return Ok(0),
@@ -213,17 +232,7 @@ impl Model {
             return separate.pencil(wave, contacts);
         }
         let structure = self.structure();
-        let highest = structure.sectors() / 2;
-        let mass = match wave {
-            Wave::Diameter(diameter) if diameter > highest => {
-                return fail!(
-                    Argument,
-                    "diameter = {diameter}, needs 0 .. {highest} for {} sectors",
-                    structure.sectors()
-                );
-            }
-            wave => structure.of_wave(MatrixKind::Mass, wave)?,
-        };
+        let mass = structure.of_wave(MatrixKind::Mass, wave)?;
         let stiffness = self.stiffness_at_small_motion(wave, contacts)?;
         for (name, a) in [("stiffness", &stiffness), ("mass", &mass)] {
             let (i, j, gap) = a.worst_hermitian_pair();
@@ -355,6 +364,18 @@ impl Pencil {
         // k + ωg − ω²m = 0 with g = φᴴ iΩG φ
         let g = -form(gyroscopic, &gyroscopic.values, shape).im;
         ((g + (g * g + 4.0 * m * k).sqrt()) / (2.0 * m)).powi(2)
+    }
+}
+
+impl LinearModes {
+    /// The conjugate shapes, if `conjugated`.
+    fn turned(mut self, conjugated: bool) -> Self {
+        if conjugated {
+            for z in &mut self.shapes {
+                *z = z.conj();
+            }
+        }
+        self
     }
 }
 

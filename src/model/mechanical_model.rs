@@ -190,11 +190,12 @@ impl Model {
         self.changed_structure().set_coupling_previous(which, to_previous)
     }
 
-    /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N, 0 ≤ diameter ≤ N/2.
+    /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N; `diameter` counts modulo N, and a negative one
+    /// travels the other way. A wave of which only the other sense was given has the conjugate of that.
     ///
     /// # Errors
-    /// As [`Self::set_matrix`]; `Argument` for a diameter out of range or a matrix that was given by sector blocks.
-    pub fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
+    /// As [`Self::set_matrix`]; `Argument` for a diameter of a plain structure or a matrix that was given by sector blocks.
+    pub fn set_diameter(&mut self, which: MatrixKind, diameter: i64, a: &MatrixView<'_>) -> Result<()> {
         self.changed_structure().set_diameter(which, diameter, a)
     }
 

@@ -31,6 +31,7 @@ mod saved_structure;
 pub mod sector_faces;
 mod sector_matrices;
 pub mod sector_motion;
+mod senses;
 pub(crate) mod shape_basis;
 pub mod slip_capacity;
 pub mod speed;

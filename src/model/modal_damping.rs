@@ -61,11 +61,19 @@ impl Model {
             // The modes at rest.
             let mut standing = self.try_clone()?;
             standing.structure_mut().speed = Speed::Fixed(0.0);
-            for diameter in 0..=self.structure().sectors() / 2 {
-                let matrix = match standing.modal_damping_matrix(diameter, ratios, interrupt) {
+            let sectors = self.structure().sectors();
+            let own_sense = |residue: &usize| self.structure().has_own_sense(*residue);
+            let last = (sectors / 2 + 1..sectors).rfind(own_sense).unwrap_or(sectors / 2);
+            for residue in 0..=if last > sectors / 2 { sectors - 1 } else { last } {
+                // The matrix of such a wave is the conjugate of that of the other sense.
+                if residue > sectors / 2 && !own_sense(&residue) {
+                    try_push(&mut matrices, None, CONTEXT)?;
+                    continue;
+                }
+                let matrix = match standing.modal_damping_matrix(residue as i64, ratios, interrupt) {
                     // A diameter whose matrices were not given has no modes.
-                    Err(e) if e.status == Status::Argument && !self.structure().has_diameter(diameter) => None,
-                    matrix => Some(matrix.map_err(|e| at_diameter(e, self, diameter))?),
+                    Err(e) if e.status == Status::Argument && !self.structure().has_diameter(residue) => None,
+                    matrix => Some(matrix.map_err(|e| at_diameter(e, self, residue))?),
                 };
                 try_push(&mut matrices, matrix, CONTEXT)?;
             }
@@ -74,7 +82,7 @@ impl Model {
         Ok(())
     }
 
-    fn modal_damping_matrix(&self, diameter: usize, ratios: &[f64], interrupt: &Interrupt<'_>) -> Result<KeptMatrix> {
+    fn modal_damping_matrix(&self, diameter: i64, ratios: &[f64], interrupt: &Interrupt<'_>) -> Result<KeptMatrix> {
         let pencil = self.pencil(Wave::Diameter(diameter), ContactState::Free)?;
         let modes = pencil.lowest(ratios.len(), interrupt)?;
         let found = modes.omega.len();
@@ -113,9 +121,10 @@ impl Model {
     }
 }
 
-fn at_diameter(e: Error, model: &Model, diameter: usize) -> Error {
+fn at_diameter(e: Error, model: &Model, residue: usize) -> Error {
     if model.structure().sectors() == 1 {
         return e;
     }
+    let diameter = model.structure().signed_diameter(residue as i64);
     e.at(format_args!("nodal diameter {diameter}"))
 }

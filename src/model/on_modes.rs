@@ -8,6 +8,7 @@ use crate::contact::Role;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::blocks::Blocks;
 use crate::model::excitation::Excitation;
@@ -18,13 +19,16 @@ use crate::model::stuck_shapes::StuckShapes;
 use num_complex::Complex64;
 use std::sync::Arc;
 
+/// Deviation from a Hermitian matrix, relative to its largest entry, that is rounding.
+const HERMITIAN: f64 = 1e-12;
+
 const CONTEXT: &str = "the model on modes";
 
 /// Shapes of all diameters of a wave or of the wheel.
 pub(crate) struct ShapesOfWaves {
     /// Independent degrees of freedom of the contacts, ascending.
     pub held: Vec<usize>,
-    /// By nodal diameter 0 ..= N/2; `None` where no perturbation has it.
+    /// By nodal diameter 0 ..= N/2, of which the other sense has the conjugate shapes; `None` where no perturbation has it.
     shapes: Vec<Option<StuckShapes>>,
     /// Number of shapes in each that come from forces, or modes in their place.
     loads: usize,
@@ -48,6 +52,7 @@ impl ShapesOfWaves {
     /// As [`StuckShapes::new`].
     pub fn new(model: &Model, step: usize, modes: usize, interrupt: &Interrupt<'_>) -> Result<Self> {
         let structure = model.structure();
+        structure.check_senses()?;
         let held = degrees_of_contacts(model)?;
         let forces = forces_of_waves(model)?;
         let of = |diameter: usize| {
@@ -66,16 +71,24 @@ impl ShapesOfWaves {
                     try_push(&mut forces, try_copy(force, CONTEXT)?, CONTEXT)?;
                 }
                 let all = modes + loads;
-                Some(StuckShapes::new(model, diameter, (&held, &forces), all, interrupt)?)
+                Some(StuckShapes::new(
+                    model,
+                    diameter as i64,
+                    (&held, &forces),
+                    all,
+                    interrupt,
+                )?)
             } else {
                 None
             };
             try_push(&mut shapes, own, CONTEXT)?;
         }
+        // Contacts on all degrees of freedom leave no room for other shapes.
+        let room = shapes.iter().flatten().map(StuckShapes::modes).min().unwrap_or(0);
         Ok(Self {
             held,
             shapes,
-            loads,
+            loads: loads.min(room),
             requested: modes,
         })
     }
@@ -191,6 +204,7 @@ impl OnModes {
                     try_push(&mut to.diameters, matrix, CONTEXT)?;
                 }
             }
+            add_other_senses(&mut to.diameters, model.structure().sectors())?;
         }
         let mut small = model.try_clone()?;
         small.structure = small.structure.on_shapes(&of.held, order, blocks)?;
@@ -264,6 +278,24 @@ impl OnModes {
         }
         Ok(found)
     }
+}
+
+/// Adds the matrices of the other senses, which are the conjugates, where a matrix is not Hermitian: it could be taken for
+/// that of a loss, whose other sense is the transpose.
+fn add_other_senses(diameters: &mut Vec<Option<KeptMatrix>>, sectors: usize) -> Result<()> {
+    let has_symmetry = |a: &KeptMatrix| a.worst_pair(Symmetry::Hermitian).2 <= HERMITIAN * a.max_abs();
+    if diameters.iter().flatten().all(has_symmetry) {
+        return Ok(());
+    }
+    for residue in sectors / 2 + 1..sectors {
+        let of_mirror = |a: &KeptMatrix| {
+            let terms = [(Complex64::ONE, a, Form::Conjugated)];
+            KeptMatrix::new(Csc::sum(a.order(), &terms)?)
+        };
+        let other = diameters[sectors - residue].as_ref().map(of_mirror).transpose()?;
+        try_push(diameters, other, CONTEXT)?;
+    }
+    Ok(())
 }
 
 impl Structure {

@@ -92,13 +92,13 @@ pub(super) fn save_list(matrices: &[Option<KeptMatrix>], out: &mut ByteWriter<'_
     }
 }
 
-/// Reads a list of `length` matrices, or none at all.
+/// Reads a list of matrices of one of `lengths`, or none at all.
 ///
 /// # Errors
 /// As [`load`]; `Argument` for another length.
-pub(super) fn load_list(n: usize, length: usize, input: &mut ByteReader<'_>) -> Result<Vec<Option<KeptMatrix>>> {
+pub(super) fn load_list(n: usize, lengths: [usize; 2], input: &mut ByteReader<'_>) -> Result<Vec<Option<KeptMatrix>>> {
     let count = input.entries(1)?;
-    if count != 0 && count != length {
+    if count != 0 && !lengths.contains(&count) {
         return Err(input.damaged("the number of matrices is not that of the nodal diameters"));
     }
     let mut matrices = Vec::new();

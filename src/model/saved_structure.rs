@@ -50,7 +50,8 @@ impl Structure {
         structure.engine_order = input.i64()?;
         structure.degrees = load_degrees(&structure, input)?;
         let n = structure.ndof();
-        let diameters = sectors / 2 + 1;
+        // Residues of all nodal diameters, or of those that are not negative.
+        let diameters = [sectors / 2 + 1, sectors];
         let mut all: [Blocks; KINDS] = Default::default();
         for blocks in &mut all {
             *blocks = Blocks {

@@ -71,7 +71,7 @@ pub struct Structure {
     pub(super) loss_of_stiffness: bool,
     /// Speed of rotation.
     pub(super) speed: Speed,
-    /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
+    /// Modal damping as a matrix by the residue of the nodal diameter, as matrices per diameter; empty: none.
     pub(super) modal_damping: Vec<Option<KeptMatrix>>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],
@@ -153,23 +153,6 @@ impl Structure {
     #[must_use]
     pub fn has(&self, kind: MatrixKind) -> bool {
         self.parts(kind).next().is_some()
-    }
-
-    /// Whether all blocks are real.
-    pub(super) fn is_real(&self) -> bool {
-        let kinds = [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness];
-        let aero = self.aero.iter().flatten();
-        kinds
-            .into_iter()
-            .flat_map(|kind| self.parts(kind))
-            .all(KeptMatrix::is_real)
-            && aero.map(Arc::as_ref).all(AeroInfluence::is_real)
-    }
-
-    /// Whether the matrices of a nodal diameter can be made of what was given.
-    pub(super) fn has_diameter(&self, diameter: usize) -> bool {
-        let given = |b: &Blocks| b.diameters.is_empty() || b.diameters.get(diameter).is_some_and(Option::is_some);
-        self.blocks.iter().all(given)
     }
 
     /// The blocks of a matrix that were given.
@@ -414,18 +397,10 @@ impl Structure {
         of_independent(&self.degrees, given)
     }
 
-    pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
+    pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: i64, a: &MatrixView<'_>) -> Result<()> {
         Self::refuse_general_mass(which, a)?;
         self.refuse_modal_matrix(which)?;
-        let highest = self.sectors / 2;
-        if diameter > highest {
-            return fail!(
-                Argument,
-                "diameter = {diameter}, needs 0 .. {highest} for {} sectors; a wave of {diameter} diameters is that of {}",
-                self.sectors,
-                self.fold(diameter as i64).0
-            );
-        }
+        self.check_diameter(diameter)?;
         let blocks = &self.blocks[which as usize];
         if blocks.own.is_some() || blocks.next.is_some() {
             return fail!(
@@ -438,13 +413,18 @@ impl Structure {
         let matrix = self.copied(which, a)?;
         Self::check_mass(which, a, &matrix)?;
         let matrix = KeptMatrix::new(of_independent(&self.degrees, matrix)?)?;
+        let residue = diameter.rem_euclid(self.sectors as i64) as usize;
+        // Without negative diameters the list ends at N/2.
+        let length = if residue > self.sectors / 2 {
+            self.sectors
+        } else {
+            self.sectors / 2 + 1
+        };
         let blocks = self.blocks_mut(which)?;
-        if blocks.diameters.is_empty() {
-            for _ in 0..=highest {
-                try_push(&mut blocks.diameters, None, "the matrices per diameter")?;
-            }
+        while blocks.diameters.len() < length {
+            try_push(&mut blocks.diameters, None, "the matrices per diameter")?;
         }
-        blocks.diameters[diameter] = Some(matrix);
+        blocks.diameters[residue] = Some(matrix);
         Ok(())
     }
 

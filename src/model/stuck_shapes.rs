@@ -53,7 +53,7 @@ impl StuckShapes {
     /// `NotHermitian` for a stiffness without modes; those of the eigensolvers; `OutOfMemory`; `StoppedByCaller`.
     pub fn new(
         model: &Model,
-        diameter: usize,
+        diameter: i64,
         (held, forces): (&[usize], &[Vec<Complex64>]),
         modes: usize,
         interrupt: &Interrupt<'_>,

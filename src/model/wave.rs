@@ -5,6 +5,6 @@
 pub enum Wave {
     /// Harmonic of the engine-order wave.
     Harmonic(usize),
-    /// Nodal diameter, sector s + 1 lagging.
-    Diameter(usize),
+    /// Signed nodal diameter d, modulo N: sector s + 1 lags by 2πd/N, so that a negative one travels the other way.
+    Diameter(i64),
 }

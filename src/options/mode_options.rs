@@ -85,8 +85,9 @@ pub enum Amplitude {
 pub struct ModeOptions<'a> {
     /// Linear mode with stuck contacts from which the nonlinear mode starts.
     pub choice: ModeChoice<'a>,
-    /// `None`: the wave of the model's engine order. `Some(d)`: the forward wave of nodal diameter d.
-    pub diameter: Option<usize>,
+    /// `None`: the wave of the model's engine order. `Some(d)`: the wave of the signed nodal diameter d, modulo N, in which
+    /// sector s + 1 lags by 2πd/N.
+    pub diameter: Option<i64>,
     /// Quantity that measures the amplitude.
     pub amplitude: Amplitude,
     /// log10 of the first amplitude, in the caller's units.
@@ -130,11 +131,10 @@ impl ModeOptions<'_> {
     /// `Argument`, `NotFinite`, `Dimension` or `Index`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize, contacts: usize, sectors: usize) -> Result<()> {
         self.choice.check(ndof)?;
-        if let Some(diameter) = self.diameter.filter(|&d| d > sectors / 2) {
+        if let Some(diameter) = self.diameter.filter(|&d| sectors == 1 && d != 0) {
             return fail!(
                 Argument,
-                "diameter = {diameter}, needs 0 .. {} for {sectors} sectors",
-                sectors / 2
+                "diameter = {diameter}, needs 0 .. 0: a plain structure has no nodal diameters"
             );
         }
         if let Amplitude::Contact(id) = self.amplitude

@@ -25,7 +25,7 @@ pub(crate) struct Closure {
 impl Closure {
     /// c^{turns}, the factor after `turns` times m sectors.
     pub fn factor(&self, structure: &Structure, turns: usize) -> Complex64 {
-        structure.wave_phase(self.index, (turns * self.sectors) as i64)
+        structure.wave_phase(self.index as i64, (turns * self.sectors) as i64)
     }
 }
 

@@ -137,7 +137,7 @@ fn matrix(structure: &Structure, which: MatrixKind, closure: &Closure) -> Result
     let count = structure.sectors() / sectors;
     let mut waves = Vec::new();
     for d in 0..sectors {
-        let diameter = d * count + closure.index;
+        let diameter = (d * count + closure.index) as i64;
         let wave = match which {
             MatrixKind::Stiffness => structure.acting_stiffness(Wave::Diameter(diameter))?,
             which => structure.diameter_matrix(which, diameter)?,
@@ -150,7 +150,7 @@ fn matrix(structure: &Structure, which: MatrixKind, closure: &Closure) -> Result
     for offset in 1 - sectors as i64..sectors as i64 {
         let mut terms = Vec::new();
         for (d, a) in waves.iter().enumerate() {
-            let turn = structure.wave_phase(d * count + closure.index, -offset);
+            let turn = structure.wave_phase((d * count + closure.index) as i64, -offset);
             try_push(&mut terms, (share * turn, a, Form::Plain), CONTEXT)?;
         }
         let block = Csc::sum(ndof, &terms)?;

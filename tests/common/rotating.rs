@@ -36,7 +36,7 @@ pub fn rotate(model: &mut Model, speed: Speed, per_diameter: bool, mut real: imp
             for diameter in 0..=sectors / 2 {
                 let a = with_symmetry(&matrix(diameter > 0), n, sign);
                 let view = MatrixView::dense_complex(n, &a);
-                model.set_diameter(which, diameter, &view).unwrap();
+                model.set_diameter(which, diameter as i64, &view).unwrap();
             }
             continue;
         }

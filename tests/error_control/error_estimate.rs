@@ -32,7 +32,7 @@ fn case(k: usize) -> (Blisk, f64) {
         ..common::BASE
     };
     let model = blisk.sector();
-    let of = |state| model.linear_modes(blisk.engine_order as usize, state).unwrap().omega[0];
+    let of = |state| model.linear_modes(blisk.engine_order, state).unwrap().omega[0];
     let (free, stuck) = (of(ContactState::Free), of(ContactState::Stuck));
     (blisk, free + (stuck - free) * (1.6 * spread(k, 5) - 0.3))
 }

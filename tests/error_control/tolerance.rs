@@ -129,7 +129,7 @@ fn blisk(k: usize) -> (Model, (f64, f64)) {
         ..BASE
     };
     let model = blisk.sector();
-    let of = |state| model.linear_modes(blisk.engine_order as usize, state).unwrap().omega[0];
+    let of = |state| model.linear_modes(blisk.engine_order, state).unwrap().omega[0];
     let (free, stuck) = (of(ContactState::Free), of(ContactState::Stuck));
     (model, (free - 0.3 * (stuck - free), stuck + 0.3 * (stuck - free)))
 }

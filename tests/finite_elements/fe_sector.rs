@@ -46,7 +46,7 @@ fn compare_frequencies(sector: &Sector, interface: Interface, state: ContactStat
     let mut worst = 0.0_f64;
     for (diameter, expected) in diameters.iter().enumerate() {
         let expected: Vec<f64> = expected.as_array().unwrap().iter().map(number).collect();
-        let found = natural_frequencies(&model, diameter, state, expected.len()).unwrap();
+        let found = natural_frequencies(&model, diameter as i64, state, expected.len()).unwrap();
         assert_eq!(found.len(), expected.len());
         let slow = &data("near_rigid.json")[sector.size.name()][key][diameter.to_string()];
         for (i, (omega, f)) in found.iter().zip(expected).enumerate() {

@@ -11,7 +11,7 @@ use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use std::path::Path;
 
 /// The analyses of a model around its first resonance in a pattern of some nodal diameters.
-fn analyses(model: &Model, response: usize, diameter: usize) -> Vec<Analysis<'_>> {
+fn analyses(model: &Model, response: usize, diameter: i64) -> Vec<Analysis<'_>> {
     let first = model.lowest_modes(diameter, ContactState::Stuck, 1).unwrap().omega[0];
     let fixed = SolverOptions {
         harmonics: 3,
@@ -72,7 +72,7 @@ fn finite_element_models_return_within_a_tenth_of_a_second() {
     for (name, size) in [("reduced", Size::Reduced), ("sector", Size::Full)] {
         let sector = Sector::read(&folder, size).unwrap();
         let model = sector.forced(2.0).unwrap();
-        for analysis in analyses(&model, size.tip(), ENGINE_ORDER as usize) {
+        for analysis in analyses(&model, size.tip(), ENGINE_ORDER) {
             all.add(name, &analysis, 3, &mut state);
         }
     }

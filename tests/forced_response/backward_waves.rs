@@ -66,7 +66,7 @@ fn sector(form: Form, engine_order: i64) -> Model {
         let k = wave(&STIFFNESS, &STIFFNESS_NEXT, d);
         let mut set = |which, a: &[Complex64], part| {
             let view = MatrixView::dense_complex(N, a).part(part);
-            model.set_diameter(which, d, &view).unwrap();
+            model.set_diameter(which, d as i64, &view).unwrap();
         };
         if form == Form::ComplexStiffness {
             let complex = k.map(|k| k * Complex64::new(1.0, ETA));

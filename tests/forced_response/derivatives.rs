@@ -120,7 +120,7 @@ fn random_model(shape: Shape, speed: Speed, engine_order: i64, feed: &mut Feed<'
                 for diameter in 0..=SECTORS / 2 {
                     let a = hermitian(&feed.complex_block(1.0), diagonal);
                     let view = MatrixView::dense_complex(N, &a);
-                    model.set_diameter(which, diameter, &view).unwrap();
+                    model.set_diameter(which, diameter as i64, &view).unwrap();
                 }
             }
         }
@@ -129,7 +129,7 @@ fn random_model(shape: Shape, speed: Speed, engine_order: i64, feed: &mut Feed<'
         for diameter in 0..=SECTORS / 2 {
             let mass = hermitian(&feed.complex_block(0.2), 1.0);
             let view = MatrixView::dense_complex(N, &mass);
-            model.set_diameter(MatrixKind::Mass, diameter, &view).unwrap();
+            model.set_diameter(MatrixKind::Mass, diameter as i64, &view).unwrap();
         }
     }
     if shape == Shape::Hermitian {

@@ -259,7 +259,7 @@ fn matrices_per_nodal_diameter_equal_sector_blocks() {
                 (MatrixKind::Damping, &damping, Part::General),
             ] {
                 let view = MatrixView::dense_complex(N, a).part(part);
-                model.set_diameter(which, diameter, &view).unwrap();
+                model.set_diameter(which, diameter as i64, &view).unwrap();
             }
         }
         skewed.load(&mut model);

@@ -170,7 +170,7 @@ impl Passed {
         for diameter in 0..=SECTORS / 2 {
             let a = of_wave(own, next, phase(1, diameter as i64, 1, SECTORS)) * factor;
             give(self.sparse, a.as_slice(), Part::Full, &mut |view| {
-                model.set_diameter(which, diameter, view).unwrap();
+                model.set_diameter(which, diameter as i64, view).unwrap();
             });
         }
     }

@@ -54,7 +54,7 @@ fn below_the_stick_limit_the_response_is_that_of_the_stuck_structure() {
         };
         let modes = case
             .sector()
-            .linear_modes(engine_order as usize, hbvib::model::linear_modes::ContactState::Stuck)
+            .linear_modes(engine_order, hbvib::model::linear_modes::ContactState::Stuck)
             .unwrap();
         // Away from the resonance and in it.
         for omega in [TAU * 150.0, 0.99 * modes.omega[0], modes.omega[0], TAU * 400.0] {

@@ -7,4 +7,6 @@ mod damped_mode;
 mod natural_frequencies;
 mod rotating_modes;
 mod rotating_wheel;
+mod senses_of_crossings;
+mod signed_diameters;
 mod start_mode;

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 /// Compares all modes of one nodal diameter. A stored zero is a rigid-body motion: round-off of
 /// order 1e-16 in the eigenvalues ω², measured by the largest, leaves 1e-8 in the frequencies.
-fn compare(model: &Model, state: ContactState, diameter: usize, expected: &[Value]) -> f64 {
+fn compare(model: &Model, state: ContactState, diameter: i64, expected: &[Value]) -> f64 {
     let modes = model.linear_modes(diameter, state).unwrap();
     let expected: Vec<f64> = expected.iter().map(number).collect();
     assert_eq!(modes.omega.len(), expected.len(), "diameter {diameter}");

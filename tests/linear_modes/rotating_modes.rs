@@ -54,7 +54,7 @@ fn rotor() -> Model {
     model
 }
 
-fn modes(model: &Model, diameter: usize, count: usize) -> DampedModes {
+fn modes(model: &Model, diameter: i64, count: usize) -> DampedModes {
     damped_modes(model, diameter, LinearContacts::Stuck, count, &mut Hooks::default()).unwrap()
 }
 
@@ -267,7 +267,7 @@ fn a_wheel_without_rotation_has_the_modes_of_each_diameter() {
         ..BASE
     };
     let model = base.sector();
-    for diameter in [0, 1, 5, SECTORS / 2] {
+    for diameter in [0, 1, 5, SECTORS as i64 / 2] {
         let undamped = model.linear_modes(diameter, ContactState::Stuck).unwrap();
         let found = modes(&model, diameter, 4);
         for (k, omega) in undamped.omega.iter().enumerate() {

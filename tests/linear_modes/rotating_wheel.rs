@@ -105,7 +105,7 @@ fn sector(sectors: usize, per_diameter: bool, reversed: bool) -> Model {
                 blocks.own[(i, j)] + lag * next[(i, j)] + lag.conj() * blocks.sign * next[(j, i)]
             });
             let view = MatrixView::dense_complex(N, a.as_slice());
-            model.set_diameter(blocks.kind, diameter, &view).unwrap();
+            model.set_diameter(blocks.kind, diameter as i64, &view).unwrap();
         }
     }
     model.set_rayleigh(ALPHA, BETA).unwrap();
@@ -159,7 +159,7 @@ fn wheel(sectors: usize) -> [DMatrix<Complex64>; 3] {
     found
 }
 
-fn eigenvalues(model: &Model, diameter: usize) -> Vec<Complex64> {
+fn eigenvalues(model: &Model, diameter: i64) -> Vec<Complex64> {
     let found = damped_modes(model, diameter, LinearContacts::Stuck, N, &mut Hooks::default()).unwrap();
     assert_eq!(found.count(), N);
     // Gyroscopic forces move every frequency of such a wave.
@@ -180,7 +180,7 @@ fn damped_modes_of_each_wave_are_those_of_the_rotating_wheel() {
                 for diameter in 0..=sectors / 2 {
                     // Waves of diameter 0 and N/2 have one sense.
                     if !(reversed && (diameter == 0 || 2 * diameter == sectors)) {
-                        found.extend(eigenvalues(&model, diameter));
+                        found.extend(eigenvalues(&model, diameter as i64));
                     }
                 }
             }

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 #[test]
 fn families_of_the_sector_are_the_natural_modes_of_its_diameter() {
     for diameter in [0, 2, 3, 12] {
-        let model = sector(diameter as i64);
+        let model = sector(diameter);
         let stuck = model.linear_modes(diameter, ContactState::Stuck).unwrap();
         let free = model.linear_modes(diameter, ContactState::Free).unwrap();
         for family in 0..3 {

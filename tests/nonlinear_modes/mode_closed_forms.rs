@@ -41,7 +41,7 @@ fn closed_form(case: &Blisk, beta: f64, family: usize, form: DampingForm) -> Vec
     let w = disk_minus_ring();
     let modes = case
         .sector()
-        .linear_modes(case.engine_order as usize, ContactState::Stuck)
+        .linear_modes(case.engine_order, ContactState::Stuck)
         .unwrap();
     let mut shape = DVector::from_column_slice(&modes.shapes[family * 4..(family + 1) * 4]);
     let mut at = (modes.omega[family], 0.0);

@@ -38,7 +38,7 @@ fn without_damping_the_stuck_range_has_the_stuck_frequency_and_no_damping() {
                 ..BASE
             };
             let model = damped(&case, 0.0);
-            let exact = model.linear_modes(diameter as usize, ContactState::Stuck).unwrap();
+            let exact = model.linear_modes(diameter, ContactState::Stuck).unwrap();
             let motion = (disk_minus_ring().adjoint()
                 * DVector::from_column_slice(&exact.shapes[family * 4..(family + 1) * 4]))[0]
                 .norm();

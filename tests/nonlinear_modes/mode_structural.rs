@@ -41,7 +41,7 @@ fn a_loss_factor_on_a_linear_structure_is_half_of_it_as_damping_ratio() {
         model.set_rayleigh(0.0, 0.0).unwrap();
         model.set_loss_factor(ETA).unwrap();
         for family in 0..3 {
-            let undamped = model.linear_modes(engine_order as usize, ContactState::Stuck).unwrap();
+            let undamped = model.linear_modes(engine_order, ContactState::Stuck).unwrap();
             let options = ModeOptions {
                 choice: hbvib::options::ModeChoice::Index(family),
                 log10_start: -5.0,

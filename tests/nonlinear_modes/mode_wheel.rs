@@ -156,7 +156,7 @@ fn the_diameter_asked_for_is_the_forward_wave_whatever_the_model_s_engine_order(
             DampingForm::Mass,
         );
         let range = ModeOptions {
-            diameter: Some(diameter as usize),
+            diameter: Some(diameter),
             log10_start: onset - 1.0,
             log10_stop: onset + 4.5,
             reference_dof: Some(B2),

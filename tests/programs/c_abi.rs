@@ -100,6 +100,11 @@ fn models_are_read_back_as_they_were_given() {
 }
 
 #[test]
+fn both_senses_of_a_nodal_diameter_are_solved() {
+    silent("senses", |_| vec![]);
+}
+
+#[test]
 fn aerodynamic_influence_acts_and_is_checked() {
     silent("aero", |_| vec![]);
 }

@@ -103,6 +103,7 @@ fn fortran_feels_native() {
         "modes_and_damping",
         "physics",
         "saved",
+        "senses",
         "statuses",
         "threads",
     ];

@@ -8,7 +8,6 @@ use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;
 
@@ -121,11 +120,6 @@ fn a_refused_matrix_leaves_the_model_as_it_was() {
             &["sector blocks"],
         );
         refused(
-            model.set_diameter(MatrixKind::Damping, 13, &MatrixView::dense(n, &zeros)),
-            Status::Argument,
-            &["diameter = 13", "0 .. 12", "11"],
-        );
-        refused(
             model.set_coupling_previous(MatrixKind::Mass, &MatrixView::dense(n, &zeros)),
             Status::Unsupported,
             &["mass"],
@@ -228,11 +222,6 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             model.add_force(0, 100_001, one),
             Status::Argument,
             &["harmonic = 100001"],
-        );
-        refused(
-            model.linear_modes(13, ContactState::Stuck),
-            Status::Argument,
-            &["diameter = 13"],
         );
     });
 }

@@ -327,14 +327,6 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
         ),
         (
             ModeOptions {
-                diameter: Some(13),
-                ..good
-            },
-            Status::Argument,
-            "diameter = 13, needs 0 .. 12 for 24 sectors",
-        ),
-        (
-            ModeOptions {
                 choice: ModeChoice::Near(-1.0),
                 ..good
             },

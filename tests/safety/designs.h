@@ -222,9 +222,9 @@ static hbvib_status cycles(const hbvib_model *model, uint64_t *sum)
 static hbvib_status damped(const hbvib_model *model, uint64_t *sum)
 {
     static const double speeds[3] = {0, 0.2, 0.5};
-    static double shapes[2 * 2 * 9];
+    static double shapes[2 * 2 * 9], waves[2 * 64];
     double eigenvalues[4], diagram[6], ratios[6];
-    int64_t direction[6];
+    int64_t direction[6], diameters[64], equal;
     hbvib_status status = HBVIB_OK;
     int32_t contacts;
     for (contacts = HBVIB_CONTACTS_FREE; contacts <= HBVIB_CONTACTS_STATIC && status >= 0; contacts++) {
@@ -232,6 +232,8 @@ static hbvib_status damped(const hbvib_model *model, uint64_t *sum)
         if (status >= 0) digest(sum, eigenvalues, sizeof eigenvalues);
         STEP(hbvib_campbell(model, 3, speeds, 1, contacts, 2, diagram, ratios, direction, NULL));
         if (status >= 0) digest(sum, diagram, sizeof diagram);
+        STEP(hbvib_interference(model, contacts, 2, 64, diameters, waves, NULL, NULL, &equal, NULL));
+        if (status >= 0) digest(sum, waves, (size_t)(2 * hbvib_model_sectors(model)) * sizeof(double));
     }
     return status;
 }

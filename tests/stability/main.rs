@@ -13,6 +13,7 @@ mod hard_cases_in_time;
 mod hill;
 mod limit_cycles;
 mod on_modes;
+mod senses_of_perturbations;
 
 use hbvib::analysis::floquet;
 use hbvib::hooks::Hooks;

@@ -72,7 +72,7 @@ fn sector(engine_order: i64, offset: i64, by_diameter: bool) -> Model {
                     .collect();
                 let part = if previous.is_some() { Part::General } else { Part::Full };
                 model
-                    .set_diameter(which, d, &MatrixView::dense_complex(N, &a).part(part))
+                    .set_diameter(which, d as i64, &MatrixView::dense_complex(N, &a).part(part))
                     .unwrap();
             }
         } else {

@@ -11,9 +11,10 @@ const COLUMNS: usize = 130;
 const RENAMED: [(&str, &str); 1] = [("hbvib_energy", "hbvib_energies")];
 
 /// Defaults that differ from those in C, because indices count from 1, or a name replaces a number.
-const OWN_DEFAULTS: [(&str, &str, &str); 4] = [
+const OWN_DEFAULTS: [(&str, &str, &str); 5] = [
     ("hbvib_matrix", "index_base", "1"),
     ("hbvib_mode_options", "mode_index", "1"),
+    ("hbvib_mode_options", "diameter", "HBVIB_DIAMETER_OF_ENGINE_ORDER"),
     ("hbvib_contact", "dof_a", "HBVIB_GROUND"),
     ("hbvib_contact", "dof_b", "HBVIB_GROUND"),
 ];

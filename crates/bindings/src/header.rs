@@ -76,6 +76,7 @@ pub const SECTIONS: [Section; 13] = [
         files: &[
             "modes_linear",
             "modes_damped",
+            "modes_interference",
             "modes",
             "modes_results",
             "modes_synthesis",

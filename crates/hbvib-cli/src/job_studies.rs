@@ -29,8 +29,8 @@ pub struct CampbellPart {
     pub count: usize,
     #[serde(default = "first_order")]
     pub engine_orders: Vec<i64>,
-    #[serde(default)]
-    pub diameter: usize,
+    /// Signed nodal diameter of the curves: sector s + 1 lags by 2 pi d / N. That of the first engine order unless given.
+    pub diameter: Option<i64>,
     #[serde(default)]
     pub contacts: StateName,
     pub csv: Option<PathBuf>,

@@ -120,7 +120,9 @@ fn modes(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
     let model = build::built(&job)?.model;
     let mut text = String::from("diameter,mode,free_hz,stuck_hz\n");
-    for diameter in 0..=model.structure().sectors() / 2 {
+    // A row of a diameter stands for both senses where they have the same modes.
+    let least = if model.has_equal_senses() { 0 } else { i64::MIN };
+    for diameter in model.structure().all_diameters().filter(|d| *d >= least) {
         let count = LISTED.min(model.structure().ndof());
         let of = |state| {
             let modes = model.lowest_modes(diameter, state, count);

@@ -140,12 +140,43 @@ void speed() {
   claim(std::abs(branch.harmonics(0)(1, 0) - wanted) < 1e-12 && std::abs(branch.harmonics(0)(1, 1) + Complex(0, 1) * wanted) < 1e-12, "an unbalance");
 }
 
+/// Ten masses that move radially and along the circumference, with Coriolis forces: both senses of a nodal diameter.
+void senses() {
+  const double mass[2][2] = {{1, 0}, {0, 1}}, stiffness[2][2] = {{1500, 0}, {0, 1900}};
+  const double next[2][2] = {{-200, 250}, {-250, -350}}, coriolis[2][2] = {{0, -2}, {2, 0}};
+  auto wheel = Model::cyclic(2, 10);
+  wheel.set_matrix(HBVIB_MASS, mass);
+  wheel.set_matrix(HBVIB_STIFFNESS, stiffness);
+  wheel.set_coupling(HBVIB_STIFFNESS, next);
+  wheel.set_matrix(HBVIB_GYROSCOPIC, coriolis);
+  std::vector<double> speeds(181);
+  for (std::size_t i = 0; i < speeds.size(); i++) speeds[i] = 0.2 + (45 - 0.2) * static_cast<double>(i) / 180;
+  const double known[4] = {3.7995179098748477, 4.05780386908863, 1.710413476178725, 1.9829812203464108};
+  const auto diagram = wheel.campbell(speeds, 1, HBVIB_CONTACTS_STUCK, 2, std::vector<Index>{9, 19, 2});
+  if (claim(diagram.crossings.size() == 4, "the crossings of the other sense, none of another diameter"))
+    for (std::size_t i = 0; i < 4; i++) {
+      near(diagram.crossings[i].speed, known[i], 1e-11, "a crossing");
+      claim(diagram.crossings[i].diameter == -1, "its wave");
+    }
+  claim(wheel.signed_diameter(9) == -1 && wheel.signed_diameter(-5) == 5, "signed diameters");
+  wheel.set_speed(5);
+  const auto all = wheel.interference(HBVIB_CONTACTS_STUCK, 2);
+  claim(!all.equal_senses && all.diameters.front() == -4 && all.diameters.back() == 5, "both senses");
+  for (std::size_t i = 0; i < all.diameters.size(); i++) {
+    near(wheel.damped_modes(all.diameters[i], HBVIB_CONTACTS_STUCK, 2).omega(1), all.omega[2 * i + 1], 1e-12, "a damped wave");
+    near(wheel.linear_modes(all.diameters[i] - 30, HBVIB_CONTACTS_STUCK, 2).omega[0], all.omega[2 * i], 1e-12, "an undamped wave");
+  }
+  wheel.set_speed(0);
+  claim(wheel.interference(HBVIB_CONTACTS_STUCK, 2).equal_senses, "equal senses at rest");
+}
+
 }  // namespace
 
 int main() {
-  return verdict(85, [] {
+  return verdict(110, [] {
     pressed();
     parts();
     speed();
+    senses();
   });
 }

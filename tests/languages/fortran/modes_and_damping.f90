@@ -201,6 +201,7 @@ contains
       real(dp) :: unit(4, 4), omega(1, 2), at(2), frequency(2)
       complex(dp) :: eigenvalue(1), shapes(3, 1), none(0)
       type(hbvib_parameter) :: parameters(2)
+      type(hbvib_model) :: plain
       real(dp) :: derivatives(2)
       complex(dp) :: harmonics(4, 0:3)
       integer :: found, k
@@ -218,7 +219,9 @@ contains
       call bad(model%add_unbalance(2, 2, e), HBVIB_E_ARGUMENT, 'both', 'an unbalance of one direction')
       call bad(model%add_unbalance(0, 2, e), HBVIB_E_INDEX, 'dof_x = 0, needs 1 .. 4', 'an unbalance on dof 0')
       call bad(model%add_unbalance(1, 5, e), HBVIB_E_INDEX, 'dof_y = 5, needs 1 .. 4', 'an unbalance on dof 5')
-      call bad(model%damped_modes(eigenvalue, diameter=13), HBVIB_E_ARGUMENT, 'diameter = 13', 'a diameter of no wheel')
+      call works(plain%new(1), 'a plain structure')
+      call bad(plain%damped_modes(eigenvalue, diameter=13), HBVIB_E_ARGUMENT, 'diameter = 13', 'a diameter of no wheel')
+      call works(plain%free(), 'free')
       call bad(model%damped_modes(none), HBVIB_E_DIMENSION, 'count = 0', 'no mode')
       call bad(model%damped_modes(eigenvalue, shapes), HBVIB_E_DIMENSION, 'shapes', 'shapes of another length')
       call bad(model%damped_modes(eigenvalue, contacts=7), HBVIB_E_ARGUMENT, 'contacts = 7', 'contacts in no state')

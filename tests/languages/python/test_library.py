@@ -58,7 +58,7 @@ PREFIXES = dict(
     Follow="FOLLOW_",
     AeroForm="AERO_",
 )
-ours = {"HBVIB_GROUND": hbvib.GROUND}
+ours = {"HBVIB_GROUND": hbvib.GROUND, "HBVIB_DIAMETER_OF_ENGINE_ORDER": hbvib.DIAMETER_OF_ENGINE_ORDER}
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "

@@ -123,7 +123,8 @@ refused("a load of no contact", IndexError, model.set_preload, 1, 1.0, per_speed
 refused("an unbalance of one direction", ValueError, model.add_unbalance, 1, 1, 1.0, words="both 1")
 refused("an unbalance beside the structure", IndexError, model.add_unbalance, 4, 1, 1.0, words="dof_x = 4")
 refused("an unbalance of no number", ValueError, model.add_unbalance, 0, 1, math.nan, words="m_e = NaN")
-refused("a diameter of no wheel", ValueError, model.damped_modes, 1, diameter=13, words="diameter = 13, needs 0 .. 12")
+refused("a diameter of no wheel", ValueError, hbvib.Model(mass=1, stiffness=1).damped_modes, 1, diameter=13,
+        words="diameter = 13, needs 0 .. 0")
 refused("no mode", ValueError, model.damped_modes, 0, words="count = 0")
 refused("contacts in no state", ValueError, model.damped_modes, 1, contacts="slipping", words="stuck")
 refused("falling speeds", ValueError, model.campbell, [0.5, 0.2], 1, words="speeds[1] = 0.2")
