@@ -360,20 +360,20 @@ TABLE = {
     },
 }
 
-if hasattr(hbvib.structs["hbvib_mode_options"], "guess"):
-    near = len(mode) // 2
-    start = rows(mode.harmonics(near))
-    begun = with_choice(guess=start, guess_len=start.size, guess_omega=mode.omega[near], guess_damping=mode.damping_ratio[near])
-    TABLE["hbvib_mode_options"].update({
-        "guess": [(refused("guess"), begun, with_entry(start, 1, 0, NAN)), (refused("guess"), begun, NONE),
-                  (refused("guess"), begun, rows(0 * start))],
-        "guess_len": [(refused("guess"), begun, -1), (refused("guess"), begun, 4), (refused("guess"), begun, 0)],
-        "guess_omega": [(CHANGES, begun, 1.01 * mode.omega[near]), (refused("guess_omega"), begun, 0.0),
-                        (refused("guess_omega"), begun, NAN),
-                        (refused("guess_omega"), followed(plain), 1.0)],
-        "guess_damping": [(CHANGES, begun, 0.9 * mode.damping_ratio[near]), (refused("guess_damping"), begun, NAN),
-                          (refused("guess_damping"), followed(plain), 0.1)],
-    })
+# A mode that begins from a motion.
+near = len(mode) // 2
+start = rows(mode.harmonics(near))
+begun = with_choice(guess=start, guess_len=start.size, guess_omega=mode.omega[near], guess_damping=mode.damping_ratio[near])
+TABLE["hbvib_mode_options"].update({
+    "guess": [(refused("guess"), begun, with_entry(start, 1, 0, NAN)), (refused("guess"), begun, NONE),
+              (refused("guess"), begun, rows(0 * start))],
+    "guess_len": [(refused("guess"), begun, -1), (refused("guess"), begun, 4), (refused("guess"), begun, 0)],
+    "guess_omega": [(CHANGES, begun, 1.01 * mode.omega[near]), (refused("guess_omega"), begun, 0.0),
+                    (refused("guess_omega"), begun, NAN),
+                    (refused("guess_omega"), followed(plain), 1.0)],
+    "guess_damping": [(CHANGES, begun, 0.9 * mode.damping_ratio[near]), (refused("guess_damping"), begun, NAN),
+                      (refused("guess_damping"), followed(plain), 0.1)],
+})
 
 references = {}
 for struct, fields in TABLE.items():
