@@ -819,7 +819,8 @@ typedef struct {
   const int64_t *fixed;
   /// Entries in fixed.
   int64_t fixed_len;
-  /// Axis of the wheel, of any length; it passes through the origin.
+  /// Axis of the wheel, of any length; it passes through the origin. The axis has no effect in a
+  /// cylindrical frame without coordinates.
   double axis[3];
   /// 1: sector s + 1 follows at +2 pi / N about the axis; -1: at -2 pi / N. It decides about the
   /// axes of a Cartesian frame and about the check of coordinates, not about the wave.
@@ -1410,7 +1411,9 @@ typedef enum {
   HBVIB_STABILITY_WHEEL = 2,
 } hbvib_stability;
 
-/// Options that every analysis shares. Fill it by hbvib_solver_options_init.
+/// Options that every analysis shares. Fill it by hbvib_solver_options_init. A model without contacts
+/// is linear: a tolerance other than 0, max_harmonics, samples, the steps, tol_residual, max_newton and
+/// estimate_error have no effect on its response.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
@@ -1421,7 +1424,7 @@ typedef struct {
   /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
   /// one so far. 0: exactly `harmonics`, whatever the error.
   double tolerance;
-  /// Highest harmonic number H; with a tolerance the H of a given guess.
+  /// Highest harmonic number H; with a tolerance it has no effect in forced and parameter responses.
   int64_t harmonics;
   /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
   /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
@@ -1432,7 +1435,8 @@ typedef struct {
   /// that follows from H, and from the tolerance: a run that has too few samples begins again,
   /// progress included, with more.
   int64_t samples;
-  /// First arc-length step in scaled unknowns; 0 = automatic.
+  /// First arc-length step in scaled unknowns; 0 = automatic. A single frequency needs no step: the
+  /// steps and max_points have no effect there.
   double step;
   /// Smallest step; 0 = automatic.
   double step_min;
@@ -3010,7 +3014,7 @@ typedef enum {
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// HBVIB_WAVES_WAVE or HBVIB_WAVES_WHEEL.
+  /// HBVIB_WAVES_WAVE or HBVIB_WAVES_WHEEL, which have the same effect on a plain structure.
   int32_t waves;
   /// 1: move the point to the periodic motion in time by shooting first; 0: take it as it is.
   int32_t refine;
@@ -3020,7 +3024,7 @@ typedef struct {
   int32_t modes;
   /// As in hbvib_time_options.
   double tolerance;
-  /// Cap on the periods that shooting integrates.
+  /// Cap on the periods that shooting integrates. With refine = 0 it has no effect, as tolerance.
   int64_t max_periods;
 } hbvib_floquet_options;
 
@@ -3439,7 +3443,8 @@ typedef struct {
   double omega_start;
   /// Last angular frequency: below the first for downward sweeps.
   double omega_stop;
-  /// 1: the branch of each design is kept, for hbvib_batch_branch; 0 (default): it is not.
+  /// 1: the branch of each design is kept, for hbvib_batch_branch; 0 (default): it is not, and the
+  /// solver options estimate_error and stability have no effect.
   int32_t keep;
   /// Must be 0.
   int32_t reserved;
@@ -3539,10 +3544,10 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
  * ============================================================================================== */
 
 /// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom and directions in the description
-/// are ignored. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D, d = 2;
-/// t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load (kn = 0), d = 2; n
-/// of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
+/// it has become periodic, and its Jacobian. Degrees of freedom, sector_offset and directions in the
+/// description are ignored. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D,
+/// d = 2; t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load (kn = 0), d = 2;
+/// n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, Status, fail};
 pub struct ByteWriter<'a> {
     out: &'a mut [u8],
     at: usize,
-    /// Of what was written, where this is wanted.
+    /// The digest of the bytes that were written, where it is wanted.
     digest: Option<u64>,
 }
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ._c import GROUND, ContactKind
 from ._calls import _call, _Owner
-from ._convert import _array, _columns, _numbers
+from ._convert import _array, _columns, _numbers, _whole
 from ._law import _REQUIRED, _law, _side
 from ._results import Contact
 from ._structs import _new
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._choices import ContactKinds
+
+
+def _sides(a: int, b: int, sector_offset: int) -> tuple[int, int, int]:
+    """The places of a spring or joint, whole numbers."""
+    return _whole(a, name="a"), _whole(b, name="b"), _whole(sector_offset, name="sector_offset")
 
 
 class _Contacts(_Owner):
@@ -180,8 +185,9 @@ class _Contacts(_Owner):
         >>> model.add_iwan(0, slip_force=1, stiffness=1, chi=-0.5, beta=1, elements=20)
         range(0, 20)
         """
-        first = self._identified("hbvib_model_add_iwan", a, b, sector_offset,
-                                 slip_force, stiffness, chi, beta, elements)
+        elements = _whole(elements, name="elements")
+        first = self._identified("hbvib_model_add_iwan", *_sides(a, b, sector_offset), slip_force, stiffness, chi, beta,
+                                 elements)
         return range(first, first + elements)
 
     def add_table(self, a: int, b: int = GROUND, *, displacement: ArrayLike, force: ArrayLike,
@@ -195,7 +201,7 @@ class _Contacts(_Owner):
         """
         y = _array("displacement", displacement, shape=[None])
         f = _array("force", force, shape=[len(y)])
-        return self._identified("hbvib_model_add_table", a, b, sector_offset, len(y), y, f)
+        return self._identified("hbvib_model_add_table", *_sides(a, b, sector_offset), len(y), y, f)
 
     def add_spring_damper(self, a: int, b: int = GROUND, *, spring: ArrayLike = (), damper: ArrayLike = (),
                           sector_offset: int = 0) -> int:
@@ -207,8 +213,8 @@ class _Contacts(_Owner):
         0
         """
         spring, damper = _array("spring", spring, shape=[None]), _array("damper", damper, shape=[None])
-        return self._identified("hbvib_model_add_spring_damper", a, b, sector_offset, len(spring), spring, len(damper),
-                                damper)
+        return self._identified("hbvib_model_add_spring_damper", *_sides(a, b, sector_offset), len(spring), spring,
+                                len(damper), damper)
 
     def add_polynomial(self, dofs: ArrayLike, direction: ArrayLike, coefficient: ArrayLike,
                        x_powers: Optional[ArrayLike] = None, v_powers: Optional[ArrayLike] = None) -> int:

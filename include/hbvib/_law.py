@@ -105,6 +105,8 @@ def evaluate_contact(kind: Any, motion: ArrayLike, *, omega: float = 1, samples:
     """Force of one contact law on prescribed harmonics of its motions, (H + 1) or (d, H + 1) complex: an array like
     it, and with jacobian the real d F / d Y over the pairs (re, im), of order 2 d (H + 1), else None.
 
+    omega     angular frequency; it has an effect on laws that depend on velocities alone.
+    samples   per period; 0: exact events. No effect on friction_2d, friction_3d and cubic, which are always exact.
     phase, cancel   as in forced_response; Stopped is raised where they stop it.
 
     >>> import hbvib

@@ -56,7 +56,8 @@ pub struct hbvib_sector {
     pub fixed: *const i64,
     /// Entries in fixed.
     pub fixed_len: i64,
-    /// Axis of the wheel, of any length; it passes through the origin.
+    /// Axis of the wheel, of any length; it passes through the origin. The axis has no effect in a
+    /// cylindrical frame without coordinates.
     pub axis: [f64; 3],
     /// 1: sector s + 1 follows at +2 pi / N about the axis; -1: at -2 pi / N. It decides about the
     /// axes of a Cartesian frame and about the check of coordinates, not about the wave.

@@ -18,10 +18,10 @@ use core::ffi::{c_char, c_uchar};
 use num_complex::Complex64;
 
 /// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom and directions in the description
-/// are ignored. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D, d = 2;
-/// t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load (kn = 0), d = 2; n
-/// of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
+/// it has become periodic, and its Jacobian. Degrees of freedom, sector_offset and directions in the
+/// description are ignored. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D,
+/// d = 2; t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load (kn = 0), d = 2;
+/// n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.

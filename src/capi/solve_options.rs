@@ -35,7 +35,9 @@ pub enum hbvib_stability {
     HBVIB_STABILITY_WHEEL = 2,
 }
 
-/// Options that every analysis shares. Fill it by hbvib_solver_options_init.
+/// Options that every analysis shares. Fill it by hbvib_solver_options_init. A model without contacts
+/// is linear: a tolerance other than 0, max_harmonics, samples, the steps, tol_residual, max_newton and
+/// estimate_error have no effect on its response.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hbvib_solver_options {
@@ -48,7 +50,7 @@ pub struct hbvib_solver_options {
     /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
     /// one so far. 0: exactly `harmonics`, whatever the error.
     pub tolerance: f64,
-    /// Highest harmonic number H; with a tolerance the H of a given guess.
+    /// Highest harmonic number H; with a tolerance it has no effect in forced and parameter responses.
     pub harmonics: i64,
     /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
     /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
@@ -59,7 +61,8 @@ pub struct hbvib_solver_options {
     /// that follows from H, and from the tolerance: a run that has too few samples begins again,
     /// progress included, with more.
     pub samples: i64,
-    /// First arc-length step in scaled unknowns; 0 = automatic.
+    /// First arc-length step in scaled unknowns; 0 = automatic. A single frequency needs no step: the
+    /// steps and max_points have no effect there.
     pub step: f64,
     /// Smallest step; 0 = automatic.
     pub step_min: f64,

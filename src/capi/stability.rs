@@ -59,7 +59,7 @@ pub enum hbvib_grazing {
 pub struct hbvib_floquet_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// HBVIB_WAVES_WAVE or HBVIB_WAVES_WHEEL.
+    /// HBVIB_WAVES_WAVE or HBVIB_WAVES_WHEEL, which have the same effect on a plain structure.
     pub waves: i32,
     /// 1: move the point to the periodic motion in time by shooting first; 0: take it as it is.
     pub refine: i32,
@@ -69,7 +69,7 @@ pub struct hbvib_floquet_options {
     pub modes: i32,
     /// As in hbvib_time_options.
     pub tolerance: f64,
-    /// Cap on the periods that shooting integrates.
+    /// Cap on the periods that shooting integrates. With refine = 0 it has no effect, as tolerance.
     pub max_periods: i64,
 }
 

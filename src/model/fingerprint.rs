@@ -7,6 +7,7 @@
 use crate::byte_stream::ByteWriter;
 use crate::contact::Contact;
 use crate::error::{Result, fail};
+use crate::linalg::sparse::Columns;
 use crate::model::mechanical_model::Model;
 use crate::model::saved_matrix;
 use crate::model::saved_structure::save_degrees;
@@ -89,9 +90,11 @@ impl Model {
         let blocks = |kinds: &[MatrixKind], out: &mut ByteWriter<'_>| {
             for kind in kinds {
                 let blocks = &structure.blocks[*kind as usize];
-                for block in [&blocks.own, &blocks.next, &blocks.previous] {
-                    saved_matrix::save(block.as_ref(), out);
+                // A matrix of zeros is as good as none; no coupling to the previous sector stands for the transpose.
+                for block in [&blocks.own, &blocks.next] {
+                    saved_matrix::save(block.as_ref().filter(|a| a.stored() > 0), out);
                 }
+                saved_matrix::save(blocks.previous.as_ref(), out);
                 saved_matrix::save_list(&blocks.diameters, out);
             }
         };
@@ -208,6 +211,9 @@ mod tests {
         // In another order.
         changed.add_force(0, 0, Complex64::new(0.2, 0.0)).unwrap();
         changed.add_force(1, 1, Complex64::new(0.5, 0.1)).unwrap();
+        assert_eq!(made, changed.fingerprint());
+        let zeros = MatrixView::dense(2, &[0.0; 4]);
+        changed.set_matrix(MatrixKind::Damping, &zeros).unwrap();
         assert_eq!(made, changed.fingerprint());
     }
 

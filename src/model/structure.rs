@@ -402,7 +402,7 @@ impl Structure {
         self.refuse_modal_matrix(which)?;
         self.check_diameter(diameter)?;
         let blocks = &self.blocks[which as usize];
-        if blocks.own.is_some() || blocks.next.is_some() {
+        if blocks.own.is_some() || blocks.next.is_some() || blocks.previous.is_some() {
             return fail!(
                 Argument,
                 "{} was given by sector blocks; it cannot be given per nodal diameter too",

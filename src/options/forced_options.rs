@@ -15,7 +15,7 @@ pub struct ForcedOptions<'a> {
     /// Angular frequencies within the range at which every solution on the branch is stored.
     pub at: &'a [f64],
     /// Initial guess: complex, (H + 1) × ndof, harmonic by harmonic, with an H of its own; `None`: the solution with stuck
-    /// contacts. Of it the motion at the contacts counts. Harmonics that forces and laws do not excite by themselves, as a
+    /// contacts. The motion at the contacts counts. Harmonics that forces and laws do not excite by themselves, as a
     /// subharmonic, a mean or even harmonics of a symmetric model, are carried where the guess has them.
     pub guess: Option<&'a [Complex64]>,
 }

@@ -51,7 +51,7 @@ struct Case {
     /// C + G, of which G is the skew part.
     viscous: DMatrix<f64>,
     loss_factor: f64,
-    /// Of proportional damping βK.
+    /// Proportional damping βK.
     beta: f64,
     contacts: Vec<usize>,
     kt: f64,

@@ -1,0 +1,398 @@
+"""Every field of every struct that a caller fills, perturbed alone: the result changes, or the call is refused by name, or the header says
+that it has no effect there. Solver options: test_every_option.py; contacts, matrices and laws: test_every_constant.py."""
+
+import ctypes
+import warnings
+
+import numpy as np
+
+from common import check, finish, hbvib
+from options import CHANGES, bits, hold, of_branch, outcome, refused, same
+
+warnings.simplefilter("ignore", hbvib.StoppedEarly)
+Branch, call = hbvib.Branch, hbvib._calls._call
+new = hbvib._structs._new
+
+
+def solver(**values):
+    return new("hbvib_solver_options", **{"tolerance": 0.0, "harmonics": 5, **values})
+
+
+def branch_of(function, model, options, **values):
+    handle = ctypes.c_void_p()
+    call(function, model.handle, solver(**values), options, None, handle)
+    return Branch(handle.value, (), "")
+
+
+def friction():
+    model = hbvib.Model(mass=np.eye(3), stiffness=2 * np.eye(3) - np.eye(3, k=1) - np.eye(3, k=-1), rayleigh=(0.01, 0.02))
+    model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    model.add_force(0, 0.3)
+    return model
+
+
+def wheel():
+    model = hbvib.Model.cyclic(sectors=6, engine_order=2, mass=np.eye(2), stiffness=[[3.0, -1.0], [-1.0, 2.0]],
+                               coupling=dict(stiffness=-0.3 * np.eye(2)), rayleigh=(0.01, 0.02))
+    model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    model.add_force(0, 0.3)
+    return model
+
+
+def duffing():
+    model = hbvib.Model(mass=np.eye(2), stiffness=[[2.0, -1.0], [-1.0, 2.0]], damping=0.02 * np.eye(2))
+    model.add_contact("cubic", 0, cubic=0.5)
+    model.add_force(0, 0.2)
+    return model
+
+
+plain, blades, folded = friction(), wheel(), duffing()
+response = plain.forced_response((0.6, 1.2), harmonics=7, response_dof=0)
+peak = int(response.peaks().point[0])
+wave = blades.forced_response((1.2, 2.2), harmonics=7, response_dof=0)
+crest = int(wave.peaks().point[0])
+mode = plain.nonlinear_mode((-1, 1), harmonics=5)
+motions = folded.forced_response((0.8, 1.3), harmonics=5, at=[1.15], response_dof=0)
+high, low = (motions.harmonics(motions.at(0).point[pick(motions.at(0).amplitude)]) for pick in (np.argmax, np.argmin))
+check("two motions at one frequency", abs(high - low).max() > 0.5)
+
+
+def rows(x):
+    return np.ascontiguousarray(x, np.complex128)
+
+
+def with_entry(x, row, dof, value):
+    y = x.copy()
+    y[row, dof] = value
+    return rows(y)
+
+
+def forced(**o):
+    values = dict(omega_start=0.6, omega_stop=1.2, at=np.array([0.9]), at_len=1)
+    branch = branch_of("hbvib_forced_response", plain, new("hbvib_forced_options", **{**values, **o}))
+    branch._at = np.array([0.9])
+    return of_branch(branch), bits(branch.at(0).amplitude) if o.get("at_len", 1) else b""
+
+
+def guessed(**o):
+    values = dict(omega_start=1.15, omega_stop=1.15, guess=rows(high), guess_len=high.size)
+    return of_branch(branch_of("hbvib_forced_response", folded, new("hbvib_forced_options", **{**values, **o})))
+
+
+def followed(model):
+    def run(**o):
+        values = dict(log10_start=-1.0, log10_stop=0.5)
+        return of_branch(branch_of("hbvib_nonlinear_mode", model, new("hbvib_mode_options", **{**values, **o})))
+    return run
+
+
+def with_choice(**choice):
+    return lambda **o: followed(plain)(**{**choice, **o})
+
+
+def requested_mode(**o):
+    return followed(plain)(**{"at": np.array([0.0]), "at_len": 1, **o})
+
+
+def synthesised(**o):
+    options = {name: value for name, value in o.items() if name != "struct_size"}
+    if "struct_size" in o:
+        count = ctypes.c_int64()
+        call("hbvib_branch_synthesis", mode.handle, plain.handle, new("hbvib_synthesis_options", **o), 0, None, None, None, count)
+    return bits(*mode.synthesis(plain, **options)), bits(*mode.synthesis_peaks(plain, **options))
+
+
+def in_time(model, omega=1.0, **given):
+    def run(**o):
+        options = new("hbvib_time_options", **{"omega": omega, "harmonics": 5, **given, **o})
+        x = np.empty((max(options.harmonics, 0) + 1, model.ndof), complex)
+        times, info = np.empty((max(options.samples, 0), model.ndof)), new("hbvib_time_info")
+        call("hbvib_time_response", model.handle, options, None, x, x.size, times if times.size else None, times.size, info)
+        return bits(x, times, info.residual, info.periods, info.period)
+    return run
+
+
+def verified(**given):
+    def run(**o):
+        options = new("hbvib_verify_options", **{**given, **o})
+        x, errors, out = np.empty((8, 3), complex), np.empty(8), new("hbvib_verification")
+        call("hbvib_verify", plain.handle, response.handle, peak, options, None, x, x.size, errors, errors.size, out)
+        return bits(x, errors, out.distance, out.residual, out.periods, out.same_solution, out.marched)
+    return run
+
+
+def multipliers(model, branch, point, **given):
+    def run(**o):
+        options, out = new("hbvib_floquet_options", **{**given, **o}), new("hbvib_floquet_info")
+        most = model.sectors * (2 * model.ndof + model.contacts)
+        mu, classes = np.empty(most, complex), np.empty(most, np.int64)
+        call("hbvib_floquet", model.handle, branch.handle, point, options, None, mu, mu.size, classes, classes.size, out)
+        return bits(mu[: out.count], classes[: out.count], out.radius, out.residual, out.modes)
+    return run
+
+
+def described(**values):
+    """A parameter as C describes it."""
+    return new("hbvib_parameter", **{"kind": int(hbvib.ParameterKind.PRELOAD), "contact": -1, **values})
+
+
+MATRIX = hbvib._structs._matrix(np.eye(3), hbvib.Part.GENERAL)
+WRONG_MATRIX = hbvib._structs._matrix(np.eye(2), hbvib.Part.GENERAL)
+
+
+def derivative(**given):
+    def run(**o):
+        o = dict(o)
+        parameter = described(**{**given, **o})
+        values, reasons, onset = np.empty(1), np.empty(1, np.int64), ctypes.c_int64()
+        call("hbvib_sensitivity", plain.handle, response.handle, peak, 0, (hbvib.structs["hbvib_parameter"] * 1)(parameter), 1, values, 1,
+             reasons, onset, None)
+        return bits(values, reasons)
+    return run
+
+
+def over(follow, **given):
+    def run(**o):
+        values = dict(start=0.9, stop=1.1, omega=0.85, follow=int(follow), at=np.array([1.0]), at_len=1)
+        parameter = described()
+        values["parameter"] = np.frombuffer(parameter, np.uint8)
+        return of_branch(branch_of("hbvib_parameter_response", plain, new("hbvib_parameter_options", **{**values, **given, **o})))
+    return run
+
+
+MU = described(kind=int(hbvib.ParameterKind.MU))
+
+
+def batched(keep=0):
+    def run(**o):
+        options = new("hbvib_batch_options", **{"omega_start": 0.6, "omega_stop": 1.2, "keep": keep, **o})
+        handle, values = ctypes.c_void_p(), np.array([[0.8], [1.0]])
+        call("hbvib_batch_solve", plain.handle, solver(), options, None, (hbvib.structs["hbvib_parameter"] * 1)(described()), 1, 2,
+             values, handle)
+        batch = hbvib.Batch._of(handle.value, 2, ())
+        kept = [outcome(batch.branch, design=design) for design in range(2)]
+        return bits(batch.peak_amplitude, batch.peak_omega, batch.status,
+                    batch.points), [isinstance(b, Branch) and of_branch(b) for b in kept]
+    return run
+
+
+def hooked(**o):
+    """The lines and calls that hooks receive, and the points that are kept."""
+    heard = []
+    hooks = new("hbvib_hooks")
+    made = {
+        "progress": hbvib._calls._TYPES["progress_fn"](lambda user, state: heard.append(("progress", user)) or 0),
+        "log": hbvib._calls._TYPES["log_fn"](lambda user, level, text: heard.append(("log", level, user))),
+        "phase": hbvib._calls._TYPES["phase_fn"](lambda user, state: heard.append(("phase", user)) or 0),
+    }
+    for name, function in made.items():
+        if o.get(name, True):
+            setattr(hooks, name, function)
+    hooks.log_level = o.get("log_level", int(hbvib.LogLevel.INFO))
+    flag = ctypes.c_int32(o.get("cancel", 0))
+    hooks.cancel = ctypes.addressof(flag)
+    hooks.user = o.get("user", 1)
+    if "struct_size" in o:
+        hooks.struct_size = o["struct_size"]
+    handle = ctypes.c_void_p()
+    call("hbvib_forced_response", plain.handle, solver(), new("hbvib_forced_options", omega_start=0.6, omega_stop=0.9), hooks, handle)
+    branch = Branch(handle.value, (), "")
+    return heard, of_branch(branch)
+
+
+NAN, NONE = float("nan"), None
+FOLLOW = hbvib.Follow
+KIND = hbvib.ParameterKind
+# Structs, their fields, and claims about each field with a call and a value.
+TABLE = {
+    "hbvib_forced_options": {
+        "struct_size": [(refused("struct_size"), forced, 8)],
+        "reserved": [(refused("reserved"), forced, 1)],
+        "omega_start": [(CHANGES, forced, 0.7), (refused("omega_start"), forced, 0.0), (refused("omega_start"), forced, NAN)],
+        "omega_stop": [(CHANGES, forced, 1.1), (CHANGES, guessed, 1.6), (refused("omega_stop"), forced, -1.0)],
+        "at": [(CHANGES, forced, np.array([0.8])), (refused("at"), forced, np.array([1.3])), (refused("at"), forced, NONE)],
+        "at_len": [(refused("at_len"), forced, -1), (CHANGES, forced, 0)],
+        "guess": [
+            (CHANGES, guessed, rows(low)), (refused("guess"), guessed, with_entry(high, 1, 0, NAN)), (refused("guess"), guessed, NONE),
+            (same("The motion at the contacts counts"), guessed, with_entry(high, 1, 1, 50.0)),
+            (same("The motion at the contacts counts"), guessed, with_entry(high, 1, 1, 1e9)),
+            (same("the imaginary part of the mean has no effect"), guessed, with_entry(high, 0, 0, 50.0j)),
+        ],
+        "guess_len": [(refused("guess_len"), guessed, -1), (refused("guess_len"), guessed, 3), (CHANGES, guessed, 4)],
+    },
+    "hbvib_mode_options": {
+        "struct_size": [(refused("struct_size"), followed(plain), 8)],
+        "damping_form": [(CHANGES, followed(plain), 1), (refused("damping_form"), followed(plain), 2)],
+        "log10_start": [(CHANGES, followed(plain), -0.5), (refused("log10_start"), followed(plain), 1.0)],
+        "log10_stop": [(CHANGES, followed(plain), 0.4), (refused("log10"), followed(plain), NAN)],
+        "diameter": [
+            (CHANGES, followed(blades), 1), (refused("diameter"), followed(plain), 1),
+            (same("(default): the wave of the model's engine order."), followed(plain), 0),
+        ],
+        "mode_index": [
+            (CHANGES, followed(plain), 1), (refused("mode_index"), followed(plain), 3), (refused("mode_index"), followed(plain), -1),
+            (refused("mode_index"), with_choice(near_omega=1.5), 1),
+            (refused("mode_index"), with_choice(shape=rows([1, 0, -1]), shape_len=3), 1),
+        ],
+        "near_omega": [(CHANGES, followed(plain), 1.5), (refused("near_omega"), followed(plain), -1.0),
+                       (refused("near_omega"), with_choice(shape=rows([1, 0, -1]), shape_len=3), 1.5)],
+        "shape": [(CHANGES, with_choice(shape=rows([1, 1, 1]), shape_len=3), rows([1, 0, -1])),
+                  (refused("shape"), with_choice(shape=rows([1, 1, 1]), shape_len=3), NONE),
+                  (refused("shape"), with_choice(shape=rows([1, 1, 1]), shape_len=3), rows([0, 0, 0]))],
+        "shape_len": [(refused("shape_len"), with_choice(shape=rows([1, 1, 1]), shape_len=3), 2),
+                      (refused("shape"), with_choice(shape=rows([1, 1, 1]), shape_len=3), 0)],
+        "amplitude_contact": [(CHANGES, followed(plain), 0), (refused("amplitude_contact"), followed(plain), 1),
+                              (refused("amplitude_contact"), followed(plain), -2)],
+        "at": [(CHANGES, requested_mode, np.array([0.2])), (refused("at"), requested_mode, np.array([2.0])),
+               (refused("at"), requested_mode, NONE)],
+        "at_len": [(CHANGES, requested_mode, 0), (refused("at_len"), requested_mode, -1)],
+        "reference_dof": [(CHANGES, followed(plain), 0), (refused("reference_dof"), followed(plain), 3)],
+    },
+    "hbvib_synthesis_options": {
+        "struct_size": [(refused("struct_size"), synthesised, 8)],
+        "model_damping": [(CHANGES, synthesised, 1), (refused("model_damping"), synthesised, 2)],
+        "force_factor": [(CHANGES, synthesised, 2.0), (refused("force_factor"), synthesised, 0.0)],
+        "damping_ratio": [(CHANGES, synthesised, 0.01), (refused("damping_ratio"), synthesised, 1.0)],
+    },
+    "hbvib_time_options": {
+        "struct_size": [(refused("struct_size"), in_time(plain), 8)],
+        "method": [(CHANGES, in_time(plain), 1), (refused("method"), in_time(plain), 2)],
+        "omega": [(CHANGES, in_time(plain), 1.1), (refused("omega"), in_time(plain), 0.0)],
+        "harmonics": [(CHANGES, in_time(plain), 3), (refused("harmonics"), in_time(plain), -1)],
+        "samples": [(CHANGES, in_time(plain), 16), (refused("samples"), in_time(plain), -1)],
+        "tolerance": [(CHANGES, in_time(plain, method=1), 1e-4), (CHANGES, in_time(folded, 0.5), 1e-6),
+                      (refused("tolerance"), in_time(plain), 0.0)],
+        "max_periods": [(refused("max_periods"), in_time(plain), 1), (refused("max_periods"), in_time(plain), 0)],
+        "start": [
+            (CHANGES, in_time(folded, 1.15, start=rows(high), start_len=high.size), rows(low)),
+            (same("the imaginary part of the mean has no effect"), in_time(folded, 1.15, start=rows(high), start_len=high.size),
+             with_entry(high, 0, 0, 50j)),
+            (refused("start"), in_time(folded, 1.15, start=rows(high), start_len=high.size), NONE),
+        ],
+        "start_len": [(refused("start has 3 numbers"), in_time(folded, 1.15, start=rows(high), start_len=high.size), 3),
+                      (refused("start_len"), in_time(folded, 1.15, start=rows(high), start_len=high.size), -1)],
+    },
+    "hbvib_verify_options": {
+        "struct_size": [(refused("struct_size"), verified(), 8)],
+        "method": [(CHANGES, verified(), 1), (refused("method"), verified(), 2)],
+        "tolerance": [(CHANGES, verified(method=1), 1e-5), (refused("tolerance"), verified(), 0.0)],
+        "max_periods": [(refused("max_periods"), verified(), 1), (refused("max_periods"), verified(), 0)],
+        "same_within": [(CHANGES, verified(), 1e-9), (refused("same_within"), verified(), 0.0)],
+    },
+    "hbvib_floquet_options": {
+        "struct_size": [(refused("struct_size"), multipliers(plain, response, peak), 8)],
+        "waves": [
+            (CHANGES, multipliers(blades, wave, crest), 1), (refused("waves"), multipliers(plain, response, peak), 2),
+            (same("which have the same effect on a plain structure"), multipliers(plain, response, peak), 1),
+        ],
+        "refine": [(CHANGES, multipliers(plain, response, peak), 0), (refused("refine"), multipliers(plain, response, peak), 2)],
+        "modes": [(CHANGES, multipliers(plain, response, peak), 1), (refused("modes"), multipliers(plain, response, peak), -2)],
+        "tolerance": [
+            (CHANGES, multipliers(folded, motions, 3), 1e-5), (refused("tolerance"), multipliers(plain, response, peak), 0.0),
+            (same("With refine = 0 it has no effect, as tolerance."), multipliers(plain, response, peak, refine=0), 1e-4),
+        ],
+        "max_periods": [
+            (refused("max_periods"), multipliers(plain, response, peak), 1),
+            (refused("max_periods"), multipliers(plain, response, peak), 0),
+            (same("With refine = 0 it has no effect, as tolerance."), multipliers(plain, response, peak, refine=0), 1),
+        ],
+    },
+    "hbvib_parameter": {
+        "struct_size": [(refused("struct_size"), derivative(), 8)],
+        "kind": [(CHANGES, derivative(), int(KIND.MU)), (refused("kind"), derivative(), 99),
+                 (refused("gap"), derivative(), int(KIND.GAP))],
+        "contact": [
+            (same("or -1: the constant of all contacts that have it"), derivative(), 0), (refused("contact"), derivative(), 1),
+            (refused("contact"), derivative(), -2),
+            (refused("contact"), derivative(kind=int(KIND.FORCE)), 0), (refused("contact"), derivative(kind=int(KIND.SPEED)), 0),
+            (refused("contact"), derivative(kind=int(KIND.MASS), scaling=1), 0),
+        ],
+        "direction": [
+            (CHANGES, derivative(kind=int(KIND.MASS), direction=np.frombuffer(MATRIX, np.uint8)),
+             np.frombuffer(hbvib._structs._matrix(2 * np.eye(3), hbvib.Part.GENERAL), np.uint8)),
+            (refused("direction"), derivative(), np.frombuffer(MATRIX, np.uint8)),
+            (refused("direction"), derivative(kind=int(KIND.FORCE)), np.frombuffer(MATRIX, np.uint8)),
+            (refused("direction"), derivative(kind=int(KIND.MASS), scaling=1), np.frombuffer(MATRIX, np.uint8)),
+            (refused("direction"), derivative(kind=int(KIND.MASS), direction=np.frombuffer(MATRIX, np.uint8)), NONE),
+            (refused("direction"), derivative(kind=int(KIND.MASS), direction=np.frombuffer(MATRIX, np.uint8)),
+             np.frombuffer(WRONG_MATRIX, np.uint8)),
+        ],
+        "scaling": [(refused("scaling"), derivative(), 1), (refused("scaling"), derivative(kind=int(KIND.FORCE)), 1),
+                    (refused("scaling"), derivative(kind=int(KIND.MASS), scaling=1), 2)],
+        "reserved": [(refused("reserved"), derivative(), 1)],
+    },
+    "hbvib_parameter_options": {
+        "struct_size": [(refused("struct_size"), over(FOLLOW.OMEGA), 8)],
+        "follow": [(CHANGES, over(FOLLOW.OMEGA), int(FOLLOW.PEAK)), (refused("follow"), over(FOLLOW.OMEGA), 9)],
+        "parameter": [(CHANGES, over(FOLLOW.OMEGA), np.frombuffer(MU, np.uint8)), (refused("parameter"), over(FOLLOW.OMEGA), NONE)],
+        "start": [(CHANGES, over(FOLLOW.OMEGA), 0.8), (refused("start"), over(FOLLOW.OMEGA), NAN),
+                  (refused("preload"), over(FOLLOW.OMEGA), -1.0)],
+        "stop": [(CHANGES, over(FOLLOW.OMEGA), 1.2), (refused("stop"), over(FOLLOW.OMEGA), NAN)],
+        "omega": [(CHANGES, over(FOLLOW.OMEGA), 0.9), (refused("omega"), over(FOLLOW.OMEGA), 0.0)],
+        "at": [(CHANGES, over(FOLLOW.OMEGA), np.array([1.05])), (refused("at"), over(FOLLOW.OMEGA), np.array([3.0])),
+               (refused("at"), over(FOLLOW.OMEGA), NONE)],
+        "at_len": [(CHANGES, over(FOLLOW.OMEGA), 0), (refused("at_len"), over(FOLLOW.OMEGA), -1)],
+        "log10_start": [(CHANGES, over(FOLLOW.MODE_MAX_DAMPING, omega=1.0, log10_start=-0.5, log10_stop=1.5), -0.4),
+                        (refused("log10_start"), over(FOLLOW.OMEGA), 1.0),
+                        (refused("log10_start"), over(FOLLOW.PEAK), 1.0)],
+        "log10_stop": [(CHANGES, over(FOLLOW.MODE_MAX_DAMPING, omega=1.0, log10_start=-0.5, log10_stop=1.5), 1.0),
+                       (refused("log10_stop"), over(FOLLOW.OMEGA), 1.0),
+                       (refused("log10_stop"), over(FOLLOW.PEAK), 1.0)],
+    },
+    "hbvib_batch_options": {
+        "struct_size": [(refused("struct_size"), batched(), 8)],
+        "threads": [(same("Their number changes no bit of a result"), batched(), 2),
+                    (same("Their number changes no bit of a result"), batched(1), 2),
+                    (refused("threads"), batched(), 0)],
+        "omega_start": [(CHANGES, batched(), 0.7), (refused("omega_start"), batched(), 0.0)],
+        "omega_stop": [(CHANGES, batched(), 1.1), (refused("omega_stop"), batched(), 0.0)],
+        "keep": [(CHANGES, batched(), 1), (refused("keep"), batched(), 2)],
+        "reserved": [(refused("reserved"), batched(), 1)],
+    },
+    "hbvib_hooks": {
+        "struct_size": [(refused("struct_size"), hooked, 8)],
+        "log_level": [(CHANGES, hooked, int(hbvib.LogLevel.WARN)), (CHANGES, hooked, 0), (refused("log_level"), hooked, 9)],
+        "user": [(CHANGES, hooked, 2)],
+        "progress": [(CHANGES, hooked, False)],
+        "log": [(CHANGES, hooked, False)],
+        "cancel": [(CHANGES, hooked, 1)],
+        "phase": [(CHANGES, hooked, False)],
+    },
+}
+
+# A mode that begins from a motion.
+near = len(mode) // 2
+start = rows(mode.harmonics(near))
+begun = with_choice(guess=start, guess_len=start.size, guess_omega=mode.omega[near], guess_damping=mode.damping_ratio[near])
+TABLE["hbvib_mode_options"].update({
+    "guess": [(refused("guess"), begun, with_entry(start, 1, 0, NAN)), (refused("guess"), begun, NONE),
+              (refused("guess"), begun, rows(0 * start))],
+    "guess_len": [(refused("guess"), begun, -1), (refused("guess"), begun, 4), (refused("guess"), begun, 0)],
+    "guess_omega": [(CHANGES, begun, 1.01 * mode.omega[near]), (refused("guess_omega"), begun, 0.0),
+                    (refused("guess_omega"), begun, NAN),
+                    (refused("guess_omega"), followed(plain), 1.0)],
+    "guess_damping": [(CHANGES, begun, 0.9 * mode.damping_ratio[near]), (refused("guess_damping"), begun, NAN),
+                      (refused("guess_damping"), followed(plain), 0.1)],
+})
+
+references = {}
+for struct, fields in TABLE.items():
+    known = [name for name, _ in hbvib.structs[struct]._fields_]
+    check(f"the table has every field of {struct}, and no other", set(known) == set(fields), set(known) ^ set(fields))
+    for field, claims in fields.items():
+        for number, (claim, function, value) in enumerate(claims):
+            if function not in references:
+                references[function] = outcome(function)
+            shown = value if isinstance(value, (int, float, type(None))) else f"array {number}"
+            hold(claim, f"{struct}.{field} = {shown}", function, references[function], **{field: value})
+
+# Every struct of the interface is in a table, or filled by the library.
+ELSEWHERE = {"hbvib_solver_options", "hbvib_contact", "hbvib_matrix", "hbvib_user_force", "hbvib_sector"}
+FILLED = {
+    "hbvib_force_call", "hbvib_jacobian_gap", "hbvib_progress", "hbvib_phase_report", "hbvib_view", "hbvib_reduction", "hbvib_energy",
+    "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
+}
+listed = set(TABLE) | ELSEWHERE | FILLED
+check("every struct is in a table or filled by the library", listed == set(hbvib.structs), listed ^ set(hbvib.structs))
+
+finish(150)
