@@ -30,7 +30,7 @@ pub(crate) fn format(path: &Path, start: &[u8]) -> Option<String> {
         "a binary file of Abaqus, which is not read: write the matrices by *MATRIX OUTPUT, FORMAT=MATRIX INPUT (job_STIF1.mtx, \
          job_MASS1.mtx)"
             .into()
-    } else if extension == "op4" && start.contains(&0) {
+    } else if extension == "op4" && start.iter().take(4).any(|b| *b == 0) {
         "a binary OP4 file whose head is not one of words of four bytes, which is not read: write it with FORM = FORMATTED"
             .into()
     } else if extension == "op2" {
