@@ -7,7 +7,7 @@ use crate::linalg::definite;
 use crate::linalg::inner;
 use crate::linalg::quadratic::quadratic;
 use crate::model::Model;
-use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
+use crate::model::linear_modes::{ContactState, LinearModes, NO_STRAIN, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
 use crate::model::spring_stiffness::Wave;
 use crate::options::ModeChoice;
@@ -37,9 +37,6 @@ pub struct SelectedMode {
 
 /// Frequencies that differ by no more than this, relative, count as equal.
 const EQUAL: f64 = 1e-8;
-
-/// Largest strain energy, relative to the sum of the moduli of its terms, that counts as rounding.
-const NO_STRAIN: f64 = 1e-14;
 
 /// Number of modes of a large structure with which a given shape is compared.
 const COMPARED: usize = 40;

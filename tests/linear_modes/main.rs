@@ -8,3 +8,4 @@ mod natural_frequencies;
 mod rotating_modes;
 mod rotating_wheel;
 mod start_mode;
+mod unstable_and_held;
