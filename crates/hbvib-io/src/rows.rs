@@ -71,21 +71,22 @@ impl Rows {
         (0..self.len()).map(|i| self.get(i, i)).collect()
     }
 
-    /// Rows whose diagonal exceeds all else by 1/ε, as the 1e36 that Abaqus writes for fixed degrees of freedom: the
-    /// diagonals of all other rows, and the entries beside it.
+    /// Rows that a penalty on the diagonal holds, as the 1e36 that Abaqus writes for fixed degrees of freedom: it exceeds the
+    /// sum of the entries beside it, or without them the diagonals of all rows with couplings, by more than 1/ε.
     pub fn fixed_by_penalty(&self) -> Vec<bool> {
-        let diagonal = self.diagonal();
-        let mut sorted: Vec<f64> = diagonal.iter().copied().filter(|d| *d > 0.0).collect();
-        sorted.sort_by(f64::total_cmp);
-        let step = sorted.windows(2).position(|two| two[1] * f64::EPSILON > two[0]);
-        let Some(least) = step.map(|at| sorted[at + 1]) else {
-            return vec![false; self.len()];
+        let exceeds = |own: f64, rest: f64| own * f64::EPSILON > rest;
+        let beside = |i: usize| self.row(i).filter(|(j, _)| *j != i).map(|(_, v)| v.abs()).sum::<f64>();
+        let rows: Vec<(f64, f64)> = (0..self.len()).map(|i| (self.get(i, i), beside(i))).collect();
+        let moving = || rows.iter().filter(|(own, rest)| *rest > 0.0 && !exceeds(*own, *rest));
+        let largest = moving().fold(0.0_f64, |m, (own, _)| m.max(*own));
+        let any = moving().next().is_some();
+        let held = |(own, rest): &(f64, f64)| {
+            if *rest > 0.0 {
+                exceeds(*own, *rest)
+            } else {
+                any && exceeds(*own, largest)
+            }
         };
-        let is_large: Vec<bool> = diagonal.iter().map(|d| *d >= least).collect();
-        let alone = |i: usize| {
-            let beside = self.row(i).filter(|(j, _)| *j != i && !is_large[*j]);
-            beside.fold(0.0_f64, |m, (_, v)| m.max(v.abs())) <= f64::EPSILON * diagonal[i]
-        };
-        (0..self.len()).map(|i| is_large[i] && alone(i)).collect()
+        rows.iter().map(held).collect()
     }
 }
