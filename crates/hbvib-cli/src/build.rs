@@ -66,13 +66,13 @@ impl Built {
 /// # Errors
 /// A sentence that names the file, contact or force.
 pub fn built(job: &Job) -> Outcome<Built> {
-    let given = matrices(job)?;
-    let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
     let part = &job.model;
     let mesh = match &part.mesh {
         Some(path) => Some(Mesh::read(&job.path(path))?),
         None => None,
     };
+    let given = matrices(job, mesh.as_ref())?;
+    let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
     let nodes = Nodes::new(&given.dofs, mesh, part.absent);
     let mut report = given.report.clone();
     expected(job, &mut report);
@@ -199,7 +199,7 @@ fn expected(job: &Job, report: &mut Report) {
     }
 }
 
-fn matrices(job: &Job) -> Outcome<Given> {
+fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
     let part = &job.model;
     let one = |path: &Path| -> Outcome<(Matrix, Vec<Dof>)> {
         let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
@@ -231,10 +231,12 @@ fn matrices(job: &Job) -> Outcome<Given> {
         structural,
     })
     .map_err(|e| e.to_string())?;
+    let position = mesh.map(|mesh| |node: i64| mesh.position(node).ok());
+    let positions = position.as_ref().map(|p| p as &dyn Fn(i64) -> Option<[f64; 3]>);
     let mut given = Given {
         own: Vec::new(),
         next: Vec::new(),
-        report: hbvib_io::report(&found),
+        report: hbvib_io::report_with(&found, positions),
         dofs: found.dofs,
     };
     for (kind, matrix) in [

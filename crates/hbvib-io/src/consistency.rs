@@ -27,6 +27,12 @@ const SLOWEST: f64 = 1e-6;
 /// Checks the matrices of a model. A complex matrix is checked by its real part.
 #[must_use]
 pub fn report(found: &Matrices) -> Report {
+    report_with(found, None)
+}
+
+/// The same, with the position of each node by its number.
+#[must_use]
+pub fn report_with(found: &Matrices, positions: Option<&dyn Fn(i64) -> Option<[f64; 3]>>) -> Report {
     let mut report = Report::default();
     for (name, a) in found.named() {
         report.facts.push(format!(
@@ -54,6 +60,7 @@ pub fn report(found: &Matrices) -> Report {
         mass: mass.as_ref().filter(|a| a.len() == n),
     };
     check.fixed(&mut report);
+    check.order(&mut report);
     for (name, a) in [("stiffness", check.stiffness), ("mass", check.mass)] {
         if let Some(a) = a {
             check.symmetry(name, a, &mut report);
@@ -63,7 +70,7 @@ pub fn report(found: &Matrices) -> Report {
     check.time_scale(&mut report);
     let nodes = Nodes::of(&found.dofs, check.mass, n);
     match &nodes {
-        Some(nodes) => directions::check(nodes, check.stiffness, check.mass, &mut report),
+        Some(nodes) => directions::check(nodes, (check.stiffness, check.mass), positions, &mut report),
         None => check.pattern(&mut report),
     }
     report
@@ -97,6 +104,11 @@ impl Cases {
         self.first.get_or_insert_with(name);
     }
 
+    /// Number of cases.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// A sentence from the number of cases and the first one.
     pub fn told(self, to: &mut Vec<String>, sentence: impl FnOnce(usize, &str) -> String) {
         if let Some(first) = self.first {
@@ -110,6 +122,24 @@ impl Check<'_> {
         match self.dofs.get(i) {
             Some(dof) => dof_name(*dof),
             None => format!("row {i}"),
+        }
+    }
+
+    /// Finite-element programs list nodes and directions in ascending order.
+    fn order(&self, report: &mut Report) {
+        let mut sorted = self.dofs.to_vec();
+        sorted.sort_unstable();
+        let repeated = sorted.windows(2).filter(|two| two[0] == two[1]).count();
+        if repeated > 0 {
+            report
+                .facts
+                .push(format!("{repeated} rows repeat the node and direction of another one"));
+        } else if let Some(two) = self.dofs.windows(2).find(|two| two[0] > two[1]) {
+            report.warnings.push(format!(
+                "rows are not in ascending order of node and direction: {} comes before {}",
+                dof_name(two[0]),
+                dof_name(two[1])
+            ));
         }
     }
 

@@ -3,6 +3,7 @@
 
 use crate::consistency::{Cases, Report};
 use crate::nodes::Nodes;
+use crate::rotations;
 use crate::rows::Rows;
 
 /// Relative difference that is rounding of the file.
@@ -14,7 +15,15 @@ const MOSTLY: f64 = 0.3;
 /// Share of pairs of nodes without an entry of one direction up to which these are exceptions.
 const FEW: f64 = 0.05;
 
-pub(crate) fn check(nodes: &Nodes, stiffness: Option<&Rows>, mass: Option<&Rows>, report: &mut Report) {
+/// Position of a node by its number.
+pub(crate) type Positions<'a> = &'a dyn Fn(i64) -> Option<[f64; 3]>;
+
+pub(crate) fn check(
+    nodes: &Nodes,
+    (stiffness, mass): (Option<&Rows>, Option<&Rows>),
+    positions: Option<Positions<'_>>,
+    report: &mut Report,
+) {
     if !nodes.named {
         report
             .facts
@@ -26,6 +35,10 @@ pub(crate) fn check(nodes: &Nodes, stiffness: Option<&Rows>, mass: Option<&Rows>
     }
     if let Some(stiffness) = stiffness {
         supports(nodes, stiffness, report);
+        neighbours(nodes, stiffness, report);
+        if let Some(positions) = positions.filter(|_| nodes.named) {
+            rotations::check(nodes, stiffness, positions, report);
+        }
     }
     if let (Some(stiffness), Some(mass)) = (stiffness, mass) {
         pairs(nodes, (stiffness, mass), report);
@@ -135,6 +148,22 @@ fn supports(nodes: &Nodes, stiffness: &Rows, report: &mut Report) {
              supported everywhere"
                 .into(),
         );
+    }
+}
+
+/// The rows of a node are coupled with the same nodes, but for entries that vanish by chance.
+fn neighbours(nodes: &Nodes, stiffness: &Rows, report: &mut Report) {
+    let mut differ = Cases::default();
+    for (k, (_, rows)) in nodes.full.iter().enumerate() {
+        let [x, y, z] = rows.map(|i| nodes.coupled_to(stiffness, &[i]));
+        if x != y || y != z {
+            differ.add(|| nodes.name(k));
+        }
+    }
+    if (differ.count() as f64) <= MOSTLY * nodes.full.len() as f64 {
+        differ.told(&mut report.warnings, |count, first| {
+            format!("the rows of {count} nodes are coupled with different nodes by the stiffness, first {first}")
+        });
     }
 }
 

@@ -24,10 +24,11 @@ mod op4_binary;
 mod op4_parts;
 mod parts;
 mod read;
+mod rotations;
 mod rows;
 mod unreadable;
 
-pub use consistency::{Report, report};
+pub use consistency::{Report, report, report_with};
 pub use error::Error;
 pub use matrix::{Dof, Matrices, Matrix, Symmetry};
 pub use parts::{Files, read_files};

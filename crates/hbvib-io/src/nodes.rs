@@ -17,7 +17,7 @@ pub(crate) struct Nodes {
 }
 
 /// Share of coupled rows, and of equal directions, that show x, y, z of one node after another.
-const SHOWS: f64 = 0.9;
+const SHOWS: f64 = 0.6;
 
 impl Nodes {
     /// The nodes that the files name; without names three rows of each node, if the mass shows that.
@@ -93,8 +93,12 @@ impl Nodes {
 
     /// Nodes that a node is coupled with, itself included.
     pub fn coupled(&self, a: &Rows, k: usize) -> Vec<usize> {
-        let mut all: Vec<usize> = self.full[k]
-            .1
+        self.coupled_to(a, &self.full[k].1)
+    }
+
+    /// Nodes that some rows are coupled with.
+    pub fn coupled_to(&self, a: &Rows, rows: &[usize]) -> Vec<usize> {
+        let mut all: Vec<usize> = rows
             .iter()
             .flat_map(|&i| a.row(i).filter(|(_, v)| *v != 0.0))
             .filter_map(|(j, _)| self.place[j].map(|(node, _)| node))
