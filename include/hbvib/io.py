@@ -65,7 +65,7 @@ class SuspiciousMatrices(UserWarning):
     ...         hbvib.io.read(path)
     ...     except hbvib.io.SuspiciousMatrices as warning:
     ...         print(str(warning).split(": ", 1)[1])
-    stiffness has 1 negative numbers on its diagonal, first -1.000000e0 at row 1
+    negative numbers on the diagonal of the stiffness: 1, first -1.000000e0 at row 1
     """
 
 

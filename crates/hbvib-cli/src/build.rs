@@ -155,7 +155,7 @@ fn add_contacts(
         let (contacts, repeated) = contacts(job, part, nodes, images).map_err(|e| said(&e))?;
         if repeated > 0 {
             report.facts.push(said(&format!(
-                "{} on the right face repeat pairs of the left one, and are left out",
+                "left out, as images of pairs of the left face: {}",
                 counted(repeated, "pair")
             )));
         }

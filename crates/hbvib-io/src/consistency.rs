@@ -131,9 +131,9 @@ impl Check<'_> {
         sorted.sort_unstable();
         let repeated = sorted.windows(2).filter(|two| two[0] == two[1]).count();
         if repeated > 0 {
-            report
-                .facts
-                .push(format!("{repeated} rows repeat the node and direction of another one"));
+            report.facts.push(format!(
+                "rows that repeat the node and direction of another one: {repeated}"
+            ));
         } else if let Some(two) = self.dofs.windows(2).find(|two| two[0] > two[1]) {
             report.warnings.push(format!(
                 "rows are not in ascending order of node and direction: {} comes before {}",
@@ -151,7 +151,7 @@ impl Check<'_> {
             cases.add(|| format!("{}, {:.1e}", self.row_name(i), stiffness.get(i, i)));
         }
         cases.told(&mut report.facts, |count, first| {
-            format!("{count} rows are fixed by a diagonal that exceeds all else by 1/epsilon, first {first}")
+            format!("rows fixed by a diagonal that exceeds all else by 1/epsilon: {count}, first {first}")
         });
     }
 
@@ -174,10 +174,12 @@ impl Check<'_> {
             }
         }
         unsymmetric.told(&mut report.warnings, |count, first| {
-            format!("{name} is not symmetric at {count} places, first {first}")
+            format!("places where the {name} is not symmetric: {count}, first {first}")
         });
         indefinite.told(&mut report.warnings, |count, first| {
-            format!("{name} is negative in some direction: {count} entries exceed their diagonals, first {first}")
+            format!(
+                "the {name} is negative in some direction; entries that exceed their diagonals: {count}, first {first}"
+            )
         });
     }
 
@@ -200,17 +202,17 @@ impl Check<'_> {
         }
         if internal > 0 {
             report.facts.push(format!(
-                "{internal} rows without mass: internal nodes, rotations, scalars and fixed rows"
+                "rows without mass of internal nodes, rotations, scalars and fixed rows: {internal}"
             ));
         }
         negative.told(&mut report.warnings, |count, first| {
-            format!("{name} has {count} negative numbers on its diagonal, first {first}")
+            format!("negative numbers on the diagonal of the {name}: {count}, first {first}")
         });
         zero.told(&mut report.warnings, |count, first| {
-            format!("{name} has {count} coupled rows with 0 on the diagonal, first {first}")
+            format!("coupled rows of the {name} with 0 on the diagonal: {count}, first {first}")
         });
         none.told(&mut report.warnings, |count, first| {
-            format!("{count} rows without {name}, first {first}")
+            format!("rows without {name}: {count}, first {first}")
         });
     }
 

@@ -23,17 +23,19 @@ impl Nodes {
     /// The nodes that the files name; without names three rows of each node, if the mass shows that.
     pub fn of(dofs: &[Dof], mass: Option<&Rows>, n: usize) -> Option<Self> {
         if dofs.iter().any(|(_, direction)| (1..=3).contains(direction)) {
-            let mut rows: HashMap<i64, [Option<usize>; 3]> = HashMap::new();
+            // A node with several rows of a direction, as of an expanded beam, is none of these.
+            let mut rows: HashMap<i64, ([Option<usize>; 3], bool)> = HashMap::new();
             let mut inner = 0;
             for (i, &(node, direction)) in dofs.iter().enumerate() {
                 if let direction @ 1..=3 = direction {
-                    rows.entry(node).or_default()[direction as usize - 1] = Some(i);
+                    let (places, repeated) = rows.entry(node).or_default();
+                    *repeated |= places[direction as usize - 1].replace(i).is_some();
                     inner += 1;
                 }
             }
             let mut full: Vec<(i64, [usize; 3])> = Vec::new();
             for (node, rows) in &rows {
-                if let [Some(x), Some(y), Some(z)] = *rows {
+                if let ([Some(x), Some(y), Some(z)], false) = *rows {
                     full.push((*node, [x, y, z]));
                 }
             }
