@@ -185,3 +185,75 @@ fn directory_head(file: &str, sum: u32, length: u64, start: u64) -> Vec<u8> {
     }
     head
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Npz;
+    use num_complex::Complex64;
+    use std::fs::File;
+    use std::io::{self, Seek, SeekFrom, Write};
+    use std::process::Command;
+
+    /// A file in which zeros take no room.
+    struct Sparse(File);
+
+    impl Write for Sparse {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if bytes.iter().all(|b| *b == 0) {
+                self.0.seek(SeekFrom::Current(bytes.len() as i64))?;
+                return Ok(bytes.len());
+            }
+            self.0.write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.0.flush()
+        }
+    }
+
+    impl Seek for Sparse {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    fn read_by_numpy(large: usize) {
+        let path = std::env::temp_dir().join(format!("hbvib_{}_{large}.npz", std::process::id()));
+        let mut npz = Npz::new(Sparse(File::create(&path).unwrap()));
+        npz.real("first", &[2, 1], &[1.5, -2.0]).unwrap();
+        let part = vec![Complex64::ZERO; 1 << 16];
+        npz.complex("large", &[large, 1 << 16], &mut |put| {
+            (1..large).try_for_each(|_| put(&part))?;
+            let mut last = part.clone();
+            last[7] = Complex64::new(3.0, 4.0);
+            put(&last)
+        })
+        .unwrap();
+        npz.real("last", &[1], &[0.25]).unwrap();
+        npz.finish().unwrap();
+        let program = "import sys, zipfile, numpy as np\nfile = np.load(sys.argv[1], allow_pickle=False)\n\
+                       assert file['first'].tolist() == [[1.5], [-2.0]] and file['last'].tolist() == [0.25]\n\
+                       x = file['large']\nassert x.shape == (int(sys.argv[2]), 65536) and x[-1, 7] == 3 + 4j and x[0, 7] == 0\n\
+                       assert zipfile.ZipFile(sys.argv[1]).testzip() is None";
+        let python = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/python");
+        let output = Command::new(if python.exists() { python } else { "python3".into() })
+            .args(["-c", program])
+            .arg(&path)
+            .arg(large.to_string())
+            .output()
+            .unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+
+    #[test]
+    fn an_archive_is_read_by_numpy() {
+        read_by_numpy(3);
+    }
+
+    #[test]
+    #[ignore = "numpy reads more than 4 GiB"]
+    fn an_archive_of_more_than_four_gibibytes_is_read_by_numpy() {
+        read_by_numpy(4200);
+    }
+}
