@@ -9,7 +9,7 @@ use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
-use crate::linalg::quadratic::{form, quadratic};
+use crate::linalg::quadratic::{ROUNDING, form, quadratic, terms};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::quadratic_modes::Quadratic;
@@ -54,9 +54,6 @@ const RIGID: f64 = 1e-10;
 
 /// 1/ω² relative to the largest, below which a motion has no inertia.
 const MASSLESS: f64 = 1e-13;
-
-/// Strain energy below zero, relative to the sum of the moduli of its terms, that is rounding.
-pub(super) const NO_STRAIN: f64 = 1e-14;
 
 /// Real part of an eigenvalue, relative to its modulus, beyond which an undamped motion grows.
 const GROWS: f64 = 1e-6;
@@ -338,14 +335,7 @@ impl Pencil {
     /// Rate √(−φᴴKφ / φᴴMφ) at which a motion of negative stiffness grows; 0 where that is rounding.
     fn growth(&self, shape: &[Complex64]) -> f64 {
         let energy = quadratic(&self.stiffness, shape);
-        let column = |j: usize| {
-            self.stiffness
-                .column(j)
-                .map(|(i, v)| v.norm() * shape[i].norm())
-                .sum::<f64>()
-        };
-        let terms: f64 = shape.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum();
-        if energy >= -NO_STRAIN * terms {
+        if energy >= -ROUNDING * terms(&self.stiffness, shape) {
             return 0.0;
         }
         (-energy / quadratic(&self.mass, shape)).sqrt()

@@ -5,9 +5,9 @@ use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite;
 use crate::linalg::inner;
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
 use crate::model::Model;
-use crate::model::linear_modes::{ContactState, LinearModes, NO_STRAIN, Pencil};
+use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
 use crate::model::spring_stiffness::Wave;
 use crate::options::ModeChoice;
@@ -256,17 +256,14 @@ impl<'a> KnownModes<'a> {
         let shape = &self.modes.shapes[index * n..(index + 1) * n];
         let k = &self.pencil.stiffness;
         let energy = quadratic(k, shape);
-        let mut terms = 0.0;
-        for (j, x) in shape.iter().enumerate() {
-            terms += x.norm() * k.column(j).map(|(i, v)| v.norm() * shape[i].norm()).sum::<f64>();
-        }
-        if energy < -NO_STRAIN * terms {
+        let rounding = ROUNDING * terms(k, shape);
+        if energy < -rounding {
             return fail!(
                 Argument,
                 "mode {index} has no frequency: its stiffness is negative (statically unstable)"
             );
         }
-        if energy <= NO_STRAIN * terms {
+        if energy <= rounding {
             return fail!(Argument, "mode {index} has no frequency (rigid body)");
         }
         Ok(())

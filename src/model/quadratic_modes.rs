@@ -12,9 +12,8 @@ use crate::linalg::eigen;
 use crate::linalg::factor::Factor;
 use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
 use crate::linalg::sparse::{Csc, Form};
-use crate::model::linear_modes::NO_STRAIN;
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
@@ -203,12 +202,8 @@ impl Quadratic<'_> {
 
     /// Whether a motion of a real eigenvalue λ > 0 is no rigid one up to rounding: xᴴ(K + λC)x, which is −λ² xᴴMx.
     fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
-        let terms = |a: &Csc| {
-            let column = |j: usize| a.column(j).map(|(i, v)| v.norm() * x[i].norm()).sum::<f64>();
-            x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum::<f64>()
-        };
         let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
-        force < -NO_STRAIN * (terms(self.stiffness) + rate * terms(self.damping))
+        force < -ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
     }
 
     /// λ²M + λC + K

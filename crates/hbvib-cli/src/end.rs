@@ -38,7 +38,7 @@ pub fn stop_flag() -> Outcome<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// What happened so far.
+/// State of a run so far.
 #[derive(Debug, Default)]
 pub struct End {
     failed: bool,

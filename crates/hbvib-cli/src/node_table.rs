@@ -56,7 +56,7 @@ pub struct Nodes {
     rows: HashMap<i64, [i64; 3]>,
     /// Further rows of a node and direction that has several, as of beams that are expanded to solids.
     further: HashMap<Dof, Vec<i64>>,
-    /// What the files do not have does not move.
+    /// Nodes and directions without rows: fixed, or refused.
     absent: AbsentName,
     /// The mesh of the job.
     pub mesh: Option<Mesh>,
