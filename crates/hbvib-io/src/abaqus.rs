@@ -32,10 +32,38 @@ impl Numbered {
     }
 }
 
-/// Numbers of a first line that may be the sizes of a file without its banner.
+/// A first line of three whole numbers, which may be the sizes of a file without its banner.
 struct FirstLine {
     line: usize,
-    last: i64,
+    numbers: [i64; 3],
+}
+
+impl FirstLine {
+    fn of(lines: &Lines, words: &[&str]) -> Option<Self> {
+        let [a, b, c] = words else { return None };
+        let numbers = [a.parse().ok()?, b.parse().ok()?, c.parse().ok()?];
+        Some(Self {
+            line: lines.number(),
+            numbers,
+        })
+    }
+
+    /// Sizes are no less than all rows and columns, and their last number is that of entries, or unlike values, which have
+    /// points.
+    fn is_sizes(&self, matrix: &Matrix, pointed: bool) -> bool {
+        let most = |places: &[u32]| {
+            places
+                .iter()
+                .skip(1)
+                .map(|bits| bits.cast_signed())
+                .max()
+                .unwrap_or(i32::MAX)
+        };
+        let [rows, columns, last] = self.numbers;
+        rows >= i64::from(most(&matrix.row))
+            && columns >= i64::from(most(&matrix.column))
+            && (pointed || last == matrix.entries() as i64 - 1)
+    }
 }
 
 /// The matrix of a file, and its degrees of freedom, sorted by node and direction. The direction is 0 for labels without one.
@@ -45,7 +73,7 @@ struct FirstLine {
 pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
     let mut matrix = Matrix::new(lines, (0, 0), Symmetry::General, (0, false))?;
     let mut numbered = Numbered::default();
-    let (mut fields, mut entries, mut pointed) = (0, 0_i64, false);
+    let (mut fields, mut pointed) = (0, false);
     let mut sizes: Option<FirstLine> = None;
     while lines.advance()? {
         let line = lines.text().trim();
@@ -58,12 +86,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
         let words: Vec<&str> = line.split([',', ' ', '\t']).filter(|word| !word.is_empty()).collect();
         if fields == 0 {
             fields = words.len();
-            if let (3, Ok(last)) = (fields, words[fields - 1].parse()) {
-                sizes = Some(FirstLine {
-                    line: lines.number(),
-                    last,
-                });
-            }
+            sizes = FirstLine::of(lines, &words);
         }
         if words.len() != fields || (fields != 3 && fields != 5) {
             return lines.fail(format_args!(
@@ -80,7 +103,6 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
             };
             (number(words[0], words[1])?, number(words[2], words[3])?)
         };
-        entries += 1;
         pointed |= words[fields - 1].contains(['.', 'e', 'E', 'd', 'D']);
         let value = real(lines, Some(words[fields - 1]), "value")?;
         matrix.push(lines, row, column, (value, 0.0))?;
@@ -88,7 +110,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
     if fields == 0 {
         lines.expect("an entry")?;
     }
-    if let Some(first) = sizes.filter(|first| pointed || first.last == entries - 1) {
+    if let Some(first) = sizes.filter(|first| fields == 3 && first.is_sizes(&matrix, pointed)) {
         return lines.fail_at(
             first.line,
             "three whole numbers, as the sizes of a Matrix Market file: the first line needs its banner, %%MatrixMarket \

@@ -87,10 +87,10 @@ fn single(path: &Path) -> Result<(Matrix, Vec<Dof>)> {
 
 impl<'a> Held<'a> {
     fn add(&mut self, kind: usize, (mut matrix, dofs): (Matrix, Vec<Dof>), path: &'a Path) -> Result<()> {
-        if self.dofs.is_empty() || dofs.is_empty() {
-            if self.dofs.is_empty() {
-                self.dofs = dofs;
-            }
+        if self.dofs.is_empty() {
+            self.dofs = dofs;
+        } else if dofs.is_empty() {
+            self.by_label(&mut matrix);
         } else if dofs != self.dofs {
             let (own, common) = (table(&dofs), table(&self.dofs));
             if let Some(missing) = dofs.iter().find(|dof| !common.contains_key(dof)) {
@@ -116,6 +116,26 @@ impl<'a> Held<'a> {
         }
         self.places[kind] = Some((matrix, path));
         Ok(())
+    }
+
+    /// Rows whose numbers are labels without a direction, as those of the matrices before are: a mass without internal nodes has no
+    /// label below zero that would show it.
+    fn by_label(&self, matrix: &mut Matrix) {
+        let labelled = self.dofs.iter().all(|(_, direction)| *direction == 0);
+        if !labelled || matrix.rows == self.dofs.len() {
+            return;
+        }
+        let common = table(&self.dofs);
+        let label = |at: u32| (i64::from(at) + 1, 0);
+        if matrix
+            .row
+            .iter()
+            .chain(&matrix.column)
+            .all(|at| common.contains_key(&label(*at)))
+        {
+            let dofs: Vec<Dof> = (0..matrix.rows).map(|at| label(at as u32)).collect();
+            reorder(matrix, &dofs, &common);
+        }
     }
 
     fn check_sizes(&self) -> Result<()> {
