@@ -32,7 +32,11 @@ pub fn contacts(
     let mut pairs = match &part.nodes {
         Some(nodes) if part.a.is_empty() && part.b.is_empty() => matched(job, (part, nodes), places, table)?,
         Some(_) => return Err("names degrees of freedom and nodes: needs one of a and nodes".into()),
-        None => listed(part, width)?,
+        None => {
+            let pairs = listed(part, width)?;
+            check_normal(part, &pairs, width, table)?;
+            pairs
+        }
     };
     let repeated = pairs.leave_out_repeated(width, images);
     let frame = match part.normal {
@@ -150,6 +154,22 @@ fn listed(part: &ContactPart, width: usize) -> Outcome<Pairs> {
     })
 }
 
+/// Refuses a normal that the positions of degrees of freedom contradict, where a mesh has all of them.
+fn check_normal(part: &ContactPart, pairs: &Pairs, width: usize, table: &Nodes) -> Outcome<()> {
+    let Some(normal) = part.normal.filter(|_| !part.any_normal && part.sector_offset == 0) else {
+        return Ok(());
+    };
+    let at = |dofs: &[i64]| -> Option<Vec<[f64; 3]>> {
+        dofs.chunks_exact(width)
+            .map(|dofs| dofs.iter().find_map(|dof| table.position_of(*dof)))
+            .collect()
+    };
+    match (at(&pairs.a), at(&pairs.b)) {
+        (Some(a), Some(b)) => normals::check(normal, &a, &b),
+        _ => Ok(()),
+    }
+}
+
 fn matched(job: &Job, (part, nodes): (&ContactPart, &NodesPart), places: &[usize], table: &Nodes) -> Outcome<Pairs> {
     let own = match &nodes.coordinates {
         Some(path) => Some(Mesh::read(&job.path(path))?),
@@ -178,7 +198,7 @@ fn matched(job: &Job, (part, nodes): (&ContactPart, &NodesPart), places: &[usize
     let at_b = positions("b", &b, &nodes.b_coordinates, mesh).map_err(said)?;
     let list = |name, nodes, at| Positioned { name, nodes, at };
     let partner = pairs(&list("a", &a, &at_a), &list("b", &b, &at_b), nodes.largest_distance).map_err(said)?;
-    if let Some(normal) = part.normal.filter(|_| !nodes.any_normal) {
+    if let Some(normal) = part.normal.filter(|_| !part.any_normal) {
         let partners: Vec<[f64; 3]> = partner.iter().map(|&j| at_b[j]).collect();
         normals::check(normal, &at_a, &partners)?;
     }

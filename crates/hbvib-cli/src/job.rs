@@ -186,7 +186,11 @@ pub struct ContactPart {
     pub cubic: f64,
     #[serde(default)]
     pub velocity: f64,
+    /// From side b to side a.
     pub normal: Option<[f64; 3]>,
+    /// Accepts a normal that the positions of the pairs contradict, as where meshes overlap.
+    #[serde(default)]
+    pub any_normal: bool,
     pub tangent: Option<[f64; 3]>,
 }
 
@@ -205,9 +209,7 @@ pub struct NodesPart {
     pub coordinates: Option<PathBuf>,
     /// Largest distance of a pair.
     pub largest_distance: f64,
-    /// Accepts a normal that the positions of the pairs contradict, as where meshes overlap.
-    #[serde(default)]
-    pub any_normal: bool,
+
     /// Area of each node of a, or one for all: kt, kn and cubic are then given per area, and preload is a pressure.
     #[serde(default)]
     pub areas: Vec<f64>,

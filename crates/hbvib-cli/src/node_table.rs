@@ -54,6 +54,8 @@ pub fn node_list(name: &str, list: &NodeList, mesh: Option<&Mesh>) -> Outcome<Ve
 pub struct Nodes {
     /// Rows of each node along x, y and z; -1 for those that the files do not have.
     rows: HashMap<i64, [i64; 3]>,
+    /// Node of each row.
+    node_of: Vec<i64>,
     /// Further rows of a node and direction that has several, as of beams that are expanded to solids.
     further: HashMap<Dof, Vec<i64>>,
     /// Nodes and directions without rows: fixed, or refused.
@@ -82,6 +84,7 @@ impl Nodes {
         }
         Self {
             rows,
+            node_of: dofs.iter().map(|(node, _)| *node).collect(),
             further,
             absent,
             mesh,
@@ -108,6 +111,12 @@ impl Nodes {
             }
         }
         Ok(Some(dofs))
+    }
+
+    /// Position of the node of a degree of freedom, where the mesh has it.
+    pub fn position_of(&self, dof: i64) -> Option<[f64; 3]> {
+        let node = self.node_of.get(usize::try_from(dof).ok()?)?;
+        self.mesh.as_ref()?.position(*node).ok()
     }
 
     /// Refuses a node and direction with several rows.

@@ -109,8 +109,14 @@ fn a_normal_in_the_plane_or_against_the_gap_is_refused() {
             code == 1 && errors.contains("[[contact]] 1: normal") && errors.contains(words),
             "{errors}"
         );
-        let any = beam("", 2, 8, normal, "'3.1'").replace("largest_distance", "any_normal = true\nlargest_distance");
+        let any = beam("", 2, 8, normal, "'3.1'").replace("normal = ", "any_normal = true\nnormal = ");
         assert_eq!(hbvib("check", name, &any).0, 0);
+        // The same pair by its degrees of freedom: rows 0 to 2 and 15 to 17.
+        let (start, end) = (any.find("[contact.nodes]").unwrap(), any.find("[[force]]").unwrap());
+        let by_rows = any.replace(&any[start..end], "a = [0, 1, 2]\nb = [15, 16, 17]\n");
+        assert_eq!(hbvib("check", name, &by_rows).0, 0);
+        let (code, _, errors) = hbvib("check", name, &by_rows.replace("any_normal = true\n", ""));
+        assert!(code == 1 && errors.contains(words), "{errors}");
     }
 }
 
@@ -123,7 +129,7 @@ fn pairs_of_the_right_face_that_repeat_the_left_are_counted_once() {
         format!(
             "[model]\nmatrices = '{data}/sector.sti'\nmesh = '{data}/sector.inp'\nsectors = 24\nengine_order = 3\nabsent = 'fixed'\n\
              [model.faces]\nleft = [3, 1, 5, 9, 11, 7]\nright = [12, 4, 8, 2, 10, 6]\n[[contact]]\nname = '{name}'\n\
-             kind = 'friction_3d'\nnormal = [0, 0, 1]\nkt = 1e6\nkn = 1e6\nmu = 0.3\npreload = 1.0\n[contact.nodes]\nany_normal = true\n\
+             kind = 'friction_3d'\nnormal = [0, 0, 1]\nany_normal = true\nkt = 1e6\nkn = 1e6\nmu = 0.3\npreload = 1.0\n[contact.nodes]\n\
              a = [{a}]\nb = [{b}]\nlargest_distance = 1.0\n[[force]]\ndof = '5.3'\nvalue = 1.0\n{END}"
         )
     };

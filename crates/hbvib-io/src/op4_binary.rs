@@ -162,7 +162,8 @@ fn matrix(records: &mut Records<'_>, record: &[u8], length: usize) -> Told<(Stri
             } else {
                 (first >> 16, first & 0xffff)
             };
-            let bytes = usize::try_from(length - 1).ok().and_then(|words| words.checked_mul(4));
+            let words = length.checked_sub(1).and_then(|words| usize::try_from(words).ok());
+            let bytes = words.and_then(|words| words.checked_mul(4));
             let Some(body) = bytes
                 .filter(|bytes| *bytes > 0)
                 .and_then(|bytes| left.get(own..own + bytes))
