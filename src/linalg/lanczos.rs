@@ -10,6 +10,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::cholesky::Definite;
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::factor::Factor;
+use crate::linalg::hermitian;
 use crate::linalg::sparse::{Csc, Form};
 use crate::linalg::{inner, remove};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -108,31 +109,28 @@ enum Place {
 /// Finds a shift below all eigenvalues, from `shift` on, so that the lowest eigenvalues belong to the largest of the operator
 /// also where K is negative in some direction.
 fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<BelowAll> {
-    let factors = |sigma: f64| Definite::new(k, (sigma, m), interrupt);
-    let done = |definite: Definite, shift: f64, place: Place| -> Result<BelowAll> {
-        let inverse = if k.rows > DENSE_UP_TO {
-            Inverse::Definite(definite)
-        } else {
-            Inverse::new(k, (shift, m), interrupt)?
-        };
-        Ok(BelowAll { inverse, shift, place })
-    };
-    if let Some(definite) = factors(shift)? {
-        return done(definite, shift, Place::First);
+    let factors = |sigma: f64| definite_inverse(k, (sigma, m), interrupt);
+    if let Some(inverse) = factors(shift)? {
+        let place = Place::First;
+        return Ok(BelowAll { inverse, shift, place });
     }
     for attempt in 1..ATTEMPTS {
         let mut high = shift * FURTHER.powi(attempt);
-        let Some(mut definite) = factors(high)? else { continue };
+        let Some(mut inverse) = factors(high)? else { continue };
         // Next to the lowest eigenvalue, the others are far apart.
         let mut low = high / FURTHER;
         for _ in 0..HALVINGS {
             let middle = (low * high).sqrt();
             match factors(middle)? {
-                Some(better) => (definite, high) = (better, middle),
+                Some(better) => (inverse, high) = (better, middle),
                 None => low = middle,
             }
         }
-        return done(definite, high, Place::Further);
+        return Ok(BelowAll {
+            inverse,
+            shift: high,
+            place: Place::Further,
+        });
     }
     let inverse = Inverse::new(k, (shift, m), interrupt)?;
     Ok(BelowAll {
@@ -140,6 +138,21 @@ fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<
         shift,
         place: Place::Within,
     })
+}
+
+/// The inverse of K + σM; `None` where that is not positive definite.
+fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
+    let n = k.rows;
+    if n > DENSE_UP_TO {
+        return Ok(Definite::new(k, (shift, m), interrupt)?.map(Inverse::Definite));
+    }
+    let mut dense = try_vec(n * n, Complex64::ZERO, "the natural modes")?;
+    k.add_to_dense(Complex64::ONE, &mut dense);
+    m.add_to_dense(shift.into(), &mut dense);
+    if hermitian::cholesky(&mut dense, n, interrupt)? {
+        return Inverse::new(k, (shift, m), interrupt).map(Some);
+    }
+    Ok(None)
 }
 
 /// Order up to which dense algebra finds the modes of a stiffness that is negative in some direction.
