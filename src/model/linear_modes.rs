@@ -162,7 +162,7 @@ impl Model {
     }
 
     /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
-    /// contacts is zero, up to rounding. At most six are counted for a large structure. 0 for a structure whose
+    /// contacts is zero, up to rounding, or that grow. At most six are counted for a large structure. 0 for a structure whose
     /// stiffness is not Hermitian, where the number is not known.
     ///
     /// # Errors
@@ -184,7 +184,7 @@ impl Model {
         let heavy = (0..k.rows).filter(moves).map(own).filter(|&(_, mass)| mass > 0.0);
         let stiffest = heavy.fold(0.0_f64, |most, (stiffness, mass)| most.max(stiffness / mass));
         let modes = pencil.lowest(RIGID_MODES, interrupt)?;
-        let small = |omega: &&f64| **omega * **omega <= RIGID * stiffest;
+        let small = |omega: &&f64| **omega < 0.0 || **omega * **omega <= RIGID * stiffest;
         Ok(modes.omega.iter().take_while(small).count())
     }
 
