@@ -2233,13 +2233,16 @@ typedef enum {
 } hbvib_contact_state;
 
 /// Undamped natural modes, in ascending order of frequency. A singular mass matrix has fewer modes
-/// than degrees of freedom.
+/// than degrees of freedom. Where the stiffness is negative in some direction, a motion grows: its
+/// omega is negative, minus the rate of growth, -sqrt(-lambda) of the eigenvalue lambda = omega^2.
+/// Degrees of freedom whose diagonal of the stiffness exceeds all beside it by 1/epsilon, as 1e36,
+/// are fixed: they have no mode.
 ///
 /// diameter  signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
 ///           structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
-/// omega     receives `count` natural angular frequencies.
+/// omega     receives `count` natural angular frequencies; below zero: minus a rate of growth.
 /// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
 ///           phi^H M phi = 1 over one sector; or NULL.
 /// Errors: HBVIB_E_ARGUMENT (diameter, contacts), HBVIB_E_DIMENSION (more modes requested than
@@ -2261,7 +2264,7 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
 ///           structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
 /// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
-/// omega     receives `count` natural angular frequencies.
+/// omega     receives `count` natural angular frequencies; below zero: minus a rate of growth.
 /// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
 ///           phi^H M phi = 1 over one sector; or NULL.
 /// hooks     phase, log and cancellation; progress is not called. NULL: none.
@@ -2277,7 +2280,9 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
 
 /// Damped natural modes at the speed of the model, in the order of rising frequency: eigenvalues
 /// lambda in the upper half plane of lambda^2 M + lambda (C + Omega G) + K + Omega^2 K1 + i D.
-/// Motions that do not oscillate are not counted. A mode that grows is told to the log.
+/// Motions that do not oscillate are not counted unless they grow: their eigenvalue is real, above
+/// zero, and they come first. A mode that grows is told to the log. Degrees of freedom whose
+/// diagonal of the stiffness exceeds all beside it by 1/epsilon, as 1e36, are fixed.
 ///
 /// diameter    signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
 ///             structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.

@@ -1,5 +1,5 @@
 /* Readers of matrices that finite-element programs write: Matrix Market (also gzipped), Abaqus
- * *MATRIX GENERATE, CalculiX matrix storage, Harwell-Boeing text, Nastran OP4 text. A library of its
+ * *MATRIX GENERATE, CalculiX matrix storage, Harwell-Boeing text, Nastran OP4 (text and binary). A library of its
  * own, libhbvib_io: `cargo build --release -p hbvib-io`.
  *
  *   hbvib_io_file *file = NULL;
@@ -21,7 +21,7 @@ extern "C" {
 typedef struct HbvibIoFile hbvib_io_file;
 
 /* Kinds of matrices, as hbvib_matrix_kind. */
-enum { HBVIB_IO_MASS = 0, HBVIB_IO_DAMPING = 1, HBVIB_IO_STIFFNESS = 2 };
+enum { HBVIB_IO_MASS = 0, HBVIB_IO_DAMPING = 1, HBVIB_IO_STIFFNESS = 2, HBVIB_IO_STRUCTURAL = 3 };
 
 /* Relation of an entry off the diagonal to its mirror image. */
 enum {
@@ -51,13 +51,27 @@ typedef struct {
  * Returns 0, or -1 with a sentence of file, line and reason in hbvib_io_last_error. Threads: any. */
 int32_t hbvib_io_read(const char *path, hbvib_io_file **out);
 
+/* Reads the matrices of one model from several files; each path may be NULL. A file under the name of its
+ * matrix holds that one alone, and goes before matrices. Rows are brought to one order by node and
+ * direction where the files name them, and rows that one of them lacks are zero there.
+ *
+ * Returns and threads: as hbvib_io_read; matrices of different sizes are refused with their files. */
+int32_t hbvib_io_read_files(const char *matrices, const char *stiffness, const char *mass, const char *damping,
+                            const char *structural, hbvib_io_file **out);
+
+/* A line of the report on the matrices of a file: with warnings = 0 its totals (sizes, mass along each
+ * direction, supports), with 1 values that the matrices of a structure do not have. The string belongs to the
+ * file. Returns NULL past the last line. */
+const char *hbvib_io_report_line(const hbvib_io_file *file, int32_t warnings, int64_t index);
+
 /* Fills out with a matrix of a file. Returns 0; 1 if the file does not hold it; -1 on error. */
 int32_t hbvib_io_matrix_of(const hbvib_io_file *file, int32_t which, hbvib_io_matrix *out);
 
 /* Number of degrees of freedom whose nodes the file names, 0 if it names none; -1 for NULL. */
 int64_t hbvib_io_dofs(const hbvib_io_file *file);
 
-/* Copies node number and direction of each degree of freedom, two numbers each. Returns 0 or -1. */
+/* Copies node number and direction of each degree of freedom, two numbers each; 0 is a direction that the file
+ * does not name. Returns 0 or -1. */
 int32_t hbvib_io_dof_table(const hbvib_io_file *file, int64_t *table);
 
 /* Frees a file; NULL does nothing. Its matrices are gone with it. */

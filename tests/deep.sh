@@ -3,6 +3,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 cargo test --release --tests -- --ignored --test-threads=1
+cargo test --release -p hbvib-cli --bin hbvib -- --ignored
 
 # Programs in C and C++ under tools that watch memory, leaks and races.
 for tool in address thread valgrind; do

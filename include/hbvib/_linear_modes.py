@@ -37,7 +37,9 @@ class _LinearModes(_Matrices):
     def linear_modes(self, count: int, diameter: Optional[int] = 0, contacts: ContactStates = ContactState.STUCK, *,
                      phase: Hook = None,
                      cancel: Optional[CancelFlag] = None) -> Modes:
-        """Undamped natural modes: omega (count), ascending, and shapes (count, ndof), complex, phi^H M phi = 1.
+        """Undamped natural modes: omega (count), ascending, and shapes (count, ndof), complex, phi^H M phi = 1. A motion that
+        grows, where the stiffness is negative, has an omega below zero, minus the rate of its growth, and a RuntimeWarning.
+        Degrees of freedom under a penalty as 1e36 on the diagonal of the stiffness are fixed: they have no mode.
 
         diameter   signed nodal diameter d, modulo the sectors: sector s + 1 lags by 2 pi d / sectors; None: that of the
                    engine order of the model. With gyroscopic forces the waves d and -d have other modes.
@@ -55,6 +57,9 @@ class _LinearModes(_Matrices):
         omega, shapes = np.empty(count), np.empty((count, self.ndof), complex)
         _stoppable("hbvib_linear_modes", self.handle, _diameter(diameter), _member(ContactState, contacts), count, omega,
                    shapes, phase=phase, cancel=cancel)
+        if omega.size and omega[0] < 0:
+            warnings.warn(f"the stiffness is negative in some direction: a motion grows as {-omega[0]:.9g} per time unit",
+                          RuntimeWarning, stacklevel=2)
         return Modes(omega, shapes)
 
     def damped_modes(self, count: int, diameter: Optional[int] = 0,
@@ -62,8 +67,9 @@ class _LinearModes(_Matrices):
         """Damped natural modes at the speed of the model, by rising frequency: eigenvalue (upper half plane), omega
         (its imaginary part), damping_ratio (minus its real part over its modulus; negative: the motion grows), shape
         (count, ndof), phi^H M phi = 1, and direction: 1 forward, -1 backward, 0 undefined, the sign of the change of
-        omega with the speed at fixed K1. Motions that do not oscillate are not counted. diameter and contacts are those of
-        linear_modes; `interference` has all diameters of both senses at once.
+        omega with the speed at fixed K1. Motions that do not oscillate are not counted unless they grow: these come first,
+        with omega 0 and the damping ratio -1. diameter and contacts are those of linear_modes; `interference` has all
+        diameters of both senses at once.
 
         >>> import hbvib
         >>> stiffness = [[2, -1], [-1, 2]]

@@ -46,7 +46,8 @@ class Progress(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Undamped natural modes: omega (count), ascending, in rad per time unit; shapes (count, ndof), phi^H M phi = 1.
+    """Undamped natural modes: omega (count), ascending, in rad per time unit, below zero minus a rate of growth; shapes
+    (count, ndof), phi^H M phi = 1.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)

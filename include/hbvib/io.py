@@ -1,7 +1,7 @@
 """Matrices of finite-element programs as scipy matrices: hbvib.io.read(path).
 
 Matrix Market (also gzipped), Abaqus *MATRIX GENERATE (.mtx), CalculiX (.sti, .mas, .dof), Harwell-Boeing text, Nastran
-OP4 text. Needs scipy, and the library libhbvib_io: the wheel brings it; in the checkout, cargo build
+OP4 (text and binary). Needs scipy, and the library libhbvib_io: the wheel brings it; in the checkout, cargo build
 --release -p hbvib-io builds it, and HBVIB_IO_LIBRARY names one elsewhere."""
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
@@ -16,14 +17,23 @@ import numpy as np
 if TYPE_CHECKING:
     from ._results import IntArray
 
-__all__ = ["Matrices", "ReadError", "read"]
+__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "read"]
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 _FOLDERS = ("", "../../target/release", "../../target/debug", "../../../lib", "../../lib")
 
 
-class Matrices(NamedTuple):
-    """Contents of a file: sparse matrices or None, and dofs, an array (n, 2) of node and direction, or None.
+class _Contents(NamedTuple):
+    stiffness: Any
+    mass: Any
+    damping: Any
+    dofs: Optional[IntArray]
+
+
+class Matrices(_Contents):
+    """Contents of files: stiffness, mass, damping, sparse matrices or None, and dofs, an array (n, 2) of node and direction
+    (0: not named), or None. Besides these four: structural, D of structural damping iD, or None; facts, lines with sizes, mass
+    along each direction and supports; and warnings, values that the matrices of a structure do not have.
 
     >>> import hbvib, hbvib.io
     >>> import os, tempfile
@@ -32,13 +42,34 @@ class Matrices(NamedTuple):
     ...     print("%%MatrixMarket matrix coordinate real symmetric\\n1 1 1\\n1 1 2", file=file)
     ...
     >>> found = hbvib.io.read(path)
-    >>> found.stiffness.shape, found.mass is None
-    ((1, 1), True)
+    >>> found.stiffness.shape, found.mass is None, found.warnings
+    ((1, 1), True, [])
+    >>> found.facts
+    ['stiffness: 1 x 1, 1 entries, one triangle']
     """
-    stiffness: Any
-    mass: Any
-    damping: Any
-    dofs: Optional[IntArray]
+    structural: Any
+    facts: list[str]
+    warnings: list[str]
+
+
+class SuspiciousMatrices(UserWarning):
+    """Matrices with values that those of a structure do not have; warnings.simplefilter("error", SuspiciousMatrices) refuses
+    them.
+
+    >>> import hbvib, hbvib.io
+    >>> import os, tempfile, warnings
+    >>> path = os.path.join(tempfile.mkdtemp(), "k.mtx")
+    >>> with open(path, "w") as file:
+    ...     print("%%MatrixMarket matrix coordinate real symmetric\\n2 2 2\\n1 1 2\\n2 2 -1", file=file)
+    ...
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", hbvib.io.SuspiciousMatrices)
+    ...     try:
+    ...         hbvib.io.read(path)
+    ...     except hbvib.io.SuspiciousMatrices as warning:
+    ...         print(str(warning).split(": ", 1)[1])
+    negative numbers on the diagonal of the stiffness: 1, first -1.000000e0 at row 1
+    """
 
 
 class ReadError(ValueError):
@@ -78,7 +109,9 @@ def _load() -> ctypes.CDLL:
         raise ImportError(f"no {name} in " + ", ".join(os.path.dirname(place) for place in places)
                           + "; build it by `cargo build --release -p hbvib-io`, or name it by HBVIB_IO_LIBRARY")
     pointer = ctypes.POINTER(ctypes.c_void_p)
-    lib.hbvib_io_read.argtypes = [ctypes.c_char_p, pointer]
+    lib.hbvib_io_read_files.argtypes = [ctypes.c_char_p] * 5 + [pointer]
+    lib.hbvib_io_report_line.argtypes = [ctypes.c_void_p, ctypes.c_int32, ctypes.c_int64]
+    lib.hbvib_io_report_line.restype = ctypes.c_char_p
     lib.hbvib_io_matrix_of.argtypes = [ctypes.c_void_p, ctypes.c_int32, ctypes.POINTER(_Matrix)]
     lib.hbvib_io_dofs.argtypes, lib.hbvib_io_dofs.restype = [ctypes.c_void_p], ctypes.c_int64
     lib.hbvib_io_dof_table.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
@@ -115,12 +148,24 @@ def _sparse(matrix: _Matrix) -> Any:
     return sparse.csc_matrix((values, (row, column)), shape=(matrix.rows, matrix.columns))
 
 
-def read(path: Any) -> Matrices:
-    """(stiffness, mass, damping, dofs) of a file, None for those that it does not hold.
+def _lines(handle: Any, kind: int) -> list[str]:
+    """Lines of the report."""
+    lines = iter(range(sys.maxsize))
+    found = iter(lambda: _lib.hbvib_io_report_line(handle, kind, next(lines)), None)
+    return [line.decode(errors="replace") for line in found]
 
-    Any file of a CalculiX job reads all of them. A format that does not say what it holds, as Matrix Market and
-    Harwell-Boeing, has its matrix as stiffness. dofs is an array (n, 2) of node and direction. ReadError names file, line
-    and reason.
+
+def read(path: Any = None, *, stiffness: Any = None, mass: Any = None, damping: Any = None,
+         structural: Any = None) -> Matrices:
+    """(stiffness, mass, damping, dofs) of a file, or of the files of one model; None for those that they do not hold.
+
+    path    a file that may hold several matrices. Any file of a CalculiX job reads all of them. A format that does not say
+            what it holds, as Matrix Market and Harwell-Boeing, has its matrix as stiffness.
+    stiffness, mass, damping, structural   files with this matrix alone. Rows are brought to one order by node and direction
+            where the files name them; rows that one of them lacks are zero there.
+
+    dofs is an array (n, 2) of node and direction. The result has the attributes structural, facts and warnings as well; each
+    warning is given as SuspiciousMatrices. ReadError names file, line and reason.
 
     >>> import hbvib, hbvib.io
     >>> import os, tempfile
@@ -134,18 +179,28 @@ def read(path: Any) -> Matrices:
            [-1.,  2.]])
     >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=found.stiffness)  # in any format of scipy
     """
+    named = [path, stiffness, mass, damping, structural]
+    paths = [None if one is None else os.fsencode(os.fspath(one)) for one in named]
+    if not any(paths):
+        raise TypeError("read() needs a file")
     handle = ctypes.c_void_p()
-    if _lib.hbvib_io_read(os.fsencode(os.fspath(path)), ctypes.byref(handle)) != 0:
+    if _lib.hbvib_io_read_files(*paths, ctypes.byref(handle)) != 0:
         raise ReadError(_lib.hbvib_io_last_error().decode(errors="replace"))
     try:
         found = {}
-        for which, name in enumerate(("mass", "damping", "stiffness")):
+        for which, name in enumerate(("mass", "damping", "stiffness", "structural")):
             matrix = _Matrix()
             absent = _lib.hbvib_io_matrix_of(handle, which, ctypes.byref(matrix))
             found[name] = None if absent else _sparse(matrix)
         count = _lib.hbvib_io_dofs(handle)
         table = np.empty((count, 2), np.int64)
         _lib.hbvib_io_dof_table(handle, table.ctypes.data)
-        return Matrices(dofs=table if count else None, **found)
+        of_loss = found.pop("structural")
+        contents = Matrices(dofs=table if count else None, **found)
+        contents.structural, contents.facts, contents.warnings = of_loss, _lines(handle, 0), _lines(handle, 1)
     finally:
         _lib.hbvib_io_free(handle)
+    files = ", ".join(os.fspath(one) for one in named if one is not None)
+    for line in contents.warnings:
+        warnings.warn(f"{files}: {line}", SuspiciousMatrices, stacklevel=2)
+    return contents

@@ -38,7 +38,8 @@ const CONTEXT: &str = "the damped modes";
 /// Damped modes in the order of rising frequency.
 #[derive(Clone, Debug, Default)]
 pub struct DampedModes {
-    /// λ with Im λ > 0; motions that do not oscillate are not counted.
+    /// λ with Im λ > 0; motions that do not oscillate are not counted unless they grow: these have Im λ = 0 and Re λ > 0, and
+    /// come first.
     pub eigenvalue: Vec<Complex64>,
     /// Shapes with φᴴ M φ = 1 over one sector, one after the other, ndof each.
     pub shapes: Vec<Complex64>,

@@ -10,6 +10,7 @@ use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
+use crate::model::structure::MatrixKind;
 
 /// Creates a cyclic structure, described by one of its sectors, under engine order 0: all matrices
 /// zero, no contact, no force.
@@ -57,7 +58,11 @@ pub unsafe extern "C" fn hbvib_cyclic_set_coupling(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let which = matrix_kind(which)?;
-        unsafe { with_matrix(to_next, 3, model.ndof(), |a| model.set_coupling(which, a)) }?;
+        unsafe {
+            with_matrix(to_next, (coupling(which), 3), model.ndof(), |a| {
+                model.set_coupling(which, a)
+            })
+        }?;
         Ok(Status::Ok)
     })
 }
@@ -78,7 +83,11 @@ pub unsafe extern "C" fn hbvib_cyclic_set_coupling_previous(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let which = matrix_kind(which)?;
-        unsafe { with_matrix(to_previous, 3, model.ndof(), |a| model.set_coupling_previous(which, a)) }?;
+        unsafe {
+            with_matrix(to_previous, (coupling(which), 3), model.ndof(), |a| {
+                model.set_coupling_previous(which, a)
+            })
+        }?;
         Ok(Status::Ok)
     })
 }
@@ -110,7 +119,11 @@ pub unsafe extern "C" fn hbvib_cyclic_set_diameter(
             .with_argument(3);
         }
         model.structure().check_diameter(diameter).with_argument(3)?;
-        unsafe { with_matrix(a, 4, model.ndof(), |a| model.set_diameter(which, diameter, a)) }?;
+        unsafe {
+            with_matrix(a, (which.name(), 4), model.ndof(), |a| {
+                model.set_diameter(which, diameter, a)
+            })
+        }?;
         Ok(Status::Ok)
     })
 }
@@ -169,4 +182,16 @@ pub unsafe extern "C" fn hbvib_cyclic_set_wave(model: *mut hbvib_model, engine_o
         write::<Model>(model, 1)?.set_wave(engine_order);
         Ok(Status::Ok)
     })
+}
+
+/// Name of a coupling in errors.
+fn coupling(which: MatrixKind) -> &'static str {
+    match which {
+        MatrixKind::Mass => "coupling of the mass",
+        MatrixKind::Damping => "coupling of the damping",
+        MatrixKind::Stiffness => "coupling of the stiffness",
+        MatrixKind::Structural => "coupling of the structural damping",
+        MatrixKind::Gyroscopic => "coupling of the gyroscopic matrix",
+        MatrixKind::StiffnessSpeed2 => "coupling of stiffness_speed2",
+    }
 }

@@ -182,18 +182,18 @@ fn part(value: i32) -> Result<Part> {
     }
 }
 
-/// Passes the matrix at `p`, of order `n`, to `then`; errors carry the number `argument`.
+/// Passes the matrix at `p`, of order `n`, to `then`; errors carry the number `argument`, and `name` is that of the matrix.
 ///
 /// # Safety
 /// The caller of the C function states that the arrays of the view have the lengths that it contains.
 pub(super) unsafe fn with_matrix<T>(
     p: *const hbvib_matrix,
-    argument: i32,
+    (name, argument): (&str, i32),
     n: usize,
     then: impl FnOnce(&MatrixView<'_>) -> Result<T>,
 ) -> Result<T> {
     let a = unsafe { load(p, argument) }?;
-    let view = unsafe { matrix_view(&a, n, argument) }.with_argument(argument)?;
+    let view = unsafe { matrix_view(&a, (name, n), argument) }.with_argument(argument)?;
     then(&view).with_argument(argument)
 }
 
@@ -201,13 +201,17 @@ pub(super) unsafe fn with_matrix<T>(
 ///
 /// # Safety
 /// As for [`with_matrix`].
-pub(super) unsafe fn matrix_view<'a>(a: &hbvib_matrix, n: usize, argument: i32) -> Result<MatrixView<'a>> {
+pub(super) unsafe fn matrix_view<'a>(
+    a: &hbvib_matrix,
+    (name, n): (&str, usize),
+    argument: i32,
+) -> Result<MatrixView<'a>> {
     const NAME: &str = "hbvib_matrix: values";
     check_reserved(a.reserved, argument, "hbvib_matrix")?;
     if usize::try_from(a.rows) != Ok(n) || usize::try_from(a.cols) != Ok(n) {
         return fail!(
             Dimension,
-            "hbvib_matrix: rows x cols = {} x {}, needs {n} x {n}",
+            "{name} is {} x {}, needs {n} x {n}: the model has {n} degrees of freedom (ndof)",
             a.rows,
             a.cols
         );

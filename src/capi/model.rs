@@ -130,7 +130,7 @@ pub unsafe extern "C" fn hbvib_model_set_matrix(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let which = matrix_kind(which)?;
-        unsafe { with_matrix(a, 3, model.ndof(), |a| model.set_matrix(which, a)) }?;
+        unsafe { with_matrix(a, (which.name(), 3), model.ndof(), |a| model.set_matrix(which, a)) }?;
         Ok(Status::Ok)
     })
 }

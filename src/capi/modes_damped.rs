@@ -26,7 +26,9 @@ pub(super) fn modes(count: i64, model: &Model, argument: i32) -> Result<usize> {
 
 /// Damped natural modes at the speed of the model, in the order of rising frequency: eigenvalues
 /// lambda in the upper half plane of lambda^2 M + lambda (C + Omega G) + K + Omega^2 K1 + i D.
-/// Motions that do not oscillate are not counted. A mode that grows is told to the log.
+/// Motions that do not oscillate are not counted unless they grow: their eigenvalue is real, above
+/// zero, and they come first. A mode that grows is told to the log. Degrees of freedom whose
+/// diagonal of the stiffness exceeds all beside it by 1/epsilon, as 1e36, are fixed.
 ///
 /// diameter    signed nodal diameter d, modulo N: sector s + 1 lags by 2 pi d / N; 0 for a plain
 ///             structure. HBVIB_DIAMETER_OF_ENGINE_ORDER: that of the model's engine order.
@@ -69,7 +71,12 @@ pub unsafe extern "C" fn hbvib_damped_modes(
         }
         let found = unsafe { with_hooks(&hooks, |hooks| damped_modes(&model, diameter, state, wanted, hooks)) }?;
         if wanted > found.count() {
-            return fail!(Dimension, "count = {count}, but only {} modes oscillate", found.count()).with_argument(4);
+            return fail!(
+                Dimension,
+                "count = {count}, but only {} modes oscillate or grow",
+                found.count()
+            )
+            .with_argument(4);
         }
         unsafe {
             eigenvalue.copy_from(found.eigenvalue.as_ptr().cast(), 2 * wanted);

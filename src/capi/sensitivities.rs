@@ -335,7 +335,7 @@ unsafe fn describe(p: &hbvib_parameter, ndof: usize) -> Result<Parameter<'_>> {
             let a = unsafe { load(p.direction, 5) }?;
             Ok(Parameter::Direction {
                 which,
-                direction: unsafe { matrix_view(&a, ndof, 5) }?,
+                direction: unsafe { matrix_view(&a, ("direction", ndof), 5) }?,
             })
         }
         (other, _) => fail!(

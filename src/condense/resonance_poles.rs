@@ -9,6 +9,7 @@ use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen::Pairs;
+use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
 use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
@@ -122,11 +123,19 @@ fn lowest_modes(block: &HarmonicBlock, highest: f64, interrupt: &Interrupt<'_>) 
     )?;
     let mut mass = reference.try_clone()?;
     mass.values.copy_from_slice(&block.mass);
+    let moving = MovingRows::of(&hermitian)?;
+    let (hermitian, mass) = match &moving {
+        Some(moving) => (moving.reduced(&hermitian)?, moving.reduced(&mass)?),
+        None => (hermitian, mass),
+    };
     for count in MODES {
         match lanczos::lowest(&hermitian, &mass, count, interrupt) {
             Ok(modes) => {
                 if count == MODES[1] || ends_above(&modes, highest) {
-                    return Ok(Some(modes));
+                    return Ok(Some(match &moving {
+                        Some(moving) => moving.expanded_pairs(modes)?,
+                        None => modes,
+                    }));
                 }
             }
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),

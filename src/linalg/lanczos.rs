@@ -5,11 +5,12 @@
 //! full. Repeated eigenvalues need a starting vector for each copy: after convergence the search starts again,
 //! orthogonal to the vectors found, until it finds no larger eigenvalue.
 
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, check_memory, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::cholesky::Definite;
-use crate::linalg::eigen::Pairs;
+use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::factor::Factor;
+use crate::linalg::hermitian;
 use crate::linalg::sparse::{Csc, Form};
 use crate::linalg::{inner, remove};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -20,6 +21,9 @@ const TOLERANCE: f64 = 1e-13;
 
 /// Share of a vector outside the space of the others below which it is rounding only.
 const EXHAUSTED: f64 = 1e-12;
+
+/// Value of the operator below zero, relative to the largest, that is no rounding.
+const NEGATIVE: f64 = 1e-12;
 
 /// Lanczos steps per search, besides twice the number of eigenvalues.
 const EXTRA_STEPS: usize = 120;
@@ -32,16 +36,20 @@ const EXTRA_STEPS: usize = 120;
 pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     interrupt.check()?;
     let n = k.rows;
-    let diagonal = |a: &Csc| (0..n).map(|i| a.get(i, i).re).sum::<f64>();
-    let (stiff, heavy) = (diagonal(k), diagonal(m));
+    let stiff: f64 = (0..n).map(|i| k.get(i, i).re.abs()).sum();
+    let heavy: f64 = (0..n).map(|i| m.get(i, i).re).sum();
     if heavy <= 0.0 {
         return fail!(NotPositiveDefinite, "mass matrix is zero: there is no vibration mode");
     }
     // A shift far below the typical stiffness per mass makes K + σM regular for rigid bodies and leaves the lowest
     // eigenvalues well separated from the rest.
-    let shift = 1e-7 * stiff / heavy;
+    let BelowAll { inverse, shift, place } = below_all(k, m, 1e-7 * stiff / heavy, interrupt)?;
+    if place == Place::Further && n <= DENSE_IF_NEGATIVE {
+        return all_of(k, m, count, interrupt);
+    }
     let mut search = Search {
-        inverse: Inverse::new(k, (shift, m), interrupt)?,
+        inverse,
+        place,
         mass: m,
         found: Vec::new(),
         interrupt,
@@ -54,6 +62,15 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
             break;
         }
     }
+    if place == Place::Further && search.found.len() < count {
+        return fail!(
+            NoConvergence,
+            "the stiffness is negative in some direction, where a motion grows as {:e} per time unit or less; of {count} natural \
+             modes, {} were found",
+            shift.sqrt(),
+            search.found.len()
+        );
+    }
     search.found.sort_by(|a, b| b.0.total_cmp(&a.0));
     search.found.truncate(count);
     let mut vectors = DMatrix::zeros(n, search.found.len());
@@ -64,6 +81,100 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
         values: search.found.iter().map(|(mu, ..)| 1.0 / mu - shift).collect(),
         vectors,
     })
+}
+
+/// Growth of the shift from one attempt to the next, number of attempts, and of halvings of the last growth.
+const FURTHER: f64 = 100.0;
+const ATTEMPTS: i32 = 9;
+const HALVINGS: u32 = 5;
+
+/// The inverse of K + σM at a shift −σ below all eigenvalues.
+struct BelowAll {
+    inverse: Inverse,
+    shift: f64,
+    place: Place,
+}
+
+/// Where the shift is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// Next to zero, below all eigenvalues.
+    First,
+    /// Below an eigenvalue below zero.
+    Further,
+    /// Next to zero, and not below all eigenvalues: K is negative on motions without mass, too.
+    Within,
+}
+
+/// Finds a shift below all eigenvalues, from `shift` on, so that the lowest eigenvalues belong to the largest of the operator
+/// also where K is negative in some direction.
+fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<BelowAll> {
+    let factors = |sigma: f64| definite_inverse(k, (sigma, m), interrupt);
+    if let Some(inverse) = factors(shift)? {
+        let place = Place::First;
+        return Ok(BelowAll { inverse, shift, place });
+    }
+    for attempt in 1..ATTEMPTS {
+        let mut high = shift * FURTHER.powi(attempt);
+        let Some(mut inverse) = factors(high)? else { continue };
+        // Next to the lowest eigenvalue, the others are far apart.
+        let mut low = high / FURTHER;
+        for _ in 0..HALVINGS {
+            let middle = (low * high).sqrt();
+            match factors(middle)? {
+                Some(better) => (inverse, high) = (better, middle),
+                None => low = middle,
+            }
+        }
+        return Ok(BelowAll {
+            inverse,
+            shift: high,
+            place: Place::Further,
+        });
+    }
+    let inverse = Inverse::new(k, (shift, m), interrupt)?;
+    Ok(BelowAll {
+        inverse,
+        shift,
+        place: Place::Within,
+    })
+}
+
+/// The inverse of K + σM; `None` where that is not positive definite.
+fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
+    let n = k.rows;
+    if n > DENSE_UP_TO {
+        return Ok(Definite::new(k, (shift, m), interrupt)?.map(Inverse::Definite));
+    }
+    let mut dense = try_vec(n * n, Complex64::ZERO, "the natural modes")?;
+    k.add_to_dense(Complex64::ONE, &mut dense);
+    m.add_to_dense(shift.into(), &mut dense);
+    if hermitian::cholesky(&mut dense, n, interrupt)? {
+        return Inverse::new(k, (shift, m), interrupt).map(Some);
+    }
+    Ok(None)
+}
+
+/// Order up to which dense algebra finds the modes of a stiffness that is negative in some direction.
+const DENSE_IF_NEGATIVE: usize = 400;
+
+/// Largest number of square matrices that [`eigen::generalised`] holds at a time.
+const EIGEN_COPIES: usize = 8;
+
+/// The lowest of all pairs, by dense algebra.
+fn all_of(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    let n = k.rows;
+    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
+    let dense = |a: &Csc| {
+        let mut d = DMatrix::<Complex64>::zeros(n, n);
+        a.add_to_dense(Complex64::ONE, d.as_mut_slice());
+        d
+    };
+    let mut pairs = eigen::generalised(&dense(k), &dense(m), interrupt)?;
+    pairs.values.truncate(count);
+    let kept = pairs.values.len();
+    pairs.vectors = pairs.vectors.columns(0, kept).into_owned();
+    Ok(pairs)
 }
 
 /// Order up to which dense factors are quicker.
@@ -112,6 +223,7 @@ impl Inverse {
 
 struct Search<'a> {
     inverse: Inverse,
+    place: Place,
     mass: &'a Csc,
     interrupt: &'a Interrupt<'a>,
     /// Eigenvalues 1/(λ + σ) of the operator, their vectors φ, and M φ.
@@ -130,7 +242,11 @@ impl Search<'_> {
     /// eigenvalue.
     fn run(&mut self, count: usize, round: usize) -> Result<f64> {
         let n = self.mass.rows;
-        let steps = (2 * count + EXTRA_STEPS).min(n - self.found.len());
+        let extra = match self.place {
+            Place::Further if n <= 20_000 => 5 * EXTRA_STEPS,
+            _ => EXTRA_STEPS,
+        };
+        let steps = (2 * count + extra).min(n - self.found.len());
         if steps == 0 {
             return Ok(0.0);
         }
@@ -238,7 +354,19 @@ impl Search<'_> {
             return Ok(0.0);
         }
         let mut largest = 0.0_f64;
-        for (mu, bound, s) in self.ritz(alpha, beta, v, basis, weighted)?.into_iter().take(count) {
+        let ritz = self.ritz(alpha, beta, v, basis, weighted)?;
+        // The least value of the operator shows an eigenvalue below the shift.
+        let ends = ritz.first().zip(ritz.last());
+        if self.place == Place::Within
+            && ends.is_some_and(|(first, last)| last.0 < -NEGATIVE * first.0.abs() && last.1 < 0.5 * last.0.abs())
+        {
+            return fail!(
+                NotPositiveDefinite,
+                "the stiffness is negative in some direction with mass, and in one without mass: the lowest natural modes are not \
+                 known"
+            );
+        }
+        for (mu, bound, s) in ritz.into_iter().take(count) {
             self.interrupt.check()?;
             // The error of the eigenvalue is the square of the bound; vectors need a small bound too.
             if mu <= 0.0 || bound > 1e-8 * mu {

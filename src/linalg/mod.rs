@@ -11,6 +11,7 @@ pub mod eigen;
 pub mod factor;
 pub mod gmres;
 mod graph;
+pub mod held_rows;
 pub mod hermitian;
 pub mod kept_matrix;
 pub mod lanczos;

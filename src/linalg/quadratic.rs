@@ -50,6 +50,16 @@ fn rounding_of(a: f64, b: f64, product: f64) -> f64 {
     if error.is_finite() { error } else { 0.0 }
 }
 
+/// Quadratic form below zero, relative to the sum of the moduli of its terms, that is rounding.
+pub const ROUNDING: f64 = 1e-14;
+
+/// Sum of the moduli of the terms of xᴴ A x.
+#[must_use]
+pub fn terms(a: &Csc, x: &[Complex64]) -> f64 {
+    let column = |j: usize| a.column(j).map(|(i, v)| v.norm() * x[i].norm()).sum::<f64>();
+    x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum()
+}
+
 /// xᴴ A x of a Hermitian matrix.
 #[must_use]
 pub fn quadratic(a: &Csc, x: &[Complex64]) -> f64 {

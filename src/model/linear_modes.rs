@@ -3,12 +3,13 @@
 //! the loss of a complex symmetric stiffness.
 
 use crate::contact::Role;
-use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
+use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
+use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
-use crate::linalg::quadratic::{form, quadratic};
+use crate::linalg::quadratic::{ROUNDING, form, quadratic, terms};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::quadratic_modes::Quadratic;
@@ -34,7 +35,8 @@ pub enum ContactState<'a> {
 /// Natural modes in ascending order of frequency.
 #[derive(Clone, Debug)]
 pub struct LinearModes {
-    /// Natural angular frequencies; those of rigid-body modes are near zero.
+    /// Natural angular frequencies; those of rigid-body modes are near zero. A motion that grows has minus the rate of its
+    /// growth: −√(−λ) for an eigenvalue λ = ω² below zero, where the stiffness is negative.
     pub omega: Vec<f64>,
     /// Mass-normalised shapes (φᴴ M φ = 1 over one sector), one after the other, ndof each.
     pub shapes: Vec<Complex64>,
@@ -53,8 +55,13 @@ const RIGID: f64 = 1e-10;
 /// 1/ω² relative to the largest, below which a motion has no inertia.
 const MASSLESS: f64 = 1e-13;
 
+/// Real part of an eigenvalue, relative to its modulus, beyond which an undamped motion grows.
+const GROWS: f64 = 1e-6;
+
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
+
+const CONTEXT: &str = "the natural modes";
 
 /// K and M of a wave, checked to be Hermitian.
 pub(super) struct Pencil {
@@ -133,7 +140,7 @@ impl Model {
         Ok((signed, false))
     }
 
-    /// Natural frequencies of harmonic `h`, ascending; `None` where they cannot be had, as where K or M is not Hermitian.
+    /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be had, as where K or M is not Hermitian.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -147,7 +154,12 @@ impl Model {
             .pencil(Wave::Harmonic(h), contacts)
             .and_then(|pencil| pencil.all(interrupt));
         match found {
-            Ok(modes) => Ok(Some(modes.omega)),
+            Ok(mut modes) => {
+                for omega in &mut modes.omega {
+                    *omega = omega.max(0.0);
+                }
+                Ok(Some(modes.omega))
+            }
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
             Err(_) => Ok(None),
         }
@@ -161,11 +173,7 @@ impl Model {
         }
         let next = self.structure().wave_phase(diameter, 1);
         let (n, given) = (degrees.independent(), degrees.given());
-        let mut shapes = try_vec(
-            modes.omega.len().saturating_mul(given),
-            Complex64::ZERO,
-            "the natural modes",
-        )?;
+        let mut shapes = try_vec(modes.omega.len().saturating_mul(given), Complex64::ZERO, CONTEXT)?;
         for (all, shape) in shapes.chunks_exact_mut(given).zip(modes.shapes.chunks_exact(n)) {
             degrees.expand(next, shape, all);
         }
@@ -173,7 +181,7 @@ impl Model {
     }
 
     /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
-    /// contacts is zero, up to rounding. At most six are counted for a large structure. 0 for a structure whose
+    /// contacts is zero, up to rounding, or that grow. At most six are counted for a large structure. 0 for a structure whose
     /// stiffness is not Hermitian, where the number is not known.
     ///
     /// # Errors
@@ -190,10 +198,12 @@ impl Model {
         // The stiffest degree of freedom alone sets the scale.
         let (k, m) = (&pencil.stiffness, &pencil.mass);
         let own = |j| (k.get(j, j).re, m.get(j, j).re);
-        let heavy = (0..k.rows).map(own).filter(|&(_, mass)| mass > 0.0);
+        let moving = MovingRows::of(k)?;
+        let moves = |j: &usize| moving.as_ref().is_none_or(|moving| moving.contains(*j));
+        let heavy = (0..k.rows).filter(moves).map(own).filter(|&(_, mass)| mass > 0.0);
         let stiffest = heavy.fold(0.0_f64, |most, (stiffness, mass)| most.max(stiffness / mass));
         let modes = pencil.lowest(RIGID_MODES, interrupt)?;
-        let small = |omega: &&f64| **omega * **omega <= RIGID * stiffest;
+        let small = |omega: &&f64| **omega < 0.0 || **omega * **omega <= RIGID * stiffest;
         Ok(modes.omega.iter().take_while(small).count())
     }
 
@@ -276,6 +286,11 @@ impl Pencil {
 
     /// The `count` lowest modes, fewer if there are not so many.
     pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
+        if let Some(moving) = MovingRows::of(&self.stiffness)? {
+            let mut modes = self.reduced(&moving)?.lowest(count, interrupt)?;
+            modes.shapes = moving.expanded(&modes.shapes)?;
+            return Ok(modes);
+        }
         if let Some(gyroscopic) = &self.gyroscopic {
             return self.gyroscopic_modes(gyroscopic, count, interrupt);
         }
@@ -295,17 +310,59 @@ impl Pencil {
                 shape /= Complex64::from(quadratic(self.weight(), shape.as_slice()).sqrt());
             }
         }
-        Ok(LinearModes::from(pairs))
+        self.modes(&pairs)
+    }
+
+    /// The pencil of the rows that move.
+    fn reduced(&self, moving: &MovingRows) -> Result<Self> {
+        let reduced = |a: &Option<Csc>| a.as_ref().map(|a| moving.reduced(a)).transpose();
+        Ok(Self {
+            stiffness: moving.reduced(&self.stiffness)?,
+            mass: moving.reduced(&self.mass)?,
+            weight: reduced(&self.weight)?,
+            gyroscopic: reduced(&self.gyroscopic)?,
+        })
+    }
+
+    /// Modes of eigenpairs; an eigenvalue below zero beyond rounding is a motion that grows.
+    fn modes(&self, pairs: &Pairs) -> Result<LinearModes> {
+        let mut modes = LinearModes {
+            omega: Vec::new(),
+            shapes: try_copy(pairs.vectors.as_slice(), CONTEXT)?,
+        };
+        for (&value, shape) in pairs.values.iter().zip(pairs.vectors.column_iter()) {
+            let omega = if value < 0.0 {
+                -self.growth(shape.as_slice())
+            } else {
+                value.sqrt()
+            };
+            try_push(&mut modes.omega, omega, CONTEXT)?;
+        }
+        Ok(modes)
+    }
+
+    /// Rate √(−φᴴKφ / φᴴMφ) at which a motion of negative stiffness grows; 0 where that is rounding.
+    fn growth(&self, shape: &[Complex64]) -> f64 {
+        let energy = quadratic(&self.stiffness, shape);
+        if energy >= -ROUNDING * terms(&self.stiffness, shape) {
+            return 0.0;
+        }
+        (-energy / quadratic(&self.mass, shape)).sqrt()
     }
 
     /// All modes, by dense algebra.
     fn all(&self, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
+        if let Some(moving) = MovingRows::of(&self.stiffness)? {
+            let mut modes = self.reduced(&moving)?.all(interrupt)?;
+            modes.shapes = moving.expanded(&modes.shapes)?;
+            return Ok(modes);
+        }
         let n = self.mass.rows;
         if let Some(gyroscopic) = &self.gyroscopic {
             return self.gyroscopic_modes(gyroscopic, n, interrupt);
         }
         // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
-        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
         let dense = |a: &Csc| {
             let mut d = DMatrix::<Complex64>::zeros(n, n);
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());
@@ -313,11 +370,20 @@ impl Pencil {
         };
         let Some(weight) = &self.weight else {
             let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
-            return Ok(LinearModes::from(pairs));
+            return self.modes(&pairs);
         };
         // At a speed tied to the frequency the inertia may be negative: such a motion has no frequency. The pencil is
         // turned round, M φ = φ/ω² K, where K is positive definite.
-        let pairs = eigen::generalised(&dense(&self.mass), &dense(&self.stiffness), interrupt)?;
+        let pairs = match eigen::generalised(&dense(&self.mass), &dense(&self.stiffness), interrupt) {
+            Err(e) if e.status == Status::NotPositiveDefinite => {
+                return fail!(
+                    NotPositiveDefinite,
+                    "the stiffness is negative in some direction: at a speed that is tied to the frequency, natural modes need a \
+                     positive one"
+                );
+            }
+            pairs => pairs?,
+        };
         let mut modes = LinearModes {
             omega: Vec::new(),
             shapes: Vec::new(),
@@ -328,9 +394,9 @@ impl Pencil {
                 continue;
             }
             let norm = quadratic(weight, shape.as_slice()).sqrt();
-            try_push(&mut modes.omega, value.sqrt().recip(), "the natural modes")?;
+            try_push(&mut modes.omega, value.sqrt().recip(), CONTEXT)?;
             for z in shape.iter() {
-                try_push(&mut modes.shapes, z / norm, "the natural modes")?;
+                try_push(&mut modes.shapes, z / norm, CONTEXT)?;
             }
         }
         Ok(modes)
@@ -347,9 +413,12 @@ impl Pencil {
             omega: Vec::new(),
             shapes: Vec::new(),
         };
-        for (eigenvalue, shape) in problem.lowest(count, interrupt)? {
-            try_push(&mut modes.omega, eigenvalue.im, "the natural modes")?;
-            try_extend(&mut modes.shapes, &shape, "the natural modes")?;
+        let mut found = problem.lowest(count, interrupt)?;
+        let signed = |z: &Complex64| if z.re > GROWS * z.norm() { -z.re } else { z.im };
+        found.sort_by(|a, b| signed(&a.0).total_cmp(&signed(&b.0)));
+        for (eigenvalue, shape) in found {
+            try_push(&mut modes.omega, signed(&eigenvalue), CONTEXT)?;
+            try_extend(&mut modes.shapes, &shape, CONTEXT)?;
         }
         Ok(modes)
     }
@@ -376,14 +445,5 @@ impl LinearModes {
             }
         }
         self
-    }
-}
-
-impl From<Pairs> for LinearModes {
-    fn from(pairs: Pairs) -> Self {
-        Self {
-            omega: pairs.values.iter().map(|&x| x.max(0.0).sqrt()).collect(),
-            shapes: pairs.vectors.as_slice().to_vec(),
-        }
     }
 }

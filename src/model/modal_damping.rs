@@ -93,6 +93,14 @@ impl Model {
                 ratios[found]
             );
         }
+        if let Some(r) = (0..found).find(|&r| modes.omega[r] < 0.0) {
+            return fail!(
+                Argument,
+                "ratios[{r}] = {} belongs to a motion that grows, as {:e} per time unit: its stiffness is negative",
+                ratios[r],
+                -modes.omega[r]
+            );
+        }
         let n = pencil.mass.rows;
         let is_real = [&pencil.mass, &pencil.stiffness]
             .iter()

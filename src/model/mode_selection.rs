@@ -5,7 +5,7 @@ use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite;
 use crate::linalg::inner;
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
@@ -37,9 +37,6 @@ pub struct SelectedMode {
 
 /// Frequencies that differ by no more than this, relative, count as equal.
 const EQUAL: f64 = 1e-8;
-
-/// Largest strain energy, relative to the sum of the moduli of its terms, that counts as rounding.
-const NO_STRAIN: f64 = 1e-14;
 
 /// Number of modes of a large structure with which a given shape is compared.
 const COMPARED: usize = 40;
@@ -259,17 +256,14 @@ impl<'a> KnownModes<'a> {
         let shape = &self.modes.shapes[index * n..(index + 1) * n];
         let k = &self.pencil.stiffness;
         let energy = quadratic(k, shape);
-        let mut terms = 0.0;
-        for (j, x) in shape.iter().enumerate() {
-            terms += x.norm() * k.column(j).map(|(i, v)| v.norm() * shape[i].norm()).sum::<f64>();
-        }
-        if energy < -NO_STRAIN * terms {
+        let rounding = ROUNDING * terms(k, shape);
+        if energy < -rounding {
             return fail!(
                 Argument,
                 "mode {index} has no frequency: its stiffness is negative (statically unstable)"
             );
         }
-        if energy <= NO_STRAIN * terms {
+        if energy <= rounding {
             return fail!(Argument, "mode {index} has no frequency (rigid body)");
         }
         Ok(())

@@ -10,8 +10,9 @@ use crate::error::{Result, check_memory, fail, try_copy, try_extend, try_push, t
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
 use crate::linalg::factor::Factor;
+use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
 use crate::linalg::sparse::{Csc, Form};
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
@@ -56,15 +57,31 @@ pub struct Quadratic<'a> {
 pub type Pair = (Complex64, Vec<Complex64>);
 
 impl Quadratic<'_> {
-    /// The `count` eigenvalues of lowest imaginary part above zero, fewer if there are not so many. Motions that do not
-    /// oscillate, rigid or damped beyond vibration, are not counted.
+    /// The `count` eigenvalues of lowest imaginary part, fewer if there are not so many. Motions that do not oscillate, rigid or
+    /// damped beyond vibration, are not counted, unless they grow: these have a real eigenvalue above zero, and come first.
     ///
     /// # Errors
     /// Those of the eigensolvers; `NoConvergence`, `OutOfMemory`, `StoppedByCaller`.
     pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
+        let hermitian = self.hermitian_stiffness()?;
+        if let Some(moving) = MovingRows::of(&hermitian)? {
+            let parts = [self.mass, self.damping, self.stiffness].map(|a| moving.reduced(a));
+            let [mass, damping, stiffness] = parts;
+            let reduced = Quadratic {
+                mass: &mass?,
+                damping: &damping?,
+                stiffness: &stiffness?,
+            };
+            let mut pairs = reduced.lowest(count, interrupt)?;
+            for pair in &mut pairs {
+                pair.1 = moving.expanded(&pair.1)?;
+            }
+            return Ok(pairs);
+        }
         let n = self.mass.rows;
         let complete = n <= DENSE_UP_TO;
         let basis = self.basis(
+            &hermitian,
             if complete {
                 n
             } else {
@@ -89,23 +106,28 @@ impl Quadratic<'_> {
         Ok(pairs)
     }
 
-    /// The lowest undamped modes, column by column.
-    fn basis(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
+    /// The Hermitian part of K.
+    fn hermitian_stiffness(&self) -> Result<Csc> {
         let n = self.mass.rows;
         let half = Complex64::new(0.5, 0.0);
         let transposed = Csc::sum(n, &[(Complex64::ONE, self.stiffness, Form::Transposed)])?;
-        let hermitian = Csc::sum(
+        Csc::sum(
             n,
             &[
                 (half, self.stiffness, Form::Plain),
                 (half, &transposed, Form::Conjugated),
             ],
-        )?;
+        )
+    }
+
+    /// The lowest undamped modes, column by column.
+    fn basis(&self, hermitian: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
+        let n = self.mass.rows;
         if count < n && count <= n / 2 {
-            return Ok(lanczos::lowest(&hermitian, self.mass, count, interrupt)?.vectors);
+            return Ok(lanczos::lowest(hermitian, self.mass, count, interrupt)?.vectors);
         }
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * COPIES), CONTEXT)?;
-        Ok(eigen::generalised(&dense(&hermitian), &dense(self.mass), interrupt)?.vectors)
+        Ok(eigen::generalised(&dense(hermitian), &dense(self.mass), interrupt)?.vectors)
     }
 
     /// Eigenvalues and shapes of the projection on the columns of `basis`, which are orthonormal in M.
@@ -142,7 +164,9 @@ impl Quadratic<'_> {
         let mut pairs = Vec::new();
         for j in 0..2 * r {
             let value = t[(j, j)];
-            if value.im <= REAL * value.norm().max(f64::EPSILON.sqrt() * REAL * size) {
+            let oscillates = value.im > REAL * value.norm().max(f64::EPSILON.sqrt() * REAL * size);
+            let may_grow = value.re > 0.0 && value.im.abs() <= REAL * value.norm();
+            if !(oscillates || may_grow) {
                 continue;
             }
             interrupt.check()?;
@@ -164,9 +188,22 @@ impl Quadratic<'_> {
                     *x += part * phi;
                 }
             }
-            try_push(&mut pairs, (value * unit, shape), CONTEXT)?;
+            let mut eigenvalue = value * unit;
+            if !oscillates {
+                eigenvalue.im = 0.0;
+                if !self.grows(eigenvalue.re, &shape) {
+                    continue;
+                }
+            }
+            try_push(&mut pairs, (eigenvalue, shape), CONTEXT)?;
         }
         Ok(pairs)
+    }
+
+    /// Whether a motion of a real eigenvalue λ > 0 is no rigid one up to rounding: xᴴ(K + λC)x, which is −λ² xᴴMx.
+    fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
+        let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
+        force < -ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
     }
 
     /// λ²M + λC + K

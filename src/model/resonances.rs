@@ -4,6 +4,7 @@
 use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
+use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
@@ -192,6 +193,10 @@ fn parts(k: &Csc) -> Result<(Csc, Csc)> {
 
 /// All modes up to a frequency; `None` if there are too many of them.
 fn modes_up_to(k: &Csc, m: &Csc, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
+    if let Some(moving) = MovingRows::of(k)? {
+        let pairs = modes_up_to(&moving.reduced(k)?, &moving.reduced(m)?, omega, interrupt)?;
+        return pairs.map(|pairs| moving.expanded_pairs(pairs)).transpose();
+    }
     let n = k.rows;
     let mut count = FIRST_MODES;
     while n > DENSE_UP_TO && count <= n / 4 {

@@ -10,3 +10,4 @@ mod rotating_wheel;
 mod senses_of_crossings;
 mod signed_diameters;
 mod start_mode;
+mod unstable_and_held;

@@ -1,16 +1,20 @@
 //! The model of a job.
 
+use crate::check::near;
 use crate::contacts::contacts;
-use crate::faces;
+use crate::counted::counted;
+use crate::faces::{self, Sector};
 use crate::job::{Amplitude, Job};
 use crate::mesh::Mesh;
 use crate::node_table::Nodes;
 use hbvib::{MatrixKind, MatrixView, Model, Part, Speed, Storage, Values};
-use hbvib_io::{Dof, Matrix, Symmetry};
+use hbvib_io::{Dof, Files, Matrix, Report, Symmetry};
 use num_complex::Complex64;
+use std::collections::HashMap;
 use std::fmt::Display;
+use std::io::Write;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A sentence.
 pub type Outcome<T> = Result<T, String>;
@@ -21,6 +25,7 @@ struct Given {
     next: Vec<(MatrixKind, Matrix)>,
     /// Node and direction of each degree of freedom, where a file names them.
     dofs: Vec<Dof>,
+    report: Report,
 }
 
 /// Numbers of the model's contacts for each entry of the job: its name, and a range.
@@ -32,6 +37,28 @@ pub struct Built {
     /// Names of its contacts.
     pub names: Names,
     pub nodes: Nodes,
+    /// Report on the matrices, with what was taken as fixed or counted once.
+    pub report: Report,
+}
+
+impl Built {
+    /// Tells the warnings.
+    ///
+    /// # Errors
+    /// A sentence with their number, where they are refused.
+    pub fn warn(&self, strict: bool) -> Outcome<()> {
+        let warnings = &self.report.warnings;
+        for warning in warnings {
+            let _ = writeln!(std::io::stderr(), "hbvib: warning: {warning}");
+        }
+        if strict && !warnings.is_empty() {
+            return Err(format!(
+                "{}, which --strict refuses",
+                counted(warnings.len(), "warning")
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// The model with its contacts and forces. A contact without a name has its number, from 1.
@@ -39,18 +66,25 @@ pub struct Built {
 /// # Errors
 /// A sentence that names the file, contact or force.
 pub fn built(job: &Job) -> Outcome<Built> {
-    let given = matrices(job)?;
-    let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
     let part = &job.model;
     let mesh = match &part.mesh {
         Some(path) => Some(Mesh::read(&job.path(path))?),
         None => None,
     };
-    let nodes = Nodes::new(&given.dofs, mesh);
-    let mut model = match &part.faces {
+    let given = matrices(job, mesh.as_ref())?;
+    let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
+    let nodes = Nodes::new(&given.dofs, mesh, part.absent);
+    let mut report = given.report.clone();
+    expected(job, &mut report);
+    let Sector {
+        mut model,
+        images,
+        facts,
+    } = match &part.faces {
         Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
-        None => Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?,
+        None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
     };
+    report.facts.extend(facts);
     model.set_wave(part.engine_order);
     if part.faces.is_none() && !part.fixed.is_empty() {
         model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
@@ -72,32 +106,7 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let mut names = Names::new();
-    for (i, part) in job.contact.iter().enumerate() {
-        let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
-        let first = model.contacts().len();
-        for contact in contacts(job, part, &nodes).map_err(|e| said(&e))? {
-            let id = model.add_contact(&contact).map_err(|e| said(&e))?;
-            if part.per_speed2 != 0.0 {
-                // An area multiplies all of them alike.
-                let pairs = [
-                    (contact.kt, part.kt),
-                    (contact.kn, part.kn),
-                    (contact.preload, part.preload),
-                ];
-                let given = pairs.into_iter().find(|(_, given)| *given != 0.0);
-                let share = given.map_or(1.0, |(of_pair, given)| of_pair / given);
-                model
-                    .set_preload_at_speed(id, contact.preload, part.per_speed2 * share)
-                    .map_err(|e| said(&e))?;
-            }
-        }
-        let name = part.name.clone().unwrap_or_else(|| (i + 1).to_string());
-        if names.iter().any(|(other, _)| *other == name) {
-            return Err(said(&format!("name = \"{name}\" is that of another one")));
-        }
-        names.push((name, first..model.contacts().len()));
-    }
+    let names = add_contacts(job, (&nodes, &images), &mut model, &mut report)?;
     for one in &job.output.hysteresis {
         one.contact(&names)?;
     }
@@ -124,14 +133,77 @@ pub fn built(job: &Job) -> Outcome<Built> {
     if let Some(speed) = speed {
         model.set_speed(speed).map_err(|e| format!("[model]: {e}"))?;
     }
-    Ok(Built { model, names, nodes })
+    Ok(Built {
+        model,
+        names,
+        nodes,
+        report,
+    })
 }
 
-fn matrices(job: &Job) -> Outcome<Given> {
+/// Adds the contacts of a job, and returns their names.
+fn add_contacts(
+    job: &Job,
+    (nodes, images): (&Nodes, &HashMap<i64, i64>),
+    model: &mut Model,
+    report: &mut Report,
+) -> Outcome<Names> {
+    let mut names = Names::new();
+    for (i, part) in job.contact.iter().enumerate() {
+        let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
+        let first = model.contacts().len();
+        let (contacts, repeated) = contacts(job, part, nodes, images).map_err(|e| said(&e))?;
+        if repeated > 0 {
+            report.facts.push(said(&format!(
+                "left out, as images of pairs of the left face: {}",
+                counted(repeated, "pair")
+            )));
+        }
+        for contact in contacts {
+            let id = model.add_contact(&contact).map_err(|e| said(&e))?;
+            if part.per_speed2 != 0.0 {
+                // An area multiplies all of them alike.
+                let pairs = [
+                    (contact.kt, part.kt),
+                    (contact.kn, part.kn),
+                    (contact.preload, part.preload),
+                ];
+                let given = pairs.into_iter().find(|(_, given)| *given != 0.0);
+                let share = given.map_or(1.0, |(of_pair, given)| of_pair / given);
+                model
+                    .set_preload_at_speed(id, contact.preload, part.per_speed2 * share)
+                    .map_err(|e| said(&e))?;
+            }
+        }
+        let name = part.name.clone().unwrap_or_else(|| (i + 1).to_string());
+        if names.iter().any(|(other, _)| *other == name) {
+            return Err(said(&format!("name = \"{name}\" is that of another one")));
+        }
+        names.push((name, first..model.contacts().len()));
+    }
+    Ok(names)
+}
+
+/// Compares the mass with that which the job expects.
+fn expected(job: &Job, report: &mut Report) {
+    let total = job.model.expected.as_ref().and_then(|part| part.total_mass);
+    let Some(total) = total else { return };
+    if report.total_mass.is_empty() {
+        let reason = "the directions of rows are not known, so that the expected total mass is not compared";
+        report.warnings.push(reason.into());
+    } else if !report.total_mass.iter().all(|mass| near(*mass, total)) {
+        report.warnings.push(format!(
+            "the total mass along x, y, z is {:?}, and {total} is expected",
+            report.total_mass
+        ));
+    }
+}
+
+fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
     let part = &job.model;
     let one = |path: &Path| -> Outcome<(Matrix, Vec<Dof>)> {
         let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
-        let held = [found.stiffness, found.mass, found.damping];
+        let held = [found.stiffness, found.mass, found.damping, found.structural];
         let mut held = held.into_iter().flatten();
         match (held.next(), held.next()) {
             (Some(matrix), None) => Ok((matrix, found.dofs)),
@@ -141,41 +213,68 @@ fn matrices(job: &Job) -> Outcome<Given> {
             )),
         }
     };
+    let at = |path: &Option<PathBuf>| path.as_ref().map(|path| job.path(path));
+    let paths = [
+        &part.matrices,
+        &part.stiffness,
+        &part.mass,
+        &part.damping,
+        &part.structural,
+    ]
+    .map(at);
+    let [all, stiffness, mass, damping, structural] = paths.each_ref().map(Option::as_deref);
+    let found = hbvib_io::read_files(&Files {
+        matrices: all,
+        stiffness,
+        mass,
+        damping,
+        structural,
+    })
+    .map_err(|e| e.to_string())?;
+    let position = mesh.map(|mesh| |node: i64| mesh.position(node).ok());
+    let positions = position.as_ref().map(|p| p as &dyn Fn(i64) -> Option<[f64; 3]>);
     let mut given = Given {
         own: Vec::new(),
         next: Vec::new(),
-        dofs: Vec::new(),
+        report: hbvib_io::report_with(&found, positions),
+        dofs: found.dofs,
     };
-    if let Some(path) = &part.matrices {
-        let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
-        let kinds = [MatrixKind::Stiffness, MatrixKind::Mass, MatrixKind::Damping];
-        for (kind, matrix) in kinds.into_iter().zip([found.stiffness, found.mass, found.damping]) {
-            given.own.extend(matrix.map(|matrix| (kind, matrix)));
-        }
-        given.dofs = found.dofs;
+    for (kind, matrix) in [
+        (MatrixKind::Stiffness, found.stiffness),
+        (MatrixKind::Mass, found.mass),
+        (MatrixKind::Damping, found.damping),
+        (MatrixKind::Structural, found.structural),
+    ] {
+        given.own.extend(matrix.map(|matrix| (kind, matrix)));
     }
+    let order = given.own.first().map(|(_, matrix)| matrix.rows);
+    let checked = |path: &Path, (matrix, dofs): (Matrix, Vec<Dof>)| -> Outcome<Matrix> {
+        if !dofs.is_empty() && !given.dofs.is_empty() && dofs != given.dofs {
+            return Err(format!(
+                "{}: names other nodes and directions than the matrices before it",
+                path.display()
+            ));
+        }
+        match order {
+            Some(n) if (matrix.rows, matrix.columns) != (n, n) => Err(format!(
+                "{}: is {} x {}, but stiffness and mass are {n} x {n}: needs matrices of one size",
+                path.display(),
+                matrix.rows,
+                matrix.columns
+            )),
+            _ => Ok(matrix),
+        }
+    };
+    let mut rotating = Vec::new();
     for (kind, path) in [
-        (MatrixKind::Stiffness, &part.stiffness),
-        (MatrixKind::Mass, &part.mass),
-        (MatrixKind::Damping, &part.damping),
-        (MatrixKind::Structural, &part.structural),
         (MatrixKind::Gyroscopic, &part.gyroscopic),
         (MatrixKind::StiffnessSpeed2, &part.stiffness_speed2),
     ] {
         if let Some(path) = path {
-            given.own.retain(|(other, _)| *other != kind);
-            let (matrix, dofs) = one(path)?;
-            if given.dofs.is_empty() {
-                given.dofs = dofs;
-            } else if !dofs.is_empty() && dofs != given.dofs {
-                return Err(format!(
-                    "{}: names other nodes and directions than the matrices before it",
-                    path.display()
-                ));
-            }
-            given.own.push((kind, matrix));
+            rotating.push((kind, checked(path, one(path)?)?));
         }
     }
+    let mut next = Vec::new();
     for (kind, path) in [
         (MatrixKind::Stiffness, &part.coupling_stiffness),
         (MatrixKind::Mass, &part.coupling_mass),
@@ -183,9 +282,11 @@ fn matrices(job: &Job) -> Outcome<Given> {
         (MatrixKind::StiffnessSpeed2, &part.coupling_stiffness_speed2),
     ] {
         if let Some(path) = path {
-            given.next.push((kind, one(path)?.0));
+            next.push((kind, checked(path, one(path)?)?));
         }
     }
+    given.own.extend(rotating);
+    given.next = next;
     if given.own.is_empty() {
         return Err("[model]: names no matrix: needs stiffness and mass, or matrices".into());
     }

@@ -3,16 +3,15 @@
 use crate::build::Outcome;
 use crate::counted::counted;
 use crate::figure::{bounds, draw};
-use crate::job::Job;
+use crate::files::Files;
 use crate::job_studies::{CampbellPart, StateName};
-use crate::output::place;
 use hbvib::{Campbell, Hooks, Interference, LinearContacts, Model, Speed, campbell, interference};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLACK, Color, Palette, Palette99, RED};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Radians per time unit of one turn per minute, times in seconds.
 const RPM: f64 = TAU / 60.0;
@@ -20,18 +19,29 @@ const RPM: f64 = TAU / 60.0;
 /// Difference of two frequencies, relative, that is not seen.
 const SAME: f64 = 1e-9;
 
-/// Computes and writes the diagrams; returns a summary and the files.
+/// Refuses what cannot be computed.
 ///
 /// # Errors
 /// A sentence.
-pub fn write(job: &Job, part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<(String, Vec<PathBuf>)> {
-    let said = |e: &dyn std::fmt::Display| format!("[campbell]: {e}");
+pub fn check(part: &CampbellPart, model: &Model) -> Outcome<()> {
     if part.points < 2 || part.to_rpm <= part.from_rpm {
         return Err(format!(
             "[campbell]: points = {}, from_rpm = {}, to_rpm = {}, needs at least 2 points and rising speeds",
             part.points, part.from_rpm, part.to_rpm
         ));
     }
+    if part.interference_figure.is_some() && model.structure().sectors() == 1 {
+        return Err("[campbell]: interference_figure needs a model of several sectors".into());
+    }
+    Ok(())
+}
+
+/// Computes and writes the diagrams; returns a summary.
+///
+/// # Errors
+/// A sentence.
+pub fn write(part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_>, files: &mut Files<'_>) -> Outcome<String> {
+    let said = |e: &dyn std::fmt::Display| format!("[campbell]: {e}");
     let step = (part.to_rpm - part.from_rpm) / (part.points - 1) as f64;
     let speeds: Vec<f64> = (0..part.points)
         .map(|i| (part.from_rpm + step * i as f64) * RPM)
@@ -54,31 +64,20 @@ pub fn write(job: &Job, part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_
     } else {
         None
     };
-    let mut written = Vec::new();
-    if let Some(path) = &part.csv {
-        let path = place(job, path)?;
-        fs::write(&path, table(&found, opposite.as_ref())).map_err(|e| format!("{}: {e}", path.display()))?;
-        written.push(path);
-    }
-    if let Some(path) = &part.figure {
-        let path = place(job, path)?;
-        figure(&path, &found, opposite.as_ref(), &part.engine_orders)?;
-        written.push(path);
-    }
+    files.write(part.csv.as_deref(), &|path| {
+        fs::write(path, table(&found, opposite.as_ref())).map_err(|e| e.to_string())
+    });
+    files.write(part.figure.as_deref(), &|path| {
+        figure(path, &found, opposite.as_ref(), &part.engine_orders)
+    });
     if let Some(path) = &part.interference_figure {
-        let sectors = model.structure().sectors();
-        if sectors == 1 {
-            return Err("[campbell]: interference_figure needs a model of several sectors".into());
-        }
         let rpm = part.interference_rpm.unwrap_or(part.to_rpm);
         let mut rotating = model.try_clone().map_err(|e| said(&e))?;
         rotating.set_speed(Speed::Fixed(rpm * RPM)).map_err(|e| said(&e))?;
         let waves = interference(&rotating, state, count, hooks).map_err(|e| said(&e))?;
-        let path = place(job, path)?;
-        safe(&path, &waves, &rotating, rpm)?;
-        written.push(path);
+        files.write(Some(path), &|path| safe(path, &waves, &rotating, rpm));
     }
-    Ok((summary(&found, structure.sectors()), written))
+    Ok(summary(&found, structure.sectors()))
 }
 
 /// Whether two diagrams have other frequencies.

@@ -2,37 +2,55 @@
 
 use crate::build::{Names, Outcome};
 use crate::contact_figures::{loops_figure, slip_figure};
+use crate::files::Files;
 use crate::job::{HysteresisPart, Job};
-use crate::output::Files;
 use crate::points::chosen;
 use hbvib::{Branch, ContactLoop, Special, State};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Writes what the job names.
-///
-/// # Errors
-/// A sentence that names the file or the contact.
-pub fn write(job: &Job, branch: &Branch, names: &Names) -> Outcome<Vec<PathBuf>> {
-    let mut files = Files::of(job);
+/// Most times of a loop.
+const MOST_SAMPLES: usize = 1_000_000;
+
+/// Writes what the job names. A loop that cannot be evaluated at one point is told, and left out.
+pub fn write(job: &Job, branch: &Branch, names: &Names, files: &mut Files<'_>) {
     let labels = labels(names);
     files.write(job.output.slip_csv.as_deref(), &|path| {
         slip_table(path, branch, &labels)
-    })?;
+    });
     files.write(job.output.slip_figure.as_deref(), &|path| {
         slip_figure(path, branch, &labels)
-    })?;
+    });
     for part in &job.output.hysteresis {
-        let contact = part.contact(names)?;
-        let loops = loops(part, branch, contact)?;
-        files.write(part.csv.as_deref(), &|path| loops_table(path, &loops))?;
+        let contact = match part.contact(names) {
+            Ok(contact) => contact,
+            Err(e) => {
+                files.fail(e);
+                continue;
+            }
+        };
+        let points = chosen(branch, part.points);
+        let mut loops = Vec::new();
+        for &point in &points {
+            match branch.contact_loop(point.point, contact, part.samples) {
+                Ok(found) => loops.push((point, found)),
+                Err(e) => files.fail(format!(
+                    "[[output.hysteresis]], contact \"{}\", {:.6} Hz: {e}",
+                    part.contact,
+                    point.omega / TAU
+                )),
+            }
+        }
+        if loops.is_empty() && !points.is_empty() {
+            continue;
+        }
+        files.write(part.csv.as_deref(), &|path| loops_table(path, &loops));
         files.write(part.figure.as_deref(), &|path| {
             loops_figure(path, &labels[contact], &loops)
-        })?;
+        });
     }
-    Ok(files.written)
 }
 
 impl HysteresisPart {
@@ -57,6 +75,12 @@ impl HysteresisPart {
                 self.contact
             ));
         }
+        if !(1..=MOST_SAMPLES).contains(&self.samples) {
+            return Err(format!(
+                "[[output.hysteresis]], contact \"{}\": samples = {}, needs 1 .. {MOST_SAMPLES}",
+                self.contact, self.samples
+            ));
+        }
         Ok(range.start + self.pair)
     }
 }
@@ -70,17 +94,6 @@ fn labels(names: &Names) -> Vec<String> {
         }
     };
     names.iter().flat_map(of).collect()
-}
-
-fn loops(part: &HysteresisPart, branch: &Branch, contact: usize) -> Outcome<Vec<(Special, ContactLoop)>> {
-    let points = chosen(branch, part.points);
-    let one = |point: Special| {
-        let found = branch.contact_loop(point.point, contact, part.samples);
-        found
-            .map(|found| (point, found))
-            .map_err(|e| format!("[[output.hysteresis]], contact \"{}\": {e}", part.contact))
-    };
-    points.into_iter().map(one).collect()
 }
 
 /// A row for each time of each point; motions and forces in all directions of the contact.

@@ -5,7 +5,9 @@ use crate::job::{ContactPart, Job, KindName, Node, NodeList, NodesPart};
 use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
+use crate::normals;
 use hbvib::{Contact, ContactKind, Frame};
+use std::collections::{HashMap, HashSet};
 
 /// Degrees of freedom of all pairs of an entry, those of one pair after another, and their areas.
 struct Pairs {
@@ -14,18 +16,29 @@ struct Pairs {
     areas: Vec<f64>,
 }
 
-/// The contacts of an entry, one for each pair.
+/// The contacts of an entry, one for each pair, and the number of pairs that were left out, because they repeat others. `images`
+/// has the degree of freedom of the left face for each one of the right face.
 ///
 /// # Errors
 /// A sentence that names the list and its node or degree of freedom.
-pub fn contacts(job: &Job, part: &ContactPart, table: &Nodes) -> Outcome<Vec<Contact>> {
+pub fn contacts(
+    job: &Job,
+    part: &ContactPart,
+    table: &Nodes,
+    images: &HashMap<i64, i64>,
+) -> Outcome<(Vec<Contact>, usize)> {
     let places = places(part);
     let width = places.len();
-    let pairs = match &part.nodes {
-        Some(nodes) if part.a.is_empty() && part.b.is_empty() => matched(job, nodes, places, table)?,
+    let mut pairs = match &part.nodes {
+        Some(nodes) if part.a.is_empty() && part.b.is_empty() => matched(job, (part, nodes), places, table)?,
         Some(_) => return Err("names degrees of freedom and nodes: needs one of a and nodes".into()),
-        None => listed(part, width)?,
+        None => {
+            let pairs = listed(part, width)?;
+            check_normal(part, &pairs, width, table)?;
+            pairs
+        }
     };
+    let repeated = pairs.leave_out_repeated(width, images);
     let frame = match part.normal {
         Some(normal) => Some(Frame::new(normal, part.tangent).map_err(|e| e.to_string())?),
         None if part.tangent.is_some() => return Err("tangent without normal".into()),
@@ -50,7 +63,7 @@ pub fn contacts(job: &Job, part: &ContactPart, table: &Nodes) -> Outcome<Vec<Con
         KindName::Regularised => ContactKind::Regularised,
     };
     let sides = pairs.a.chunks_exact(width).zip(pairs.b.chunks_exact(width));
-    sides
+    let all: Outcome<Vec<Contact>> = sides
         .zip(&pairs.areas)
         .map(|((a, b), &area)| {
             Ok(Contact {
@@ -70,7 +83,39 @@ pub fn contacts(job: &Job, part: &ContactPart, table: &Nodes) -> Outcome<Vec<Con
                 dofs: Vec::new(),
             })
         })
-        .collect()
+        .collect();
+    Ok((all?, repeated))
+}
+
+impl Pairs {
+    /// Leaves out pairs on the right face whose images on the left face are pairs of the entry, too: both are one pair of the
+    /// wheel. Returns their number.
+    fn leave_out_repeated(&mut self, width: usize, images: &HashMap<i64, i64>) -> usize {
+        let count = self.areas.len();
+        let pair = |k: usize| (&self.a[k * width..(k + 1) * width], &self.b[k * width..(k + 1) * width]);
+        let known: HashSet<_> = (0..count).map(pair).collect();
+        let image = |dofs: &[i64]| -> Option<Vec<i64>> {
+            dofs.iter()
+                .map(|dof| if *dof == -1 { Some(-1) } else { images.get(dof).copied() })
+                .collect()
+        };
+        let is_repeated = |k: usize| {
+            let (a, b) = pair(k);
+            let moves = a.iter().chain(b).any(|dof| *dof != -1);
+            let both = image(a).zip(image(b));
+            moves && both.is_some_and(|(a, b)| known.contains(&(&a[..], &b[..])))
+        };
+        let kept: Vec<usize> = (0..count).filter(|k| !is_repeated(*k)).collect();
+        let of = |all: &[i64]| -> Vec<i64> {
+            kept.iter()
+                .flat_map(|k| all[k * width..(k + 1) * width].iter().copied())
+                .collect()
+        };
+        let (a, b) = (of(&self.a), of(&self.b));
+        let areas = kept.iter().map(|k| self.areas[*k]).collect();
+        (self.a, self.b, self.areas) = (a, b, areas);
+        count - kept.len()
+    }
 }
 
 /// Places of the law's degrees of freedom in those of a contact.
@@ -109,7 +154,23 @@ fn listed(part: &ContactPart, width: usize) -> Outcome<Pairs> {
     })
 }
 
-fn matched(job: &Job, nodes: &NodesPart, places: &[usize], table: &Nodes) -> Outcome<Pairs> {
+/// Refuses a normal that the positions of degrees of freedom contradict, where a mesh has all of them.
+fn check_normal(part: &ContactPart, pairs: &Pairs, width: usize, table: &Nodes) -> Outcome<()> {
+    let Some(normal) = part.normal.filter(|_| !part.any_normal && part.sector_offset == 0) else {
+        return Ok(());
+    };
+    let at = |dofs: &[i64]| -> Option<Vec<[f64; 3]>> {
+        dofs.chunks_exact(width)
+            .map(|dofs| dofs.iter().find_map(|dof| table.position_of(*dof)))
+            .collect()
+    };
+    match (at(&pairs.a), at(&pairs.b)) {
+        (Some(a), Some(b)) => normals::check(normal, &a, &b),
+        _ => Ok(()),
+    }
+}
+
+fn matched(job: &Job, (part, nodes): (&ContactPart, &NodesPart), places: &[usize], table: &Nodes) -> Outcome<Pairs> {
     let own = match &nodes.coordinates {
         Some(path) => Some(Mesh::read(&job.path(path))?),
         None => None,
@@ -137,6 +198,10 @@ fn matched(job: &Job, nodes: &NodesPart, places: &[usize], table: &Nodes) -> Out
     let at_b = positions("b", &b, &nodes.b_coordinates, mesh).map_err(said)?;
     let list = |name, nodes, at| Positioned { name, nodes, at };
     let partner = pairs(&list("a", &a, &at_a), &list("b", &b, &at_b), nodes.largest_distance).map_err(said)?;
+    if let Some(normal) = part.normal.filter(|_| !part.any_normal) {
+        let partners: Vec<[f64; 3]> = partner.iter().map(|&j| at_b[j]).collect();
+        normals::check(normal, &at_a, &partners)?;
+    }
     let (mut dofs_a, mut dofs_b) = (Vec::new(), Vec::new());
     for (i, &j) in partner.iter().enumerate() {
         let of = |name: &str, node| table.dofs_of(node, places).map_err(|e| format!("nodes: {name}: {e}"));

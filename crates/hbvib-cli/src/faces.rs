@@ -5,6 +5,7 @@ use crate::job::{FacesPart, FrameName, Job, Node};
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
 use hbvib::{Model, SectorDescription, SectorFrame};
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// Largest distance between a node of the right face and the image of a left one, over the largest distance from the
@@ -19,13 +20,36 @@ struct Faces {
     right: Vec<Option<usize>>,
     components: usize,
     coordinates: Option<(Points, Points)>,
+    /// Degrees of freedom of nodes whose image is fixed.
+    fixed: Vec<usize>,
+    facts: Vec<String>,
+}
+
+/// The model of a sector.
+pub struct Sector {
+    pub model: Model,
+    /// Degree of freedom of the left face of each one of the right face.
+    pub images: HashMap<i64, i64>,
+    /// Nodes that were fixed as their image is.
+    pub facts: Vec<String>,
+}
+
+impl Sector {
+    /// A model that has no faces.
+    pub fn without_faces(model: Model) -> Self {
+        Self {
+            model,
+            images: HashMap::new(),
+            facts: Vec::new(),
+        }
+    }
 }
 
 /// The model of a sector, without its matrices.
 ///
 /// # Errors
 /// A sentence that names the face and its node or degree of freedom.
-pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcome<Model> {
+pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcome<Sector> {
     let said = |e: String| format!("[model.faces]: {e}");
     if part.direction.abs() != 1 {
         return Err(said(format!("direction = {}, needs 1 or -1", part.direction)));
@@ -39,14 +63,19 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         in_order(part, &left, &right)
     };
     let faces = faces.map_err(said)?;
-    Model::sector(&SectorDescription {
+    let fixed: Vec<usize> = job.model.fixed.iter().chain(&faces.fixed).copied().collect();
+    let pairs = faces.right.iter().zip(&faces.left);
+    let images = pairs
+        .filter_map(|(right, left)| Some(((*right)? as i64, (*left)? as i64)))
+        .collect();
+    let model = Model::sector(&SectorDescription {
         ndof,
         sectors: job.model.sectors,
         engine_order: job.model.engine_order,
         components: faces.components,
         left: &faces.left,
         right: &faces.right,
-        fixed: &job.model.fixed,
+        fixed: &fixed,
         frame: match part.frame {
             FrameName::Cartesian => SectorFrame::Cartesian,
             FrameName::Cylindrical => SectorFrame::Cylindrical,
@@ -55,7 +84,12 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         forward: part.direction == 1,
         coordinates: faces.coordinates.as_ref().map(|(left, right)| (&left[..], &right[..])),
     })
-    .map_err(|e| said(e.to_string()))
+    .map_err(|e| said(e.to_string()))?;
+    Ok(Sector {
+        model,
+        images,
+        facts: faces.facts,
+    })
 }
 
 /// Faces whose nodes are degrees of freedom, pair by pair.
@@ -92,6 +126,8 @@ fn in_order(part: &FacesPart, left: &[Node], right: &[Node]) -> Outcome<Faces> {
         right: flat("right", right)?,
         components,
         coordinates,
+        fixed: Vec::new(),
+        facts: Vec::new(),
     })
 }
 
@@ -121,6 +157,8 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
         right: Vec::new(),
         components: 3,
         coordinates: None,
+        fixed: Vec::new(),
+        facts: Vec::new(),
     };
     let mut coordinates = (Points::new(), Points::new());
     for (i, &j) in partner.iter().enumerate() {
@@ -129,8 +167,23 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
             Node::Dofs(_) => Err(format!("{name}[{i}] names degrees of freedom, others name nodes")),
         };
         let sides = (dofs_of("left", i, &left[i])?, dofs_of("right", j, &right[j])?);
-        if let (None, None) = sides {
-            // Fixed on both sides.
+        if let (None, _) | (_, None) = sides {
+            // Fixed on one side is fixed on both: they are one node of the wheel.
+            let moving = [
+                (left[i].clone(), right[j].clone(), sides.0),
+                (right[j].clone(), left[i].clone(), sides.1),
+            ];
+            for (node, image, dofs) in moving {
+                let Some(dofs) = dofs else { continue };
+                faces
+                    .fixed
+                    .extend(dofs.into_iter().filter_map(|dof| usize::try_from(dof).ok()));
+                if let (Node::Number(node), Node::Number(image)) = (node, image) {
+                    faces
+                        .facts
+                        .push(format!("[model.faces]: node {node} is fixed, as its image {image} is"));
+                }
+            }
             continue;
         }
         for dof in sides.0.unwrap_or([-1; 3]) {

@@ -83,6 +83,31 @@ pub struct ModelPart {
     /// Positions and sets of nodes: lines of number, x, y, z, or an Abaqus or CalculiX mesh with *NODE and *NSET.
     pub mesh: Option<PathBuf>,
     pub faces: Option<FacesPart>,
+    /// Nodes of the mesh, or directions of a node, that the matrices do not have.
+    #[serde(default)]
+    pub absent: AbsentName,
+    pub expected: Option<ExpectedPart>,
+}
+
+/// Contacts, forces and faces at degrees of freedom that the matrices do not have: these may be fixed, or follow others by a
+/// constraint (MPC, TIE, rigid body) that the matrices contain.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum AbsentName {
+    #[default]
+    Refused,
+    /// They do not move.
+    Fixed,
+}
+
+/// Values that the finite-element program tells; others, by more than a hundredth, are warnings.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExpectedPart {
+    /// Mass of a translation, of the nodes that the matrices have.
+    pub total_mass: Option<f64>,
+    /// Lowest natural frequency without contacts in the nodal diameter of the engine order, for check.
+    pub first_hz: Option<f64>,
 }
 
 /// Faces of a sector.
@@ -161,7 +186,11 @@ pub struct ContactPart {
     pub cubic: f64,
     #[serde(default)]
     pub velocity: f64,
+    /// From side b to side a.
     pub normal: Option<[f64; 3]>,
+    /// Accepts a normal that the positions of the pairs contradict, as where meshes overlap.
+    #[serde(default)]
+    pub any_normal: bool,
     pub tangent: Option<[f64; 3]>,
 }
 
@@ -180,6 +209,7 @@ pub struct NodesPart {
     pub coordinates: Option<PathBuf>,
     /// Largest distance of a pair.
     pub largest_distance: f64,
+
     /// Area of each node of a, or one for all: kt, kn and cubic are then given per area, and preload is a pressure.
     #[serde(default)]
     pub areas: Vec<f64>,

@@ -2,20 +2,25 @@
 //!
 //! ```text
 //! hbvib run job.toml     solves and writes what the job names
-//! hbvib check job.toml   reads the job and its files, and builds the model
+//! hbvib check job.toml   reads the job and its files, builds the model, and reports on the matrices
 //! hbvib modes job.toml   natural frequencies, with free and with stuck contacts
 //! hbvib schema           the JSON schema of a job
 //! ```
+//!
+//! With `--strict` warnings on the matrices are errors.
 
 mod build;
 mod campbell;
 mod canvas;
+mod check;
 mod contact_figures;
 mod contact_tables;
 mod contacts;
 mod counted;
+mod end;
 mod faces;
 mod figure;
+mod files;
 mod job;
 mod job_studies;
 mod map;
@@ -23,6 +28,7 @@ mod mesh;
 mod nearest_name;
 mod node_match;
 mod node_table;
+mod normals;
 mod npz;
 mod output;
 mod points;
@@ -34,37 +40,36 @@ mod varied;
 mod verification;
 
 use build::{Built, Outcome};
-use counted::counted;
+use end::End;
+use files::Files;
 use hbvib::{
     Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status, Waves,
     forced_response, nonlinear_mode,
 };
 use job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use progress::Bar;
-use signal_hook::consts::SIGINT;
 use solver::solver;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const USAGE: &str = "usage: hbvib run|check|modes job.toml, or hbvib schema";
-
-/// Exit code of a run that was stopped early and kept its points.
-const STOPPED: u8 = 2;
-
-/// Exit code of a run one of whose points is another solution than integration in time finds.
-const DIFFERENT: u8 = 3;
+const USAGE: &str = "usage: hbvib run|check|modes [--strict] job.toml, or hbvib schema";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["run", path] => run(Path::new(path)),
-        ["check", path] => check(Path::new(path)),
-        ["modes", path] => modes(Path::new(path)),
+    let strict = arguments.iter().any(|word| word == "--strict");
+    let words: Vec<&str> = arguments
+        .iter()
+        .map(String::as_str)
+        .filter(|word| *word != "--strict")
+        .collect();
+    let outcome = match words[..] {
+        ["run", path] => run(Path::new(path), strict),
+        ["check", path] => check::check(Path::new(path), strict),
+        ["modes", path] => modes(Path::new(path), strict),
         ["schema"] => schema(),
         ["--help" | "-h"] => print(&format!("{USAGE}\n")).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.into()),
@@ -88,37 +93,14 @@ fn schema() -> Outcome<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn check(path: &Path) -> Outcome<ExitCode> {
-    let job = Job::read(path)?;
-    let built = build::built(&job)?;
-    if let Some(part) = &job.study {
-        study::check(part, &built)?;
-    }
-    if let Some(part) = &job.map {
-        map::check(part, &built)?;
-    }
-    if let Some(part) = &job.tornado {
-        tornado::check(part, &built)?;
-    }
-    let model = &built.model;
-    let structure = model.structure();
-    let mut parts = vec![counted(model.ndof(), "degree of freedom")];
-    if structure.sectors() > 1 {
-        parts.push(counted(structure.sectors(), "sector"));
-        parts.push(format!("engine order {}", structure.engine_order()));
-    }
-    parts.push(counted(model.contacts().len(), "contact"));
-    parts.push(counted(model.excitation().forces().len(), "force"));
-    print(&format!("{}: {}\n", path.display(), parts.join(", ")))?;
-    Ok(ExitCode::SUCCESS)
-}
-
 /// Number of natural frequencies that are listed.
 const LISTED: usize = 10;
 
-fn modes(path: &Path) -> Outcome<ExitCode> {
+fn modes(path: &Path, strict: bool) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
-    let model = build::built(&job)?.model;
+    let built = build::built(&job)?;
+    built.warn(strict)?;
+    let model = built.model;
     let mut text = String::from("diameter,mode,free_hz,stuck_hz\n");
     // A row of a diameter stands for both senses where they have the same modes.
     let least = if model.has_equal_senses() { 0 } else { i64::MIN };
@@ -139,60 +121,65 @@ fn modes(path: &Path) -> Outcome<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn run(path: &Path) -> Outcome<ExitCode> {
+fn run(path: &Path, strict: bool) -> Outcome<ExitCode> {
+    let stop = end::stop_flag()?;
     let job = Job::read(path)?;
     let built = build::built(&job)?;
-    let (model, names) = (&built.model, &built.names);
-    let stop = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register(SIGINT, Arc::clone(&stop)).map_err(|e| format!("Ctrl-C: {e}"))?;
-    if !over_quantities(&job, &built, &stop)? {
-        let _ = writeln!(std::io::stderr(), "hbvib: the run ended early");
-        return Ok(ExitCode::from(STOPPED));
+    // A mistake in one part is told before another has taken its time.
+    check::parts(&job, &built)?;
+    built.warn(strict)?;
+    let mut files = Files::of(&job);
+    let mut end = End::default();
+    over_quantities(&job, &built, &stop, &mut files, &mut end);
+    if (job.forced.is_some() || job.mode.is_some()) && end.goes_on(&stop) {
+        let solved = solve(&job, &built, &stop);
+        if let Some(branch) = end.take(solved, &stop) {
+            written(&job, &built, &branch, &mut files);
+            judged(&job, (&built.model, &branch), &stop, &mut files, &mut end);
+        }
     }
-    if job.forced.is_none() && job.mode.is_none() {
-        return Ok(ExitCode::SUCCESS);
-    }
-    let branch = solve(&job, &built, &stop)?;
-    let mut written = output::write(&job, &branch)?;
-    written.extend(contact_tables::write(&job, &branch, names)?);
-    print(&output::summary(&branch))?;
-    told("", &written)?;
-    if branch.status() == Status::Ok {
-        return match &job.verify {
-            Some(part) => verified(&job, part, (model, &branch), &stop),
-            None => Ok(ExitCode::SUCCESS),
-        };
-    }
-    if let Some(part) = job.verify.as_ref().filter(|_| !stop.load(Ordering::Relaxed)) {
-        verified(&job, part, (model, &branch), &stop)?;
-    }
-    let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
-    let _ = writeln!(
-        std::io::stderr(),
-        "hbvib: the run ended early, {:?}{reason}",
-        branch.status()
-    );
-    Ok(ExitCode::from(STOPPED))
+    Ok(end.code(&files))
 }
 
-/// Diagrams, curves, maps and tornados; false where one was stopped early.
-fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<bool> {
+/// Writes what a branch has, points before all else.
+fn written(job: &Job, built: &Built, branch: &Branch, files: &mut Files<'_>) {
+    if branch.points() > 0 {
+        output::write(job, branch, files);
+        contact_tables::write(job, branch, &built.names, files);
+    }
+    files.tell(&output::summary(branch));
+}
+
+/// Tells why a branch ended, and compares points with integration in time.
+fn judged(job: &Job, (model, branch): (&Model, &Branch), stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
+    let whole = branch.status() == Status::Ok;
+    if let Some(part) = job.verify.as_ref().filter(|_| whole || !stop.load(Ordering::Relaxed)) {
+        let outcome = verified(part, (model, branch), stop, files, end);
+        end.take(outcome, stop);
+    }
+    if !whole {
+        let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
+        end.early(&format!("the run ended early, {:?}{reason}", branch.status()));
+    }
+}
+
+/// Diagrams, curves, maps and tornados, each of its own.
+fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
     let model = &built.model;
     let cancelled = || stop.load(Ordering::Relaxed);
     let hooks = || Hooks {
         cancelled: Some(&cancelled),
         ..Hooks::default()
     };
-    if let Some(part) = &job.campbell {
-        let (text, files) = campbell::write(job, part, model, &mut hooks())?;
-        told(&text, &files)?;
+    if let Some(part) = job.campbell.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = campbell::write(part, model, &mut hooks(), files);
+        files.tell(&end.take(outcome, stop).unwrap_or_default());
     }
-    if let Some(part) = &job.study {
-        let (text, files) = study::write(job, part, built, &mut hooks())?;
-        told(&text, &files)?;
+    if let Some(part) = job.study.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = study::write(part, built, &mut hooks(), files);
+        files.tell(&end.take(outcome, stop).unwrap_or_default());
     }
-    let mut complete = true;
-    if let Some(part) = &job.map {
+    if let Some(part) = job.map.as_ref().filter(|_| end.goes_on(stop)) {
         let bar = Bar::new();
         let mut progress = |progress: &Progress| {
             bar.show(progress);
@@ -203,47 +190,47 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<bool>
             cancelled: Some(&cancelled),
             ..Hooks::default()
         };
-        let (text, files, stopped) = map::write(job, part, built, &mut hooks)?;
-        complete &= !stopped;
-        told(&text, &files)?;
+        let outcome = map::write(part, built, &mut hooks, files);
+        drop(bar);
+        ended(outcome, "map", stop, files, end);
     }
-    if let Some(part) = job.tornado.as_ref().filter(|_| complete) {
-        let (text, files, stopped) = tornado::write(job, part, built, &mut hooks())?;
-        complete &= !stopped;
-        told(&text, &files)?;
+    if let Some(part) = job.tornado.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = tornado::write(part, built, &mut hooks(), files);
+        ended(outcome, "tornado", stop, files, end);
     }
-    Ok(complete)
 }
 
-/// Prints a summary and the names of files.
-fn told(text: &str, files: &[PathBuf]) -> Outcome<()> {
-    print(text)?;
-    for path in files {
-        print(&format!("wrote {}\n", path.display()))?;
+fn ended(outcome: Outcome<map::Written>, part: &str, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
+    let Some((text, early)) = end.take(outcome, stop) else {
+        return;
+    };
+    files.tell(&text);
+    if early {
+        end.early(&format!("[{part}]: the run ended early"));
     }
-    Ok(())
 }
 
-/// Compares points with integration in time, and returns the code of the run.
-fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), stop: &AtomicBool) -> Outcome<ExitCode> {
+/// Compares points with integration in time.
+fn verified(
+    part: &VerifyPart,
+    (model, branch): (&Model, &Branch),
+    stop: &AtomicBool,
+    files: &mut Files<'_>,
+    end: &mut End,
+) -> Outcome<()> {
     let cancelled = || stop.load(Ordering::Relaxed);
     let mut hooks = Hooks {
         cancelled: Some(&cancelled),
         ..Hooks::default()
     };
-    let all = verification::compare(part, model, branch, &mut hooks)?;
-    print(&verification::summary(&all.compared))?;
-    print(&verification::write(job, part, &all.compared)?)?;
+    let all = verification::compare(part, (model, branch), &mut hooks, files)?;
+    verification::write(part, &all.compared, files);
+    files.tell(&verification::summary(&all.compared));
     if !all.complete {
-        let _ = writeln!(std::io::stderr(), "hbvib: the verification ended early");
-        return Ok(ExitCode::from(STOPPED));
+        end.early("the verification ended early");
     }
-    let same = all.compared.iter().all(|(_, found)| found.same);
-    Ok(if same {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(DIFFERENT)
-    })
+    end.differs |= !all.compared.iter().all(|(_, found)| found.same);
+    Ok(())
 }
 
 fn solve(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<Branch> {

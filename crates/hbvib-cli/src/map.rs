@@ -3,10 +3,9 @@
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::figure::draw;
-use crate::job::Job;
+use crate::files::Files;
 use crate::job_studies::{AxisPart, MapPart};
 use crate::npz::Npz;
-use crate::output::Files;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{BatchOptions, DesignPeak, Hooks, Status, batch};
@@ -16,7 +15,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs::{self, File};
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Most pairs of values.
 const MOST: usize = 10_000_000;
@@ -38,8 +37,8 @@ struct Map {
     peaks: Vec<DesignPeak>,
 }
 
-/// A summary, the files, and whether the computation was stopped early.
-pub type Written = (String, Vec<PathBuf>, bool);
+/// A summary, and whether the computation was stopped early.
+pub type Written = (String, bool);
 
 /// Refuses what cannot be computed.
 ///
@@ -88,7 +87,7 @@ fn axis(section: &str, part: &AxisPart, built: &Built) -> Outcome<Axis> {
 ///
 /// # Errors
 /// A sentence.
-pub fn write(job: &Job, part: &MapPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Written> {
+pub fn write(part: &MapPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut Files<'_>) -> Outcome<Written> {
     let said = |e: &dyn std::fmt::Display| format!("[map]: {e}");
     let (x, y) = axes(part, built)?;
     let values: Vec<f64> = x
@@ -108,13 +107,12 @@ pub fn write(job: &Job, part: &MapPart, built: &Built, hooks: &mut Hooks<'_>) ->
     let found = batch(&built.model, &solver, &options, (&parameters, &values), hooks).map_err(|e| said(&e))?;
     let peaks = found.peaks().to_vec();
     let map = Map { x, y, peaks };
-    let mut files = Files::of(job);
     files.write(part.csv.as_deref(), &|path| {
         fs::write(path, map.table()).map_err(|e| e.to_string())
-    })?;
-    files.write(part.npz.as_deref(), &|path| map.npz(path).map_err(|e| e.to_string()))?;
-    files.write(part.figure.as_deref(), &|path| map.figure(path))?;
-    Ok((map.summary(), files.written, found.status() != Status::Ok))
+    });
+    files.write(part.npz.as_deref(), &|path| map.npz(path).map_err(|e| e.to_string()));
+    files.write(part.figure.as_deref(), &|path| map.figure(path));
+    Ok((map.summary(), found.status() != Status::Ok))
 }
 
 impl Map {

@@ -1,7 +1,7 @@
 //! Positions and degrees of freedom of nodes, which a job names by numbers, by sets or by degrees of freedom.
 
 use crate::build::Outcome;
-use crate::job::{DofName, Node, NodeList};
+use crate::job::{AbsentName, DofName, Node, NodeList};
 use crate::mesh::Mesh;
 use hbvib_io::Dof;
 use std::collections::HashMap;
@@ -52,39 +52,87 @@ pub fn node_list(name: &str, list: &NodeList, mesh: Option<&Mesh>) -> Outcome<Ve
 
 /// The nodes of the model.
 pub struct Nodes {
-    /// Degrees of freedom of each node along x, y and z; -1 for those that the files do not have.
-    dofs: HashMap<i64, [i64; 3]>,
+    /// Rows of each node along x, y and z; -1 for those that the files do not have.
+    rows: HashMap<i64, [i64; 3]>,
+    /// Node of each row.
+    node_of: Vec<i64>,
+    /// Further rows of a node and direction that has several, as of beams that are expanded to solids.
+    further: HashMap<Dof, Vec<i64>>,
+    /// Nodes and directions without rows: fixed, or refused.
+    absent: AbsentName,
     /// The mesh of the job.
     pub mesh: Option<Mesh>,
 }
 
 impl Nodes {
     /// The table of nodes from node and direction, 1 to 3, of each degree of freedom.
-    pub fn new(dofs: &[Dof], mesh: Option<Mesh>) -> Self {
-        let mut table: HashMap<i64, [i64; 3]> = HashMap::new();
+    pub fn new(dofs: &[Dof], mesh: Option<Mesh>, absent: AbsentName) -> Self {
+        let mut rows: HashMap<i64, [i64; 3]> = HashMap::new();
+        let mut further: HashMap<Dof, Vec<i64>> = HashMap::new();
         for (i, &(node, direction)) in dofs.iter().enumerate() {
-            if let place @ 1..=3 = direction {
-                table.entry(node).or_insert([-1; 3])[place as usize - 1] = i as i64;
+            if let 1..=3 = direction {
+                let place = &mut rows.entry(node).or_insert([-1; 3])[direction as usize - 1];
+                if *place == -1 {
+                    *place = i as i64;
+                } else {
+                    further
+                        .entry((node, direction))
+                        .or_insert_with(|| vec![*place])
+                        .push(i as i64);
+                }
             }
         }
-        Self { dofs: table, mesh }
-    }
-
-    /// Degrees of freedom of a node along x, y and z; `None` for a node of the mesh that the matrices do not have, because
-    /// all of it is fixed.
-    ///
-    /// # Errors
-    /// A sentence: a node that neither the matrices nor the mesh have.
-    pub fn of_number(&self, number: i64) -> Outcome<Option<[i64; 3]>> {
-        match self.dofs.get(&number) {
-            Some(dofs) => Ok(Some(*dofs)),
-            None if self.dofs.is_empty() => Err(format!("names node {number}, but the matrices name no nodes")),
-            None if self.mesh.as_ref().is_some_and(|mesh| mesh.position(number).is_ok()) => Ok(None),
-            None => Err(format!("node {number} is not in the matrices")),
+        Self {
+            rows,
+            node_of: dofs.iter().map(|(node, _)| *node).collect(),
+            further,
+            absent,
+            mesh,
         }
     }
 
-    /// Degrees of freedom of a node in the directions of a law. A direction that the files do not have does not move.
+    /// Degrees of freedom of a node along x, y and z, -1 for a direction that is fixed; `None` for a node that is fixed.
+    ///
+    /// # Errors
+    /// A sentence: a node that neither the matrices nor the mesh have; one without rows, or with several of one direction.
+    pub fn of_number(&self, number: i64) -> Outcome<Option<[i64; 3]>> {
+        let known = || self.mesh.as_ref().is_some_and(|mesh| mesh.position(number).is_ok());
+        let dofs = match self.rows.get(&number) {
+            Some(dofs) => *dofs,
+            None if self.rows.is_empty() => return Err(format!("names node {number}, but the matrices name no nodes")),
+            None if !known() => return Err(format!("node {number} is not in the matrices")),
+            None if self.absent == AbsentName::Fixed => return Ok(None),
+            None => return Err(format!("node {number} has no rows in the matrices: {ABSENT}")),
+        };
+        for direction in 1..=3 {
+            self.single((number, direction))?;
+            if dofs[direction as usize - 1] == -1 && self.absent == AbsentName::Refused {
+                return Err(format!("node {number} has no row along {}: {ABSENT}", axis(direction)));
+            }
+        }
+        Ok(Some(dofs))
+    }
+
+    /// Position of the node of a degree of freedom, where the mesh has it.
+    pub fn position_of(&self, dof: i64) -> Option<[f64; 3]> {
+        let node = self.node_of.get(usize::try_from(dof).ok()?)?;
+        self.mesh.as_ref()?.position(*node).ok()
+    }
+
+    /// Refuses a node and direction with several rows.
+    fn single(&self, dof: Dof) -> Outcome<()> {
+        match self.further.get(&dof) {
+            None => Ok(()),
+            Some(rows) => Err(format!(
+                "node {} has {} rows along {}: {rows:?}; name the degree of freedom by its row",
+                dof.0,
+                rows.len(),
+                axis(dof.1)
+            )),
+        }
+    }
+
+    /// Degrees of freedom of a node in the directions of a law; -1 for one that is fixed.
     ///
     /// # Errors
     /// A sentence: a wrong number of them, a node that the files do not name.
@@ -102,7 +150,7 @@ impl Nodes {
     /// The number of a degree of freedom.
     ///
     /// # Errors
-    /// A sentence: a name that is not understood, a node or direction that the files do not have.
+    /// A sentence: a name that is not understood, a node or direction that the files do not have, or have several times.
     pub fn dof(&self, name: &DofName) -> Outcome<usize> {
         let name = match name {
             DofName::Number(number) => return Ok(*number),
@@ -110,7 +158,7 @@ impl Nodes {
         };
         let split = name.rsplit_once('.');
         let (node, direction) = split
-            .and_then(|(node, direction)| Some((node, direction.parse::<usize>().ok()?)))
+            .and_then(|(node, direction)| Some((node, direction.parse::<i64>().ok()?)))
             .filter(|(_, direction)| (1..=3).contains(direction))
             .ok_or_else(|| format!("dof = \"{name}\", needs a node and a direction from 1 to 3 as in \"12.3\""))?;
         let number = match node.parse() {
@@ -120,8 +168,33 @@ impl Nodes {
                 set => return Err(format!("dof = \"{name}\": the set has {} nodes, needs one", set.len())),
             },
         };
-        let dof = self.of_number(number)?.map_or(-1, |dofs| dofs[direction - 1]);
-        usize::try_from(dof).map_err(|_| format!("dof = \"{name}\" is fixed: the matrices do not have it"))
+        let said = |e: String| format!("dof = \"{name}\": {e}");
+        self.single((number, direction)).map_err(said)?;
+        let dof = match self.rows.get(&number) {
+            Some(dofs) => dofs[direction as usize - 1],
+            None => self
+                .of_number(number)
+                .map_err(said)?
+                .map_or(-1, |dofs| dofs[direction as usize - 1]),
+        };
+        usize::try_from(dof).map_err(|_| {
+            said(format!(
+                "node {number} has no row along {} in the matrices: it is fixed, or follows others by a constraint",
+                axis(direction)
+            ))
+        })
+    }
+}
+
+/// Remedy for a node or direction without rows.
+const ABSENT: &str = "it may be fixed, or follow others by a constraint (MPC, TIE, rigid body); absent = \"fixed\" in [model] \
+                      takes all such nodes and directions as fixed";
+
+fn axis(direction: i64) -> &'static str {
+    match direction {
+        1 => "x",
+        2 => "y",
+        _ => "z",
     }
 }
 
@@ -136,36 +209,49 @@ fn set_of<'a>(name: &str, mesh: Option<&'a Mesh>) -> Outcome<&'a [i64]> {
 #[cfg(test)]
 mod tests {
     use super::Nodes;
-    use crate::job::{DofName, Node};
+    use crate::job::{AbsentName, DofName, Node};
 
     #[test]
     fn degrees_of_freedom_follow_the_directions_of_the_file() {
-        let table = Nodes::new(&[(4, 3), (4, 1), (9, 2)], None);
+        let dofs = [(4, 3), (4, 1), (9, 2)];
+        let table = Nodes::new(&dofs, None, AbsentName::Fixed);
         assert_eq!(table.dofs_of(&Node::Number(4), &[0, 1, 2]), Ok(vec![1, -1, 0]));
         assert_eq!(table.dofs_of(&Node::Number(9), &[0, 1, 2]), Ok(vec![-1, 2, -1]));
         assert!(table.dofs_of(&Node::Number(5), &[0, 1, 2]).is_err());
         assert!(table.dofs_of(&Node::Number(4), &[0]).is_err());
         assert_eq!(table.dofs_of(&Node::Dofs(vec![8]), &[0]), Ok(vec![8]));
         assert!(table.dofs_of(&Node::Dofs(vec![8, 1]), &[0]).is_err());
+        let strict = Nodes::new(&dofs, None, AbsentName::Refused);
+        let error = strict.dofs_of(&Node::Number(4), &[0, 1, 2]).unwrap_err();
+        assert!(
+            error.contains("no row along y") && error.contains("absent = \"fixed\""),
+            "{error}"
+        );
     }
 
     #[test]
     fn a_node_and_a_direction_name_a_degree_of_freedom() {
-        let table = Nodes::new(&[(4, 3), (4, 1), (9, 2)], None);
+        let table = Nodes::new(
+            &[(4, 3), (4, 1), (9, 2), (8, 2), (8, 1), (8, 2)],
+            None,
+            AbsentName::Refused,
+        );
         let dof = |name: &str| table.dof(&DofName::Node(name.into()));
         assert_eq!(
-            (dof("4.1"), dof("9.2"), table.dof(&DofName::Number(7))),
-            (Ok(1), Ok(2), Ok(7))
+            (dof("4.1"), dof("9.2"), dof("8.1"), table.dof(&DofName::Number(7))),
+            (Ok(1), Ok(2), Ok(4), Ok(7))
         );
         for (name, words) in [
-            ("4.2", "is fixed"),
+            ("4.2", "no row along y"),
             ("5.1", "node 5"),
             ("4.0", "needs a node and a direction"),
             ("4", "needs a node and a direction"),
             ("TIP.1", "needs a mesh"),
+            ("8.2", "2 rows along y: [3, 5]"),
         ] {
             let error = dof(name).unwrap_err();
             assert!(error.contains(words), "{error}");
         }
+        assert!(table.of_number(8).unwrap_err().contains("[3, 5]"));
     }
 }

@@ -3,6 +3,7 @@
 use crate::build::Outcome;
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
+use crate::files::Files;
 use crate::job::Job;
 use crate::npz::Npz;
 use hbvib::{BifurcationKind, Branch, Special};
@@ -13,63 +14,25 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Files of a job that were written.
-pub struct Files<'a> {
-    job: &'a Job,
-    /// Their paths.
-    pub written: Vec<PathBuf>,
-}
-
-impl<'a> Files<'a> {
-    /// None yet.
-    pub fn of(job: &'a Job) -> Self {
-        Self {
-            job,
-            written: Vec::new(),
-        }
-    }
-
-    /// Writes a file that the job names, relative to its folder.
-    ///
-    /// # Errors
-    /// A sentence that names the file.
-    pub fn write(&mut self, path: Option<&Path>, write: &dyn Fn(&Path) -> Outcome<()>) -> Outcome<()> {
-        let Some(path) = path else { return Ok(()) };
-        let path = place(self.job, path)?;
-        write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
-        self.written.push(path);
-        Ok(())
+/// Writes the files of a branch that a job names.
+pub fn write(job: &Job, branch: &Branch, files: &mut Files<'_>) {
+    let table = files.write(job.output.csv.as_deref(), &|path| csv(path, branch));
+    let arrays = files.write(job.output.npz.as_deref(), &|path| npz(path, branch));
+    files.write(job.output.figure.as_deref(), &|path| figure(path, branch));
+    if !(table || arrays) && (job.output.csv.is_some() || job.output.npz.is_some()) {
+        // As on a disk that is full: the points are kept in what the caller reads.
+        files.tell(&rows(branch));
     }
 }
 
-/// The path of a file that the job names, relative to its folder. Folders that are not there are made.
-///
-/// # Errors
-/// A sentence that names the folder.
-pub fn place(job: &Job, path: &Path) -> Outcome<PathBuf> {
-    let path = job.path(path);
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
-    }
-    Ok(path)
-}
-
-/// Writes all files of a job.
-///
-/// # Errors
-/// A sentence that names the file.
-pub fn write(job: &Job, branch: &Branch) -> Outcome<Vec<PathBuf>> {
-    let mut files = Files::of(job);
-    files.write(job.output.csv.as_deref(), &|path| csv(path, branch))?;
-    files.write(job.output.npz.as_deref(), &|path| npz(path, branch))?;
-    files.write(job.output.figure.as_deref(), &|path| figure(path, branch))?;
-    Ok(files.written)
+fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
+    fs::write(path, rows(branch)).map_err(|e| e.to_string())
 }
 
 /// Columns of the curve: a mode has its amplitude and damping ratio, too.
-fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
+fn rows(branch: &Branch) -> String {
     let mut text = String::from("frequency_hz,amplitude,slip_fraction,harmonics");
     if branch.mode().is_some() {
         text += ",log10_amplitude,damping_ratio";
@@ -99,7 +62,7 @@ fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
         }
         text += "\n";
     }
-    fs::write(path, text).map_err(|e| e.to_string())
+    text
 }
 
 fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
@@ -141,11 +104,16 @@ fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
         real("damping_ratio", &[mode.len()], &of(|m| m.damping_ratio))?;
     }
     let (rows, ndof) = (branch.harmonics() + 1, branch.ndof());
-    let mut all = vec![Complex64::ZERO; points * rows * ndof];
-    for (point, x) in all.chunks_exact_mut(rows * ndof).enumerate() {
-        branch.harmonics_at(point, x).map_err(|e| e.to_string())?;
-    }
-    npz.complex("harmonics", &[points, rows, ndof], &all).map_err(said)?;
+    let mut x = vec![Complex64::ZERO; rows * ndof];
+    npz.complex("harmonics", &[points, rows, ndof], &mut |put| {
+        (0..points).try_for_each(|point| {
+            branch
+                .harmonics_at(point, &mut x)
+                .map_err(|e| std::io::Error::other(e.to_string()))?;
+            put(&x)
+        })
+    })
+    .map_err(said)?;
     npz.finish().map_err(said)
 }
 

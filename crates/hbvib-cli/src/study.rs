@@ -3,9 +3,8 @@
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
-use crate::job::Job;
+use crate::files::Files;
 use crate::job_studies::{FollowName, StudyPart};
-use crate::output::place;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{Branch, Follow, Hooks, ParameterRange, Status, parameter_response};
@@ -14,7 +13,7 @@ use plotters::style::{BLUE, Color, RED};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 impl StudyPart {
     fn follow(&self) -> Follow {
@@ -57,11 +56,11 @@ fn varied(part: &StudyPart, built: &Built) -> Outcome<Varied> {
     Varied::new(&keys, built).map_err(|e| format!("[study]: {e}"))
 }
 
-/// Computes and writes the study; returns a summary and the files.
+/// Computes and writes the study; returns a summary.
 ///
 /// # Errors
 /// A sentence.
-pub fn write(job: &Job, part: &StudyPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<(String, Vec<PathBuf>)> {
+pub fn write(part: &StudyPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut Files<'_>) -> Outcome<String> {
     let said = |e: &dyn std::fmt::Display| format!("[study]: {e}");
     let varied = varied(part, built)?;
     let solver = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built).map_err(|e| said(&e))?;
@@ -73,18 +72,13 @@ pub fn write(job: &Job, part: &StudyPart, built: &Built, hooks: &mut Hooks<'_>) 
     };
     let found = parameter_response(&built.model, &solver, varied.parameter(), &range, hooks).map_err(|e| said(&e))?;
     let rows = rows(&found);
-    let mut written = Vec::new();
-    if let Some(path) = &part.csv {
-        let path = place(job, path)?;
-        fs::write(&path, table(part, &rows)).map_err(|e| format!("{}: {e}", path.display()))?;
-        written.push(path);
-    }
-    if let Some(path) = &part.figure {
-        let path = place(job, path)?;
-        figure(&path, (part, varied.label()), &rows, &found)?;
-        written.push(path);
-    }
-    Ok((summary(part, &found, rows.len()), written))
+    files.write(part.csv.as_deref(), &|path| {
+        fs::write(path, table(part, &rows)).map_err(|e| e.to_string())
+    });
+    files.write(part.figure.as_deref(), &|path| {
+        figure(path, (part, varied.label()), &rows, &found)
+    });
+    Ok(summary(part, &found, rows.len()))
 }
 
 /// A point of the curve.

@@ -3,10 +3,9 @@
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::figure::{bounds, draw};
-use crate::job::Job;
+use crate::files::Files;
 use crate::job_studies::{SpreadPart, TornadoPart};
 use crate::map::Written;
-use crate::output::Files;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{Branch, ForcedOptions, Hooks, Quantity, Reason, Special, Status, forced_response, sensitivity};
@@ -84,7 +83,7 @@ fn spread(part: &SpreadPart, built: &Built) -> Outcome<Spread> {
 ///
 /// # Errors
 /// A sentence.
-pub fn write(job: &Job, part: &TornadoPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Written> {
+pub fn write(part: &TornadoPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut Files<'_>) -> Outcome<Written> {
     let said = |e: &dyn std::fmt::Display| format!("[tornado]: {e}");
     let spreads = spreads(part, built)?;
     let solver = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built).map_err(|e| said(&e))?;
@@ -96,19 +95,18 @@ pub fn write(job: &Job, part: &TornadoPart, built: &Built, hooks: &mut Hooks<'_>
     let branch = forced_response(&built.model, &solver, &range, hooks).map_err(|e| said(&e))?;
     if branch.status() != Status::Ok {
         let text = format!("[tornado]: the response ended early: {}\n", branch.status().sentence());
-        return Ok((text, Vec::new(), true));
+        return Ok((text, true));
     }
     let highest = branch.peaks().iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
     let Some(peak) = highest else {
         return Err("[tornado]: the response has no peak within the range of frequency".into());
     };
     let bars = bars(built, &spreads, &branch, peak).map_err(|e| said(&e))?;
-    let mut files = Files::of(job);
     files.write(part.csv.as_deref(), &|path| {
         fs::write(path, table(&bars)).map_err(|e| e.to_string())
-    })?;
-    files.write(part.figure.as_deref(), &|path| figure(path, &bars))?;
-    Ok((summary(&bars, peak), files.written, false))
+    });
+    files.write(part.figure.as_deref(), &|path| figure(path, &bars));
+    Ok((summary(&bars, peak), false))
 }
 
 /// The changes, the largest of the amplitude first, unknown ones last.

@@ -2,8 +2,8 @@
 
 use crate::build::Outcome;
 use crate::counted::counted;
-use crate::job::{Job, MethodName, VerifyPart};
-use crate::output::place;
+use crate::files::Files;
+use crate::job::{MethodName, VerifyPart};
 use crate::points::chosen;
 use hbvib::{Branch, Hooks, Model, Special, Status, SteadyMethod, Verification, VerifyOptions, verify};
 use std::f64::consts::TAU;
@@ -20,11 +20,16 @@ pub struct Comparisons {
     pub complete: bool,
 }
 
-/// Compares the points that the job names, until the caller stops.
+/// Compares the points that the job names, until the caller stops. A point that cannot be compared is told, and left out.
 ///
 /// # Errors
-/// A sentence that names the frequency; none to compare.
-pub fn compare(part: &VerifyPart, model: &Model, branch: &Branch, hooks: &mut Hooks<'_>) -> Outcome<Comparisons> {
+/// None to compare, or none that can be.
+pub fn compare(
+    part: &VerifyPart,
+    (model, branch): (&Model, &Branch),
+    hooks: &mut Hooks<'_>,
+    files: &mut Files<'_>,
+) -> Outcome<Comparisons> {
     let defaults = VerifyOptions::default();
     let options = VerifyOptions {
         method: match part.method {
@@ -39,16 +44,27 @@ pub fn compare(part: &VerifyPart, model: &Model, branch: &Branch, hooks: &mut Ho
     if points.is_empty() {
         return Err("[verify]: the branch has none of the named points".into());
     }
-    let mut compared = Vec::new();
+    let (mut compared, mut failed) = (Vec::new(), Vec::new());
     let mut complete = true;
     for point in points {
-        let found = verify(model, branch, point.point, &options, hooks)
-            .map_err(|e| format!("[verify], {:.6} Hz: {e}", point.omega / TAU))?;
+        let found = match verify(model, branch, point.point, &options, hooks) {
+            Ok(found) => found,
+            Err(e) => {
+                failed.push(format!("[verify], {:.6} Hz: {e}", point.omega / TAU));
+                continue;
+            }
+        };
         if found.status == Status::StoppedByCaller {
             complete = false;
             break;
         }
         compared.push((point, found));
+    }
+    if complete && compared.is_empty() {
+        return Err(failed.swap_remove(0));
+    }
+    for sentence in failed {
+        files.fail(sentence);
     }
     Ok(Comparisons { compared, complete })
 }
@@ -74,14 +90,7 @@ pub fn summary(all: &[Compared]) -> String {
 }
 
 /// Writes the table of the comparisons, where the job names one.
-///
-/// # Errors
-/// A sentence that names the file.
-pub fn write(job: &Job, part: &VerifyPart, all: &[Compared]) -> Outcome<String> {
-    let Some(path) = &part.csv else {
-        return Ok(String::new());
-    };
-    let path = place(job, path)?;
+pub fn write(part: &VerifyPart, all: &[Compared], files: &mut Files<'_>) {
     let mut text = String::from(
         "frequency_hz,amplitude,same,response_error,motion_error,above,distance,peak,peak_error,residual,periods,events,\
          marched\n",
@@ -105,6 +114,7 @@ pub fn write(job: &Job, part: &VerifyPart, all: &[Compared]) -> Outcome<String> 
             u8::from(found.marched)
         );
     }
-    fs::write(&path, text).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
-    Ok(format!("wrote {}\n", path.display()))
+    files.write(part.csv.as_deref(), &|path| {
+        fs::write(path, &text).map_err(|e| e.to_string())
+    });
 }

@@ -126,8 +126,7 @@ fn two_bricks(verb: &str, name: &str, faces: &str, rest: &str) -> Output {
 fn nodes_of_a_face_are_paired_by_position() {
     let by_dofs = "model.sectors = 24\nmodel.faces.left = [[0, 1, 2], [6, 7, 8], [12, 13, 14], [18, 19, 20]]\n\
                    model.faces.right = [[3, 4, 5], [9, 10, 11], [15, 16, 17], [21, 22, 23]]";
-    let by_nodes =
-        "model.sectors = 24\nmodel.faces.left = [3, 1, 5, 9, 11, 7]\nmodel.faces.right = [12, 4, 8, 2, 10, 6]";
+    let by_nodes = "model.sectors = 24\nmodel.absent = 'fixed'\nmodel.faces.left = [3, 1, 5, 9, 11, 7]\nmodel.faces.right = [12, 4, 8, 2, 10, 6]";
     let expected = two_bricks("modes", "dofs", by_dofs, "dof = 8");
     let found = two_bricks("modes", "nodes", by_nodes, "dof = '5.3'");
     assert!(
@@ -170,7 +169,18 @@ fn nodes_of_a_face_are_paired_by_position() {
             "0",
             "left[5] names degrees of freedom",
         ),
-        ("fixed", by_nodes.into(), "'1.3'", "dof = \"1.3\" is fixed"),
+        (
+            "fixed",
+            by_nodes.into(),
+            "'1.3'",
+            "dof = \"1.3\": node 1 has no row along z",
+        ),
+        (
+            "absent",
+            by_nodes.replace("'fixed'", "'refused'"),
+            "0",
+            "left[1]: node 1 has no rows in the matrices: it may be fixed, or follow others by a constraint (MPC, TIE",
+        ),
         ("unknown", by_nodes.into(), "'99.3'", "node 99 is not in the matrices"),
         ("several", by_nodes.into(), "'ALL.3'", "the set has 12 nodes"),
     ] {

@@ -5,9 +5,11 @@ mod common;
 use std::f64::consts::TAU;
 use std::fs;
 
-/// Stodola's rotor from files, in Hz as if its unit of time were a second.
-fn rotor(name: &str, campbell: &str) -> String {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+/// Stodola's rotor from files of a test, in Hz as if its unit of time were a second.
+fn rotor(test: &str, campbell: &str) -> String {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("rotor")
+        .join(test);
     fs::create_dir_all(&folder).unwrap();
     let write = |name: &str, symmetry: &str, entries: &str| {
         let count = entries.lines().count();
@@ -32,7 +34,7 @@ fn rotor(name: &str, campbell: &str) -> String {
 fn a_rotor_has_its_frequencies_and_one_forward_critical_speed() {
     let to = 120.0 / TAU;
     let job = rotor(
-        "rotor",
+        "frequencies",
         &format!("from_rpm = 0\nto_rpm = {to:?}\npoints = 21\ncount = 4\ncsv = 'a.csv'\nfigure = 'a.svg'\n"),
     );
     let (output, folder) = common::hbvib("run", ("campbell", "rotor"), &job);
@@ -72,7 +74,7 @@ fn a_wheel_has_an_interference_diagram_and_a_plain_structure_none() {
             "engine_orders[0] = 0",
         ),
     ] {
-        let (output, _) = common::hbvib("run", ("campbell", "wrong"), &rotor("wrong_rotor", wrong));
+        let (output, _) = common::hbvib("run", ("campbell", "wrong"), &rotor("wrong", wrong));
         assert!(!output.status.success());
         let text = String::from_utf8(output.stderr).unwrap();
         assert!(text.contains(words), "{text}");

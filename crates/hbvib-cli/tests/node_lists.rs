@@ -55,7 +55,7 @@ fn numbers_of_a_finite_element_mesh_name_the_nodes() {
     // Nodes 3 and 5, and 4 and 6, lie on the two faces of the sector.
     let job = |b: &str, largest: f64| {
         format!(
-            "[model]\nmatrices = '{folder}/sector.sti'\n[[contact]]\nkind = 'friction_3d'\nnormal = [0, 1, 0]\n\
+            "[model]\nmatrices = '{folder}/sector.sti'\n[[contact]]\nkind = 'friction_3d'\nnormal = [0, -1, 0]\n\
              kt = 1e3\nkn = 1e3\nmu = 0.3\npreload = 1.0\n[contact.nodes]\na = [3, 5]\nb = [{b}]\n\
              coordinates = '{folder}/sector.inp'\nlargest_distance = {largest:?}\nareas = [2e-6]\n[forced]\nfrom_hz = 1.0\nto_hz = 2.0\n"
         )
@@ -100,7 +100,7 @@ fn separate_files_name_the_nodes_and_must_agree() {
     let job = |mass: &str| {
         format!(
             "model.stiffness = '{stiffness}'\nmodel.mass = '{mass}'\n\
-             [[contact]]\nkind = 'friction_3d'\nnormal = [0, 1, 0]\nkt = 1.0\nkn = 1.0\nmu = 0.3\npreload = 1.0\n\
+             [[contact]]\nkind = 'friction_3d'\nnormal = [0, -1, 0]\nkt = 1.0\nkn = 1.0\nmu = 0.3\npreload = 1.0\n\
              [contact.nodes]\na = [10]\nb = [11]\na_coordinates = [[0, 0, 0]]\nb_coordinates = [[0, 1e-3, 0]]\n\
              largest_distance = 1e-2\n[forced]\nfrom_hz = 1.0\nto_hz = 2.0\n"
         )

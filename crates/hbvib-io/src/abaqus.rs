@@ -1,24 +1,80 @@
 //! Matrices of Abaqus, `*MATRIX GENERATE` with `*MATRIX OUTPUT`: lines of row and column, each a node and a direction
-//! (FORMAT=MATRIX INPUT) or an equation number (FORMAT=COORDINATE), and a value.
+//! (FORMAT=MATRIX INPUT) or an equation number (FORMAT=COORDINATE), and a value. Internal nodes of elements have negative
+//! labels, in either form.
 //!
 //! A symmetric matrix comes as one triangle or as a whole; which of both is seen when all entries are known.
 
 use crate::Result;
 use crate::lines::Lines;
 use crate::matrix::{Dof, Matrix, Symmetry};
-use crate::numbers::{index, real, whole};
+use crate::numbers::{real, whole};
 use std::collections::HashMap;
 
-/// The matrix of a file, and its degrees of freedom in the order in which rows and columns name them first.
+/// Numbers of degrees of freedom in the order in which rows and columns name them first.
+#[derive(Default)]
+struct Numbered {
+    dofs: Vec<Dof>,
+    numbers: HashMap<Dof, u32>,
+}
+
+impl Numbered {
+    fn number(&mut self, lines: &Lines, dof: Dof) -> Result<u32> {
+        if let Some(number) = self.numbers.get(&dof) {
+            return Ok(*number);
+        }
+        if self.dofs.try_reserve(1).is_err() || self.numbers.try_reserve(1).is_err() {
+            return lines.fail("no memory for the degrees of freedom");
+        }
+        let number = self.dofs.len() as u32;
+        self.numbers.insert(dof, number);
+        self.dofs.push(dof);
+        Ok(number)
+    }
+}
+
+/// A first line of three whole numbers, which may be the sizes of a file without its banner.
+struct FirstLine {
+    line: usize,
+    numbers: [i64; 3],
+}
+
+impl FirstLine {
+    fn of(lines: &Lines, words: &[&str]) -> Option<Self> {
+        let [a, b, c] = words else { return None };
+        let numbers = [a.parse().ok()?, b.parse().ok()?, c.parse().ok()?];
+        Some(Self {
+            line: lines.number(),
+            numbers,
+        })
+    }
+
+    /// Sizes are no less than all rows and columns, and their last number is that of entries, or unlike values, which have
+    /// points.
+    fn is_sizes(&self, matrix: &Matrix, pointed: bool) -> bool {
+        let most = |places: &[u32]| {
+            places
+                .iter()
+                .skip(1)
+                .map(|bits| bits.cast_signed())
+                .max()
+                .unwrap_or(i32::MAX)
+        };
+        let [rows, columns, last] = self.numbers;
+        rows >= i64::from(most(&matrix.row))
+            && columns >= i64::from(most(&matrix.column))
+            && (pointed || last == matrix.entries() as i64 - 1)
+    }
+}
+
+/// The matrix of a file, and its degrees of freedom, sorted by node and direction. The direction is 0 for labels without one.
 ///
 /// # Errors
 /// The line and reason.
 pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
     let mut matrix = Matrix::new(lines, (0, 0), Symmetry::General, (0, false))?;
-    let mut dofs: Vec<Dof> = Vec::new();
-    let mut numbers: HashMap<Dof, u32> = HashMap::new();
-    let (mut fields, mut lower, mut upper) = (0, false, false);
-    let most = (u32::MAX / 2) as usize;
+    let mut numbered = Numbered::default();
+    let (mut fields, mut pointed) = (0, false);
+    let mut sizes: Option<FirstLine> = None;
     while lines.advance()? {
         let line = lines.text().trim();
         if line.is_empty() || line.starts_with("**") {
@@ -30,6 +86,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
         let words: Vec<&str> = line.split([',', ' ', '\t']).filter(|word| !word.is_empty()).collect();
         if fields == 0 {
             fields = words.len();
+            sizes = FirstLine::of(lines, &words);
         }
         if words.len() != fields || (fields != 3 && fields != 5) {
             return lines.fail(format_args!(
@@ -38,53 +95,44 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
             ));
         }
         let (row, column) = if fields == 3 {
-            let [row, column] =
-                [("row", words[0]), ("column", words[1])].map(|(what, word)| index(lines, Some(word), most, what));
-            let (row, column) = (row?, column?);
-            matrix.rows = matrix.rows.max(row.max(column) as usize + 1);
-            (row, column)
+            (label(lines, words[0], "row")?, label(lines, words[1], "column")?)
         } else {
-            let mut number = |node: &str, direction: &str| -> Result<u32> {
-                let dof = (
-                    whole(lines, Some(node), "node")?,
-                    whole(lines, Some(direction), "direction")?,
-                );
-                if dof.1 < 1 {
-                    return lines.fail(format_args!("direction = {}, needs at least 1", dof.1));
-                }
-                if let Some(number) = numbers.get(&dof) {
-                    return Ok(*number);
-                }
-                if dofs.try_reserve(1).is_err() || numbers.try_reserve(1).is_err() {
-                    return lines.fail("no memory for the degrees of freedom");
-                }
-                let number = dofs.len() as u32;
-                numbers.insert(dof, number);
-                dofs.push(dof);
-                Ok(number)
+            let mut number = |node: &str, direction: &str| {
+                let dof = node_and_direction(lines, node, direction)?;
+                numbered.number(lines, dof)
             };
             (number(words[0], words[1])?, number(words[2], words[3])?)
         };
-        lower |= row > column;
-        upper |= row < column;
+        pointed |= words[fields - 1].contains(['.', 'e', 'E', 'd', 'D']);
         let value = real(lines, Some(words[fields - 1]), "value")?;
         matrix.push(lines, row, column, (value, 0.0))?;
     }
     if fields == 0 {
         lines.expect("an entry")?;
     }
+    if let Some(first) = sizes.filter(|first| fields == 3 && first.is_sizes(&matrix, pointed)) {
+        return lines.fail_at(
+            first.line,
+            "three whole numbers, as the sizes of a Matrix Market file: the first line needs its banner, %%MatrixMarket \
+             matrix coordinate real symmetric (or general)",
+        );
+    }
+    let mut dofs = numbered.dofs;
     if fields == 5 {
+        in_order(&mut matrix, &mut dofs);
         matrix.rows = dofs.len();
+    } else {
+        dofs = from_labels(lines, &mut matrix)?;
     }
     // Checks the order against the size of the file.
     let empty = Matrix::new(lines, (matrix.rows, matrix.rows), Symmetry::General, (0, false))?;
-    if fields == 5 {
-        in_order(&mut matrix, &mut dofs);
-    }
-    let symmetric = if fields == 5 {
-        !is_whole(&matrix)
+    let below = |(row, column): (&u32, &u32)| row > column;
+    let above = |(row, column): (&u32, &u32)| row < column;
+    let places = || matrix.row.iter().zip(&matrix.column);
+    let symmetric = if dofs.is_empty() {
+        !(places().any(below) && places().any(above))
     } else {
-        !(lower && upper)
+        !is_whole(&matrix)
     };
     Ok((
         Matrix {
@@ -99,6 +147,53 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
         .finished(),
         dofs,
     ))
+}
+
+/// An equation number, or the label of an internal degree of freedom below zero, as the bits of a signed number.
+fn label(lines: &Lines, word: &str, what: &str) -> Result<u32> {
+    match whole(lines, Some(word), what)? {
+        0 => lines.fail(format_args!("{what} = 0, needs a number from 1, or a label below 0")),
+        label => match i32::try_from(label) {
+            Ok(label) => Ok(label.cast_unsigned()),
+            Err(_) => lines.fail(format_args!("{what} = {label}, needs at most {}", i32::MAX)),
+        },
+    }
+}
+
+/// Turns labels into rows from 0. Equation numbers are rows; where a label lies below zero, labels are names with gaps, and are
+/// returned in order.
+fn from_labels(lines: &Lines, matrix: &mut Matrix) -> Result<Vec<Dof>> {
+    let places = || matrix.row.iter().chain(&matrix.column).map(|bits| bits.cast_signed());
+    if places().all(|label| label > 0) {
+        matrix.rows = places().max().unwrap_or(0) as usize;
+        for at in matrix.row.iter_mut().chain(&mut matrix.column) {
+            *at -= 1;
+        }
+        return Ok(Vec::new());
+    }
+    let mut labels: Vec<i32> = Vec::new();
+    if labels.try_reserve_exact(2 * matrix.entries()).is_err() {
+        return lines.fail("no memory for the labels");
+    }
+    labels.extend(places());
+    labels.sort_unstable();
+    labels.dedup();
+    matrix.rows = labels.len();
+    for at in matrix.row.iter_mut().chain(&mut matrix.column) {
+        *at = labels.partition_point(|label| *label < at.cast_signed()) as u32;
+    }
+    Ok(labels.into_iter().map(|label| (i64::from(label), 0)).collect())
+}
+
+fn node_and_direction(lines: &Lines, node: &str, direction: &str) -> Result<Dof> {
+    let dof = (
+        whole(lines, Some(node), "node")?,
+        whole(lines, Some(direction), "direction")?,
+    );
+    if dof.1 < 1 {
+        return lines.fail(format_args!("direction = {}, needs at least 1", dof.1));
+    }
+    Ok(dof)
 }
 
 /// Sorts the degrees of freedom by node and direction.

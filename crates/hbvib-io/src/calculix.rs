@@ -35,8 +35,8 @@ pub(crate) fn matrices(path: &Path) -> Result<Matrices> {
     Ok(Matrices {
         stiffness: read(&stiffness)?,
         mass: read(&mass)?,
-        damping: None,
         dofs,
+        ..Matrices::default()
     })
 }
 

@@ -10,8 +10,24 @@ thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
 }
 
-/// The matrices of a file.
-pub struct HbvibIoFile(Matrices);
+/// The matrices of a file, and the report on them.
+pub struct HbvibIoFile {
+    found: Matrices,
+    facts: Vec<CString>,
+    warnings: Vec<CString>,
+}
+
+impl HbvibIoFile {
+    fn new(found: Matrices) -> Self {
+        let report = crate::report(&found);
+        let lines = |all: Vec<String>| all.into_iter().filter_map(|line| CString::new(line).ok()).collect();
+        Self {
+            facts: lines(report.facts),
+            warnings: lines(report.warnings),
+            found,
+        }
+    }
+}
 
 /// A matrix as the caller sees it; the arrays belong to the file.
 #[repr(C)]
@@ -59,12 +75,63 @@ pub unsafe extern "C" fn hbvib_io_read(path: *const c_char, out: *mut *mut Hbvib
         let bytes = unsafe { CStr::from_ptr(path) }.to_bytes();
         match crate::read(&path_of(bytes)) {
             Ok(matrices) => {
-                unsafe { out.write(Box::into_raw(Box::new(HbvibIoFile(matrices)))) };
+                unsafe { out.write(Box::into_raw(Box::new(HbvibIoFile::new(matrices)))) };
                 OK
             }
             Err(error) => report(&error.to_string()),
         }
     })
+}
+
+/// Reads the matrices of one model from several files; a path may be NULL.
+///
+/// # Safety
+/// Paths are NULL or end with a zero byte; `out` is NULL or writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_read_files(
+    matrices: *const c_char,
+    stiffness: *const c_char,
+    mass: *const c_char,
+    damping: *const c_char,
+    structural: *const c_char,
+    out: *mut *mut HbvibIoFile,
+) -> i32 {
+    guarded(|| {
+        if out.is_null() {
+            return report("hbvib_io_read_files: out is NULL");
+        }
+        let paths = [matrices, stiffness, mass, damping, structural]
+            .map(|path| (!path.is_null()).then(|| path_of(unsafe { CStr::from_ptr(path) }.to_bytes())));
+        if paths.iter().all(Option::is_none) {
+            return report("hbvib_io_read_files: names no file");
+        }
+        let [matrices, stiffness, mass, damping, structural] = paths.each_ref().map(Option::as_deref);
+        let files = crate::Files {
+            matrices,
+            stiffness,
+            mass,
+            damping,
+            structural,
+        };
+        match crate::read_files(&files) {
+            Ok(matrices) => {
+                unsafe { out.write(Box::into_raw(Box::new(HbvibIoFile::new(matrices)))) };
+                OK
+            }
+            Err(error) => report(&error.to_string()),
+        }
+    })
+}
+
+/// A line of the report on a file: totals, or warnings; NULL past the last one.
+///
+/// # Safety
+/// `file` is NULL or comes from [`hbvib_io_read`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_report_line(file: *const HbvibIoFile, warnings: i32, index: i64) -> *const c_char {
+    let lines = unsafe { file.as_ref() }.map(|file| if warnings == 0 { &file.facts } else { &file.warnings });
+    let line = lines.and_then(|lines| lines.get(usize::try_from(index).ok()?));
+    line.map_or(core::ptr::null(), |line| line.as_ptr())
 }
 
 #[cfg(unix)]
@@ -78,14 +145,14 @@ fn path_of(bytes: &[u8]) -> PathBuf {
     PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
 }
 
-/// Fills `out` with the mass (0), damping (1) or stiffness (2) of a file; 1 if there is none.
+/// Fills `out` with the mass (0), damping (1), stiffness (2) or structural damping (3) of a file; 1 if there is none.
 ///
 /// # Safety
 /// `file` is NULL or comes from [`hbvib_io_read`], `out` NULL or writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_io_matrix_of(file: *const HbvibIoFile, which: i32, out: *mut HbvibIoMatrix) -> i32 {
     guarded(|| {
-        let Some(HbvibIoFile(found)) = (unsafe { file.as_ref() }) else {
+        let Some(HbvibIoFile { found, .. }) = (unsafe { file.as_ref() }) else {
             return report("hbvib_io_matrix_of: file is NULL");
         };
         if out.is_null() {
@@ -95,7 +162,12 @@ pub unsafe extern "C" fn hbvib_io_matrix_of(file: *const HbvibIoFile, which: i32
             0 => &found.mass,
             1 => &found.damping,
             2 => &found.stiffness,
-            _ => return report("hbvib_io_matrix_of: which needs 0 (mass), 1 (damping) or 2 (stiffness)"),
+            3 => &found.structural,
+            _ => {
+                return report(
+                    "hbvib_io_matrix_of: which needs 0 (mass), 1 (damping), 2 (stiffness) or 3 (structural damping)",
+                );
+            }
         };
         let Some(matrix) = matrix else { return ABSENT };
         unsafe { out.write(view(matrix)) };
@@ -127,7 +199,7 @@ fn view(matrix: &Matrix) -> HbvibIoMatrix {
 /// `file` is NULL or comes from [`hbvib_io_read`].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_io_dofs(file: *const HbvibIoFile) -> i64 {
-    unsafe { file.as_ref() }.map_or(-1, |file| file.0.dofs.len() as i64)
+    unsafe { file.as_ref() }.map_or(-1, |file| file.found.dofs.len() as i64)
 }
 
 /// Copies node and direction of each degree of freedom, two numbers each.
@@ -142,7 +214,7 @@ pub unsafe extern "C" fn hbvib_io_dof_table(file: *const HbvibIoFile, table: *mu
     if table.is_null() {
         return report("hbvib_io_dof_table: table is NULL");
     }
-    let dofs: &[Dof] = &file.0.dofs;
+    let dofs: &[Dof] = &file.found.dofs;
     for (i, (node, direction)) in dofs.iter().enumerate() {
         unsafe {
             table.add(2 * i).write(*node);

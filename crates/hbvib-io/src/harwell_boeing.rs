@@ -6,32 +6,56 @@ use crate::lines::Lines;
 use crate::matrix::{Matrix, Symmetry};
 use crate::numbers::{count, real, whole};
 
-/// Fields of a Fortran format such as (16I5) or (1P,4D20.13): so many a line, so wide.
+/// Fields of a Fortran format such as (16I5), (1X,8I9), (1P,4D20.13) or (3(1P,E24.16)): so many a line, so wide, after so many
+/// characters.
 #[derive(Clone, Copy)]
 pub(crate) struct Fields {
     pub per_line: usize,
     pub width: usize,
+    pub skipped: usize,
 }
 
 /// Parses a Fortran format.
 pub(crate) fn fields(format: &str) -> Option<Fields> {
-    let format = format.trim().trim_matches(['(', ')']).to_ascii_uppercase();
-    // A scale factor: 1P,4D20.13 or 1P4D20.13.
-    let format = match format.split_once('P') {
-        Some((scale, rest)) if scale.bytes().all(|b| b.is_ascii_digit()) => rest.trim_start_matches(','),
-        _ => &format,
-    };
-    let letter = format.find(['I', 'E', 'D', 'F', 'G'])?;
-    let repeat = format[..letter].trim();
-    let per_line = if repeat.is_empty() { 1 } else { repeat.parse().ok()? };
-    let width = format[letter + 1..].split(['.', 'E']).next()?.trim().parse().ok()?;
-    ((1..=1000).contains(&per_line) && (1..=1000).contains(&width)).then_some(Fields { per_line, width })
+    let format = format.trim().to_ascii_uppercase();
+    let format = format
+        .strip_prefix('(')
+        .and_then(|rest| rest.strip_suffix(')'))
+        .unwrap_or(&format);
+    let mut rest = format.trim();
+    let mut skipped = 0;
+    let mut repeat: usize = 1;
+    loop {
+        let end = rest.bytes().take_while(u8::is_ascii_digit).count();
+        let number: usize = if end == 0 { 1 } else { rest[..end].parse().ok()? };
+        let after = &rest[end..];
+        if let Some(after) = after.strip_prefix('X') {
+            skipped += number;
+            rest = after.trim_start_matches([',', ' ']);
+        } else if let Some(after) = after.strip_prefix('P') {
+            // A scale factor does not change how numbers with an exponent are read.
+            rest = after.trim_start_matches([',', ' ']);
+        } else if let Some(inner) = after.strip_prefix('(') {
+            repeat = number;
+            rest = inner.strip_suffix(')')?.trim();
+        } else {
+            let width = after.strip_prefix(['I', 'E', 'D', 'F', 'G'])?;
+            let width = width.split(['.', 'E']).next()?.trim().parse().ok()?;
+            let per_line = number.checked_mul(repeat)?;
+            let small = (1..=1000).contains(&per_line) && (1..=1000).contains(&width) && skipped <= 1000;
+            return small.then_some(Fields {
+                per_line,
+                width,
+                skipped,
+            });
+        }
+    }
 }
 
 /// Field `i` of the present line.
 pub(crate) fn field(lines: &Lines, fields: Fields, i: usize) -> Option<&str> {
     let line = lines.text();
-    let start = i * fields.width;
+    let start = fields.skipped + i * fields.width;
     line.get(start..line.len().min(start + fields.width))
 }
 

@@ -14,6 +14,9 @@ const LONGEST: u64 = 1 << 16;
 /// First bytes of a gzipped file.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
+/// Mark that some editors put before UTF-8 text.
+const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
 /// A text file, read line by line.
 pub(crate) struct Lines {
     path: PathBuf,
@@ -79,6 +82,9 @@ impl Lines {
         while matches!(bytes.last(), Some(b'\n' | b'\r')) {
             bytes.pop();
         }
+        if self.number == 1 && bytes.starts_with(&BYTE_ORDER_MARK) {
+            bytes.drain(..BYTE_ORDER_MARK.len());
+        }
         match String::from_utf8(bytes) {
             Ok(line) if !line.contains(|c: char| c.is_control() && c != '\t') => {
                 self.line = line;
@@ -108,6 +114,19 @@ impl Lines {
     /// The present line.
     pub fn text(&self) -> &str {
         &self.line
+    }
+
+    /// Number of the present line, from 1.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// An error at a line that was read before.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn fail_at<T>(&self, line: usize, reason: impl Display) -> Result<T> {
+        Err(Error::new(&self.path, line, reason))
     }
 
     /// An error at the present line.

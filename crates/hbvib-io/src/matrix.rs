@@ -53,8 +53,25 @@ pub struct Matrices {
     pub mass: Option<Matrix>,
     /// C
     pub damping: Option<Matrix>,
-    /// Node and direction of each degree of freedom; empty if the file does not name them.
+    /// D of structural damping iD
+    pub structural: Option<Matrix>,
+    /// Node and direction of each degree of freedom, 0 for a direction that the file does not name; empty if it names no nodes.
     pub dofs: Vec<Dof>,
+    /// Names of matrices of the file that are none of these, and were left out.
+    pub others: Vec<String>,
+}
+
+impl Matrices {
+    /// The matrices that are there, with their names.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, &Matrix)> {
+        let all = [
+            ("stiffness", &self.stiffness),
+            ("mass", &self.mass),
+            ("damping", &self.damping),
+            ("structural", &self.structural),
+        ];
+        all.into_iter().filter_map(|(name, a)| a.as_ref().map(|a| (name, a)))
+    }
 }
 
 impl Matrix {
@@ -83,15 +100,7 @@ impl Matrix {
         if entries > lines.length() {
             return lines.fail(format_args!("{entries} entries in a file of {} bytes", lines.length()));
         }
-        let mut matrix = Self {
-            rows,
-            columns,
-            symmetry,
-            row: Vec::new(),
-            column: Vec::new(),
-            values: Vec::new(),
-            is_complex,
-        };
+        let mut matrix = Self::empty((rows, columns), symmetry, is_complex);
         // A number and a separator are at least two bytes.
         let likely = entries.min(lines.length() / 4);
         let numbers = if is_complex { 2 * likely } else { likely };
@@ -102,6 +111,19 @@ impl Matrix {
             Ok(matrix)
         } else {
             lines.fail("no memory for the entries")
+        }
+    }
+
+    /// A matrix without entries.
+    pub(crate) fn empty((rows, columns): (usize, usize), symmetry: Symmetry, is_complex: bool) -> Self {
+        Self {
+            rows,
+            columns,
+            symmetry,
+            row: Vec::new(),
+            column: Vec::new(),
+            values: Vec::new(),
+            is_complex,
         }
     }
 
@@ -116,21 +138,29 @@ impl Matrix {
     /// # Errors
     /// Memory.
     pub(crate) fn push(&mut self, lines: &Lines, row: u32, column: u32, value: (f64, f64)) -> Result<()> {
+        if self.add(row, column, value) {
+            Ok(())
+        } else {
+            lines.fail("no memory for the entries")
+        }
+    }
+
+    /// Adds an entry, unless it is zero; `false` without memory.
+    pub(crate) fn add(&mut self, row: u32, column: u32, value: (f64, f64)) -> bool {
         if value == (0.0, 0.0) {
-            return Ok(());
+            return true;
         }
         let reserved =
             self.row.try_reserve(1).is_ok() && self.column.try_reserve(1).is_ok() && self.values.try_reserve(2).is_ok();
-        if !reserved {
-            return lines.fail("no memory for the entries");
+        if reserved {
+            self.row.push(row);
+            self.column.push(column);
+            self.values.push(value.0);
+            if self.is_complex {
+                self.values.push(value.1);
+            }
         }
-        self.row.push(row);
-        self.column.push(column);
-        self.values.push(value.0);
-        if self.is_complex {
-            self.values.push(value.1);
-        }
-        Ok(())
+        reserved
     }
 
     /// Frees what was reserved and not used.

@@ -5,8 +5,12 @@ use crate::lines::Lines;
 use crate::matrix::{Matrix, Symmetry};
 use crate::numbers::{count, index, real};
 
-/// First word of a file.
-pub(crate) const BANNER: &str = "%%MatrixMarket";
+/// Whether a line is the banner of a file: `%%MatrixMarket` in any case, after spaces as MUMPS writes them, or with one %.
+pub(crate) fn is_banner(line: &str) -> bool {
+    let word = line.split_whitespace().next().unwrap_or("");
+    let name = word.trim_start_matches('%');
+    (1..=2).contains(&(word.len() - name.len())) && name.eq_ignore_ascii_case("MatrixMarket")
+}
 
 /// The matrix of a file whose first line is the present one.
 ///
@@ -60,6 +64,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<Matrix> {
     if dense {
         array(lines, &mut matrix)?;
     } else {
+        let mut triangle = None;
         for _ in 0..entries {
             expect_data(lines, "an entry")?;
             let mut words = lines.text().split_whitespace();
@@ -67,10 +72,20 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<Matrix> {
             let column = index(lines, words.next(), columns, "column")?;
             let value = value(lines, &mut words, is_complex)?;
             refuse_more(lines, words.next())?;
-            if symmetry != Symmetry::General && row < column {
-                return lines.fail("an entry above the diagonal, needs the lower triangle of a symmetric matrix");
+            if symmetry == Symmetry::General || row == column {
+                matrix.push(lines, row, column, value)?;
+                continue;
             }
-            matrix.push(lines, row, column, value)?;
+            // The format has the lower triangle; some programs write the upper one.
+            let lower = row > column;
+            if *triangle.get_or_insert(lower) != lower {
+                return lines.fail("entries on both sides of the diagonal, needs one triangle of a symmetric matrix");
+            }
+            if lower {
+                matrix.push(lines, row, column, value)?;
+            } else {
+                matrix.push(lines, column, row, mirrored(symmetry, value))?;
+            }
         }
     }
     while lines.advance()? {
@@ -110,6 +125,15 @@ fn value<'a>(lines: &Lines, words: &mut impl Iterator<Item = &'a str>, is_comple
     Ok((re, im))
 }
 
+/// The entry at the mirror image of another one.
+fn mirrored(symmetry: Symmetry, (re, im): (f64, f64)) -> (f64, f64) {
+    match symmetry {
+        Symmetry::General | Symmetry::Symmetric => (re, im),
+        Symmetry::Hermitian => (re, -im),
+        Symmetry::Skew => (-re, -im),
+    }
+}
+
 fn refuse_more(lines: &Lines, word: Option<&str>) -> Result<()> {
     match word {
         None => Ok(()),
@@ -118,7 +142,8 @@ fn refuse_more(lines: &Lines, word: Option<&str>) -> Result<()> {
 }
 
 fn is_comment(line: &str) -> bool {
-    line.trim().is_empty() || line.starts_with('%')
+    let line = line.trim_start();
+    line.is_empty() || line.starts_with('%')
 }
 
 fn expect_data(lines: &mut Lines, needed: &str) -> Result<()> {

@@ -1,21 +1,32 @@
 //! Nastran OP4 text files (`ASSIGN OUTPUT4 ... FORMATTED`): dense columns, strings, and strings of large matrices.
 //!
-//! Matrices whose names begin with K, M and B are stiffness, mass and damping.
+//! Matrices whose names begin with K, M and B are stiffness, mass and damping, K4 is structural damping.
 
 use crate::Result;
 use crate::harwell_boeing::{Fields, field, fields};
 use crate::lines::Lines;
 use crate::matrix::{Matrices, Matrix, Symmetry};
 use crate::numbers::{real, whole};
+use crate::op4_parts::Parts;
 
-/// Whether a line may be the head of a matrix: four whole numbers in fields of eight, and a name.
+/// Widths of the four numbers of a head, and the place of the name: large models have sizes of 16 columns.
+const LAYOUTS: [([usize; 5], usize); 2] = [([0, 8, 16, 24, 32], 32), ([0, 16, 32, 40, 48], 48)];
+
+/// The layout of a line that may be the head of a matrix: four whole numbers, and a name.
+fn layout(line: &str) -> Option<([usize; 5], usize)> {
+    LAYOUTS.into_iter().find(|(starts, name)| {
+        starts.windows(2).all(|at| {
+            let number = line.get(at[0]..at[1]);
+            number.is_some_and(|text| text.trim().parse::<i64>().is_ok())
+        }) && line
+            .get(*name..name + 1)
+            .is_some_and(|c| c.bytes().all(|b| b.is_ascii_alphabetic()))
+    })
+}
+
+/// Whether a line may be the head of a matrix.
 pub(crate) fn is_head(line: &str) -> bool {
-    (0..4).all(|i| {
-        let number = line.get(8 * i..8 * i + 8);
-        number.is_some_and(|text| text.trim().parse::<i64>().is_ok())
-    }) && line
-        .get(32..33)
-        .is_some_and(|c| c.bytes().all(|b| b.is_ascii_alphabetic()))
+    layout(line).is_some()
 }
 
 /// The matrices of a file whose first line is the present one.
@@ -23,8 +34,7 @@ pub(crate) fn is_head(line: &str) -> bool {
 /// # Errors
 /// The line and reason.
 pub(crate) fn matrices(lines: &mut Lines) -> Result<Matrices> {
-    let mut found = Matrices::default();
-    let mut any = false;
+    let mut parts = Parts::default();
     lines.repeat();
     while lines.advance()? {
         if lines.text().trim().is_empty() {
@@ -32,23 +42,9 @@ pub(crate) fn matrices(lines: &mut Lines) -> Result<Matrices> {
         }
         let head = head(lines)?;
         let matrix = body(lines, &head)?;
-        let place = match head.name.bytes().next() {
-            Some(b'K') => &mut found.stiffness,
-            Some(b'M') => &mut found.mass,
-            Some(b'B') => &mut found.damping,
-            _ => continue,
-        };
-        if place.is_some() {
-            return lines.fail(format_args!("{} is a second matrix of its kind", head.name));
-        }
-        *place = Some(matrix);
-        any = true;
+        parts.take(head.name, matrix);
     }
-    if any {
-        Ok(found)
-    } else {
-        lines.fail("no matrix whose name begins with K, M or B")
-    }
+    parts.finished().or_else(|reason| lines.fail(reason))
 }
 
 struct Head {
@@ -64,8 +60,8 @@ struct Head {
 }
 
 fn head(lines: &Lines) -> Result<Head> {
-    let eight = Fields { per_line: 4, width: 8 };
-    let number = |i: usize, what: &str| whole(lines, field(lines, eight, i), what);
+    let (starts, name_at) = layout(lines.text()).unwrap_or(LAYOUTS[0]);
+    let number = |i: usize, what: &str| whole(lines, lines.text().get(starts[i]..starts[i + 1]), what);
     let (columns, rows) = (number(0, "columns")?, number(1, "rows")?);
     let _form = number(2, "form")?;
     let (is_complex, words) = match number(3, "type")? {
@@ -75,9 +71,11 @@ fn head(lines: &Lines) -> Result<Head> {
         4 => (true, 4),
         other => return lines.fail(format_args!("type = {other}, needs 1 .. 4")),
     };
-    let rest = lines.text().get(32..).unwrap_or("");
+    let rest = lines.text().get(name_at..).unwrap_or("");
     let name = rest.get(..8.min(rest.len())).unwrap_or("").trim().to_ascii_uppercase();
-    let format = rest.get(8.min(rest.len())..).unwrap_or("").trim();
+    // The format of numbers, and of the whole numbers of columns: 1P,3E23.16|I16.
+    let format = rest.get(8.min(rest.len())..).unwrap_or("");
+    let format = format.split('|').next().unwrap_or("").trim();
     let format = if format.is_empty() { "1P,5E16.9" } else { format };
     let Some(fields) = fields(format) else {
         return lines.fail(format_args!("{format:?} is no Fortran format, as 1P,3E23.16"));

@@ -3,16 +3,21 @@
 use crate::error::Error;
 use crate::lines::Lines;
 use crate::matrix::{Matrices, Matrix};
-use crate::{Result, abaqus, calculix, harwell_boeing, matrix_market, op4};
+use crate::{Result, abaqus, calculix, harwell_boeing, matrix_market, op4, op4_binary, unreadable};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
+
+/// Bytes at the start of a file by which a format is known.
+const START: u64 = 4096;
 
 /// Reads the matrices of a file.
 ///
 /// | format | recognised by | holds |
 /// |---|---|---|
-/// | Matrix Market, also gzipped | `%%MatrixMarket` | one matrix |
+/// | Matrix Market, also gzipped | `%%MatrixMarket`, in any case | one matrix |
 /// | CalculiX | `.sti`, `.mas`, `.dof`: all files of the job | stiffness, mass, degrees of freedom |
-/// | Nastran OP4 text | `.op4`, or the head of a matrix | matrices whose names begin with K, M, B |
+/// | Nastran OP4, text or binary | `.op4`, or the head of a matrix | matrices whose names begin with K, M, B, K4 |
 /// | Abaqus | `.mtx` | one matrix: MASS or DMP in the name of the file tell which |
 /// | Harwell-Boeing text | else | one matrix |
 ///
@@ -29,9 +34,19 @@ pub fn read(path: &Path) -> Result<Matrices> {
     if calculix::EXTENSIONS.contains(&extension.as_str()) {
         return calculix::matrices(path);
     }
+    if path.is_dir() {
+        return Err(Error::new(path, 0, "is a folder, needs a file with matrices"));
+    }
+    let start = start(path)?;
+    if op4_binary::is_head(&start) {
+        return op4_binary::matrices(path);
+    }
+    if let Some(sentence) = unreadable::format(path, &start) {
+        return Err(Error::new(path, 0, sentence));
+    }
     let mut lines = Lines::open(path)?;
     lines.expect("a matrix")?;
-    if lines.text().starts_with(matrix_market::BANNER) {
+    if matrix_market::is_banner(lines.text()) {
         return Ok(one(matrix_market::matrix(&mut lines)?));
     }
     if extension == "op4" || op4::is_head(lines.text()) {
@@ -49,6 +64,18 @@ pub fn read(path: &Path) -> Result<Matrices> {
         ));
     }
     Ok(one(harwell_boeing::matrix(&mut lines)?))
+}
+
+/// The first bytes of a file.
+fn start(path: &Path) -> Result<Vec<u8>> {
+    let failed = |error: std::io::Error| Error::new(path, 0, format_args!("cannot be read: {error}"));
+    let mut bytes = Vec::new();
+    File::open(path)
+        .map_err(failed)?
+        .take(START)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?;
+    Ok(bytes)
 }
 
 fn one(matrix: Matrix) -> Matrices {

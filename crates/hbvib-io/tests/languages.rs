@@ -52,6 +52,13 @@ int main(int argc, char **argv)
     if (hbvib_io_read("/nowhere/k.mtx", &file) != -1 || file != NULL) return 6;
     if (!strstr(hbvib_io_last_error(), "/nowhere/k.mtx: cannot be read")) return 7;
     if (hbvib_io_read(NULL, &file) != -1 || hbvib_io_dofs(NULL) != -1) return 8;
+    if (hbvib_io_read_files(NULL, NULL, NULL, NULL, NULL, &file) != -1 || file != NULL) return 9;
+    if (hbvib_io_read_files(argv[1], NULL, NULL, NULL, NULL, &file) != 0) return 10;
+    if (!strstr(hbvib_io_report_line(file, 0, 0), "stiffness: 24 x 24")) return 11;
+    if (hbvib_io_report_line(file, 1, 0) != NULL || hbvib_io_report_line(file, 0, 1000) != NULL) return 12;
+    if (hbvib_io_report_line(file, 0, -1) != NULL || hbvib_io_report_line(NULL, 0, 0) != NULL) return 13;
+    if (hbvib_io_matrix_of(file, HBVIB_IO_STRUCTURAL, &c) != 1) return 14;
+    hbvib_io_free(file);
     return 0;
 }
 "#,
