@@ -1411,9 +1411,9 @@ typedef enum {
   HBVIB_STABILITY_WHEEL = 2,
 } hbvib_stability;
 
-/// Options that every analysis shares. Fill it by hbvib_solver_options_init. A model without contacts
-/// is linear: a tolerance other than 0, max_harmonics, samples, the steps, tol_residual, max_newton and
-/// estimate_error have no effect on its response.
+/// Options that every analysis shares. Fill it by hbvib_solver_options_init. A model without
+/// contacts is linear: a tolerance other than 0, max_harmonics, samples, step, step_min,
+/// tol_residual, max_newton and estimate_error have no effect on its response.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
@@ -1424,7 +1424,8 @@ typedef struct {
   /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
   /// one so far. 0: exactly `harmonics`, whatever the error.
   double tolerance;
-  /// Highest harmonic number H; with a tolerance it has no effect in forced and parameter responses.
+  /// Highest harmonic number H; with a tolerance it has no effect in forced and parameter
+  /// responses.
   int64_t harmonics;
   /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
   /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
@@ -1440,7 +1441,8 @@ typedef struct {
   double step;
   /// Smallest step; 0 = automatic.
   double step_min;
-  /// Largest step; 0 = automatic.
+  /// Largest step; 0 = automatic. Where every contact is linear, points lie at the resonances,
+  /// and this is the largest share of the range between neighbours.
   double step_max;
   /// Relative residual of a converged point.
   double tol_residual;
@@ -3548,11 +3550,12 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
  * Low level: one contact law, the residual at a given motion, indices from 1
  * ============================================================================================== */
 
-/// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom, sector_offset and directions in the
-/// description are ignored. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D,
-/// d = 2; t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load (kn = 0), d = 2;
-/// n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
+/// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t),
+/// once it has become periodic, and its Jacobian. Degrees of freedom, sector_offset and directions
+/// in the description are ignored. The law has d motions, side a minus side b: t1 and n of
+/// HBVIB_FRICTION_2D, d = 2; t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a
+/// constant load (kn = 0), d = 2; n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force
+/// along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
@@ -3570,7 +3573,8 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
 /// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or of
 /// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
-/// jac. Above 16 GiB nothing is requested, and the error is HBVIB_E_OUT_OF_MEMORY.
+/// jac. Above 16 GiB, without jac above 500 MB, nothing is requested, and the error is
+/// HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.

@@ -18,16 +18,19 @@ class SolverOptions(TypedDict, total=False):
         error of the complex fundamental of the response degree of freedom; in a nonlinear mode of the frequency and of
         the damping ratio, the latter relative to the largest one so far. 0: exactly `harmonics`, whatever the error.
         Default: 0.001.
-    harmonics   Highest harmonic number H; with a tolerance the H of a given guess. Default: 9.
+    harmonics   Highest harmonic number H; with a tolerance it has no effect in forced and parameter responses. Default:
+        9.
     max_harmonics   Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need more are
         stored, and the status is Status.STOPPED_MAX_HARMONICS. Default: 511.
     samples   0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a tolerance at
         least 8H are taken. ContactKind.CUBIC, ContactKind.FRICTION_2D, ContactKind.FRICTION_3D and polynomials are
         exact in both cases; ContactKind.REGULARISED is always sampled, with 0 by a number that follows from H, and from
         the tolerance: a run that has too few samples begins again, progress included, with more. Default: 0.
-    step   First arc-length step in scaled unknowns; 0 = automatic. Default: 0.0.
+    step   First arc-length step in scaled unknowns; 0 = automatic. A single frequency needs no step: the steps and
+        max_points have no effect there. Default: 0.0.
     step_min   Smallest step; 0 = automatic. Default: 0.0.
-    step_max   Largest step; 0 = automatic. Default: 0.0.
+    step_max   Largest step; 0 = automatic. Where every contact is linear, points lie at the resonances, and this is the
+        largest share of the range between neighbours. Default: 0.0.
     tol_residual   Relative residual of a converged point. Default: 1e-10.
     max_newton   Cap on Newton iterations per point. Default: 25.
     max_points   Cap on the number of points. Default: 20000.
@@ -124,7 +127,8 @@ class FloquetOptions(TypedDict, total=False):
         many once more; 0: on all degrees of freedom; -1: on all unless that counts more than 1e11 operations, then on
         as many modes as agreement needs. Default: -1.
     tolerance   As in hbvib_time_options. Default: 1e-11.
-    max_periods   Cap on the periods that shooting integrates. Default: 10000.
+    max_periods   Cap on the periods that shooting integrates. With refine = 0 it has no effect, as tolerance. Default:
+        10000.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)

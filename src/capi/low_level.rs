@@ -17,11 +17,12 @@ use crate::model::Model;
 use core::ffi::{c_char, c_uchar};
 use num_complex::Complex64;
 
-/// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom, sector_offset and directions in the
-/// description are ignored. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D,
-/// d = 2; t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load (kn = 0), d = 2;
-/// n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
+/// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t),
+/// once it has become periodic, and its Jacobian. Degrees of freedom, sector_offset and directions
+/// in the description are ignored. The law has d motions, side a minus side b: t1 and n of
+/// HBVIB_FRICTION_2D, d = 2; t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a
+/// constant load (kn = 0), d = 2; n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force
+/// along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
@@ -39,7 +40,8 @@ use num_complex::Complex64;
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
 /// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or of
 /// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
-/// jac. Above 16 GiB nothing is requested, and the error is HBVIB_E_OUT_OF_MEMORY.
+/// jac. Above 16 GiB, without jac above 500 MB, nothing is requested, and the error is
+/// HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.

@@ -35,9 +35,9 @@ pub enum hbvib_stability {
     HBVIB_STABILITY_WHEEL = 2,
 }
 
-/// Options that every analysis shares. Fill it by hbvib_solver_options_init. A model without contacts
-/// is linear: a tolerance other than 0, max_harmonics, samples, the steps, tol_residual, max_newton and
-/// estimate_error have no effect on its response.
+/// Options that every analysis shares. Fill it by hbvib_solver_options_init. A model without
+/// contacts is linear: a tolerance other than 0, max_harmonics, samples, step, step_min,
+/// tol_residual, max_newton and estimate_error have no effect on its response.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hbvib_solver_options {
@@ -50,7 +50,8 @@ pub struct hbvib_solver_options {
     /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
     /// one so far. 0: exactly `harmonics`, whatever the error.
     pub tolerance: f64,
-    /// Highest harmonic number H; with a tolerance it has no effect in forced and parameter responses.
+    /// Highest harmonic number H; with a tolerance it has no effect in forced and parameter
+    /// responses.
     pub harmonics: i64,
     /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
     /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
