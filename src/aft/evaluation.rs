@@ -3,6 +3,7 @@
 use crate::contact::contact_state::State;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 
 /// Harmonics of a contact force and their derivatives, all in packed form, one direction of the law after the other.
 #[derive(Clone, Debug)]
@@ -36,16 +37,37 @@ impl Evaluation {
     /// `OutOfMemory`.
     pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
         let m = set.packed_len().saturating_mul(directions);
+        let jacobian = try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?;
+        Ok(Self {
+            jacobian,
+            ..Self::without_jacobian(m, directions)?
+        })
+    }
+
+    fn without_jacobian(m: usize, directions: usize) -> Result<Self> {
         Ok(Self {
             directions,
             force: try_vec(m, 0.0, "a contact force")?,
-            jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
+            jacobian: Vec::new(),
             offset: try_vec(m, 0.0, "a contact force")?,
             by_omega: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
             open_fraction: 0.0,
             stuck: false,
             linear: false,
+        })
+    }
+
+    /// The same, and the caller may stop it.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn interruptible(set: &HarmonicSet, directions: usize, interrupt: &Interrupt<'_>) -> Result<Self> {
+        let m = set.packed_len().saturating_mul(directions);
+        let jacobian = interrupt.zeros(m.saturating_mul(m), "a contact Jacobian")?;
+        Ok(Self {
+            jacobian,
+            ..Self::without_jacobian(m, directions)?
         })
     }
 

@@ -167,10 +167,13 @@ impl Evaluator {
 
     /// Finds the turning points, or samples, of the packed motion of one relative coordinate, for every law on this
     /// coordinate alone.
-    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         match &mut self.scalar {
-            Scalar::Exact(evaluator) => evaluator.prepare(set, motion),
-            Scalar::Sampled(evaluator) => evaluator.prepare(set, motion),
+            Scalar::Exact(evaluator) => evaluator.prepare(set, motion, interrupt),
+            Scalar::Sampled(evaluator) => evaluator.prepare(set, motion, interrupt),
         }
     }
 
@@ -191,7 +194,7 @@ impl Evaluator {
         match (law.form(), &mut self.scalar) {
             (Form::Spectral(law), _) => {
                 interrupt.check_before((set.packed_len() * set.packed_len()) as u64)?;
-                self.smooth.spectral(law, set, motion, out);
+                self.smooth.spectral(law, set, motion, out, interrupt)?;
             }
             (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {
                 evaluator.evaluate(law, set, motion, out, interrupt)?;

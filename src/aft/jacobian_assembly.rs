@@ -9,11 +9,15 @@ use crate::contact::contact_state::State;
 use crate::contact::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Number of products g ⊗ c per pass over the Jacobian, which at many harmonics exceeds the caches.
 const MOST_PENDING: usize = 4;
+
+/// Numbers of a Jacobian that are written between two checks.
+const NUMBERS_TOGETHER: usize = 1 << 22;
 
 /// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
 pub(super) struct Assembly {
@@ -55,6 +59,9 @@ impl Assembly {
 
     /// Adds a piece with its transforms tₙ = (1/2π)∫ e^{−inτ} dτ for the n of the spectrum, and with its anchor at
     /// the time `anchor`.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
     pub(super) fn add(
         &mut self,
         set: &HarmonicSet,
@@ -62,16 +69,17 @@ impl Assembly {
         transform: &[Complex64],
         anchor: Option<f64>,
         out: &mut Evaluation,
-    ) {
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         out.count(state, transform[0].re);
         add_stiffness(&mut self.spectrum, piece.slope, transform, set.stride());
         out.linear = anchor.is_none() && is_whole(transform[0].re);
         if piece.offset == 0.0 && anchor.is_none() {
             out.stuck = is_whole(transform[0].re);
-            return;
+            return Ok(());
         }
         if self.pending == MOST_PENDING {
-            self.flush(out);
+            self.flush(out, interrupt)?;
         }
         let m = set.packed_len();
         let own = self.pending * m..(self.pending + 1) * m;
@@ -88,45 +96,76 @@ impl Assembly {
             }
             self.pending += 1;
         }
+        Ok(())
     }
 
     /// Adds the pending products to the Jacobian.
-    fn flush(&mut self, out: &mut Evaluation) {
-        if !self.begun {
-            out.jacobian.fill(0.0);
-        }
+    fn flush(&mut self, out: &mut Evaluation, interrupt: &Interrupt<'_>) -> Result<()> {
         let m = out.force.len().max(1);
+        let together = columns_together(m);
         for (j, column) in out.jacobian.chunks_exact_mut(m).enumerate() {
+            if j % together == together - 1 {
+                interrupt.check_before((together * m) as u64)?;
+            }
+            if !self.begun {
+                column.fill(0.0);
+            }
             add_products(column, (&self.anchors, &self.g, self.pending), j);
         }
         self.begun = true;
         self.pending = 0;
+        Ok(())
     }
 
     /// Writes the Jacobian, T(S) and the products, and the force.
-    pub(super) fn finish(&mut self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub(super) fn finish(
+        &mut self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         self.toeplitz.set(set, &self.spectrum);
         out.force.copy_from_slice(&out.offset);
-        self.arch.dispatch(Columns {
-            toeplitz: &self.toeplitz,
-            products: (&self.anchors, &self.g, self.pending),
-            begun: self.begun,
-            motion,
-            jacobian: &mut out.jacobian,
-            force: &mut out.force,
-        });
+        let m = motion.len().max(1);
+        let together = columns_together(m);
+        for (k, jacobian) in out.jacobian.chunks_mut(together * m).enumerate() {
+            if k > 0 {
+                interrupt.check_before((together * m) as u64)?;
+            }
+            self.arch.dispatch(Columns {
+                toeplitz: &self.toeplitz,
+                products: (&self.anchors, &self.g, self.pending),
+                begun: self.begun,
+                first: k * together,
+                motion,
+                jacobian,
+                force: &mut out.force,
+            });
+        }
+        Ok(())
     }
+}
+
+/// Columns of m numbers between two checks.
+fn columns_together(m: usize) -> usize {
+    (NUMBERS_TOGETHER / m).max(1)
 }
 
 /// Packed anchors and g of products, one after the other, and their number.
 type Products<'a> = (&'a [f64], &'a [f64], usize);
 
-/// The columns of the Jacobian, and the sum of their products with the motion, to which the force holds the offset.
+/// Columns of the Jacobian, and the sum of their products with the motion, to which the force holds the offset.
 struct Columns<'a> {
     toeplitz: &'a Toeplitz,
     products: Products<'a>,
     /// Whether the Jacobian already holds products.
     begun: bool,
+    /// Number of the first column.
+    first: usize,
     motion: &'a [f64],
     jacobian: &'a mut [f64],
     force: &'a mut [f64],
@@ -166,7 +205,7 @@ impl Columns<'_> {
         let m = if N > 0 { N } else { self.motion.len() };
         let (anchors, g, count) = self.products;
         let (motion, force) = (&self.motion[..m], &mut self.force[..m]);
-        for (j, column) in self.jacobian.chunks_exact_mut(m.max(1)).enumerate() {
+        for (j, column) in (self.first..).zip(self.jacobian.chunks_exact_mut(m.max(1))) {
             let of_stiffness = self.toeplitz.column(j);
             // An odd length has a mean.
             let mean = m % 2;

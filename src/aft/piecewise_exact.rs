@@ -49,8 +49,11 @@ impl Exact {
     }
 
     /// Finds the turning points of a packed motion.
-    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
-        self.turning_points.find(set, motion, &mut self.extrema);
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
+        self.turning_points.find(set, motion, &mut self.extrema, interrupt)
     }
 
     /// The pieces of the law evaluated last.
@@ -88,7 +91,7 @@ impl Exact {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         self.pieces.clear();
-        law.pieces(set, motion, &self.extrema, &mut self.pieces);
+        law.pieces(set, motion, &self.extrema, &mut self.pieces, interrupt)?;
         self.assembly.start(out);
         let turn = TAU / set.stride() as f64;
         for piece in &self.pieces {
@@ -96,11 +99,10 @@ impl Exact {
             transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
             let state = law.state(piece);
             self.assembly
-                .add(set, (piece, state), &self.transform, piece.anchor, out);
+                .add(set, (piece, state), &self.transform, piece.anchor, out, interrupt)?;
         }
         interrupt.check()?;
-        self.assembly.finish(set, motion, out);
-        Ok(())
+        self.assembly.finish(set, motion, out, interrupt)
     }
 }
 

@@ -12,6 +12,9 @@ use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
+/// Products of samples and harmonics between two checks.
+const PRODUCTS_TOGETHER: usize = 1 << 20;
+
 /// Tables and memory of the sampled evaluation for one harmonic set.
 pub struct Sampled {
     /// e^{−iτⱼ}
@@ -48,12 +51,20 @@ impl Sampled {
     }
 
     /// Samples a packed motion.
-    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.samples.len();
+        let together = samples_together(motion.len());
         for j in 0..n {
+            if j % together == 0 {
+                interrupt.check_before((motion.len() * together.min(n)) as u64)?;
+            }
             set.basis(TAU * j as f64 / n as f64, &mut self.basis);
             self.samples[j] = self.basis.iter().zip(motion).map(|(c, x)| c * x).sum();
         }
+        Ok(())
     }
 
     /// Half the range of the samples of the prepared motion.
@@ -80,11 +91,16 @@ impl Sampled {
         law.sampled_pieces(&self.samples, &mut self.pieces);
         self.assembly.start(out);
         let n = self.samples.len();
+        let harmonics = self.transform.len();
+        let together = samples_together(harmonics);
         for piece in &self.pieces {
-            interrupt.check()?;
+            interrupt.check_before(harmonics as u64)?;
             // (1/N) Σ e^{−inτⱼ} over the samples of the piece.
             self.transform.fill(Complex64::ZERO);
-            for j in piece.start as usize..piece.end as usize {
+            for (k, j) in (piece.start as usize..piece.end as usize).enumerate() {
+                if k % together == together - 1 {
+                    interrupt.check_before((harmonics * together) as u64)?;
+                }
                 let turn = self.turns[j % n];
                 let mut z = Complex64::ONE;
                 for t in &mut self.transform {
@@ -97,10 +113,14 @@ impl Sampled {
             }
             let anchor = piece.anchor.map(|j| TAU * j / n as f64);
             self.assembly
-                .add(set, (piece, law.state(piece)), &self.transform, anchor, out);
+                .add(set, (piece, law.state(piece)), &self.transform, anchor, out, interrupt)?;
         }
         interrupt.check()?;
-        self.assembly.finish(set, motion, out);
-        Ok(())
+        self.assembly.finish(set, motion, out, interrupt)
     }
+}
+
+/// Samples between two checks, for so many numbers each.
+fn samples_together(numbers: usize) -> usize {
+    (PRODUCTS_TOGETHER / numbers.max(1)).max(1)
 }

@@ -10,15 +10,27 @@
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
 use crate::contact::law::Spectral;
+use crate::error::Result;
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 
 impl Assembly {
     /// Evaluates a law without events.
-    pub(super) fn spectral(&mut self, law: &dyn Spectral, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub(super) fn spectral(
+        &mut self,
+        law: &dyn Spectral,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         // The contact is never stuck, even at rest: its stiffness need not be that of the reference.
         self.start(out);
         law.spectrum(set, motion, &mut self.spectrum);
-        self.finish(set, motion, out);
+        self.finish(set, motion, out, interrupt)?;
         // The force holds T(S)·X at this point.
         let (linear, degree) = (law.linear(), law.degree());
         let m = motion.len();
@@ -28,5 +40,6 @@ impl Assembly {
             out.offset[i] = (1.0 - degree) * nonlinear;
             out.jacobian[i * m + i] += linear;
         }
+        Ok(())
     }
 }

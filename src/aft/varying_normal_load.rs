@@ -85,12 +85,13 @@ impl VaryingNormalLoadEvaluator {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         interrupt.check()?;
-        law.coupled_pieces(set, motion, &mut self.search, &mut self.normal, &mut self.tangential);
+        let (normal, tangential) = (&mut self.normal, &mut self.tangential);
+        law.coupled_pieces(set, motion, &mut self.search, normal, tangential, interrupt)?;
         out.clear();
         for spectrum in &mut self.spectra {
             spectrum.fill(Complex64::ZERO);
         }
-        self.add_normal(set, out);
+        self.add_normal(set, out, interrupt)?;
         self.add_tangential(set, motion, out, interrupt)?;
         let m = set.packed_len();
         for (spectrum, place) in self.spectra.iter().zip(BLOCKS) {
@@ -102,9 +103,10 @@ impl VaryingNormalLoadEvaluator {
         Ok(())
     }
 
-    fn add_normal(&mut self, set: &HarmonicSet, out: &mut Evaluation) {
+    fn add_normal(&mut self, set: &HarmonicSet, out: &mut Evaluation, interrupt: &Interrupt<'_>) -> Result<()> {
         let m = set.packed_len();
         for piece in &self.normal {
+            interrupt.check_before((8 * m) as u64)?;
             transform([piece.start, piece.end], TAU.recip(), TAU, &mut self.transform);
             if !piece.is_closed() {
                 out.open_fraction += self.transform[0].re;
@@ -116,6 +118,7 @@ impl VaryingNormalLoadEvaluator {
                 *o += piece.offset * g;
             }
         }
+        Ok(())
     }
 
     fn add_tangential(

@@ -16,6 +16,9 @@ use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
 
+/// Numbers of a Jacobian that are cleared between two checks.
+const NUMBERS_TOGETHER: usize = 1 << 22;
+
 /// Residual R_h = Z_h x_h + Wᴴ f_h − F_h of harmonic balance with harmonics 0 ..= H of all degrees
 /// of freedom, with its Jacobian and frequency derivative.
 ///
@@ -410,9 +413,9 @@ fn evaluate(
             "omega = 0, needs a number > 0 for a law with states, which takes steps in time"
         );
     }
-    let mut evaluation = Evaluation::new(set, contact.directions())?;
+    let mut evaluation = Evaluation::interruptible(set, contact.directions(), interrupt)?;
     let mut evaluator = Evaluator::new(set, samples, core::iter::once(&*law))?;
-    evaluator.prepare(set, &packed[..set.packed_len()]);
+    evaluator.prepare(set, &packed[..set.packed_len()], interrupt)?;
     evaluator.evaluate(&*law, set, packed, omega, &mut evaluation, interrupt)?;
     Ok(evaluation)
 }
@@ -487,10 +490,14 @@ pub fn contact_evaluate_with(
         }
     }
     if let Some(jacobian) = jacobian {
-        jacobian.fill(0.0);
+        for part in jacobian.chunks_mut(NUMBERS_TOGETHER) {
+            interrupt.check_before(part.len() as u64)?;
+            part.fill(0.0);
+        }
         // Packed position p of (harmonic, part) is pair position p + 1, but 0 for the mean.
         let pair = |p: usize| 2 * count * (p / m) + if p.is_multiple_of(m) { 0 } else { p % m + 1 };
         for (column, j) in evaluation.jacobian.chunks_exact(m * directions).enumerate() {
+            interrupt.check_before(j.len() as u64)?;
             for (row, j) in j.iter().enumerate() {
                 jacobian[pair(column) * 2 * size + pair(row)] = *j;
             }

@@ -166,7 +166,7 @@ fn tangents(
         }
         let mut found = Evaluation::new(&set, d)?;
         if d == 1 {
-            evaluator.prepare(&set, &motion);
+            evaluator.prepare(&set, &motion, interrupt)?;
         }
         evaluator
             .evaluate(&*assembled.law, &set, &motion, OMEGA, &mut found, interrupt)

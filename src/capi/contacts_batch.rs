@@ -8,7 +8,7 @@ use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::contact::Contact;
 use crate::contact::laws::iwan::Iwan;
-use crate::error::{Status, try_push};
+use crate::error::{Status, try_room};
 use crate::model::Model;
 
 /// Adds many Jenkins contacts from arrays; entry i of each array describes contact i. All contacts
@@ -44,11 +44,11 @@ pub unsafe extern "C" fn hbvib_model_add_jenkins(
         if !first_id.is_null() {
             check_pointer(first_id, 9, "first_id")?;
         }
-        let mut contacts = Vec::new();
+        let mut contacts = try_room(n, "the contacts")?;
         for i in 0..n {
             let mut contact = Contact::jenkins(0, None, kt[i], mu[i], preload[i]);
             (contact.dof_a[0], contact.dof_b[0], contact.sector_offset) = sides.entry(i)?;
-            try_push(&mut contacts, contact, "the contacts")?;
+            contacts.push(contact);
         }
         let first = model.add_contacts(&contacts).map_err(|e| {
             let arrays = [("kt", 6), ("mu", 7), ("preload", 8), ("sector_offset", 5), ("dof_a", 3)];

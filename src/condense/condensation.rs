@@ -21,7 +21,7 @@ use crate::condense::tied_load::TiedLoad;
 use crate::condense::wave_cache::{ALL_UP_TO, WaveCache};
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
-use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
@@ -29,6 +29,7 @@ use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, Flexibility, SolverOptions};
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
@@ -239,7 +240,7 @@ impl Condensed {
             certificate: 0.0,
             length: 1.0,
             blocks: Vec::new(),
-            laws: Vec::new(),
+            laws: Arc::default(),
             stiffness: Vec::new(),
             reference_stiffness: Vec::new(),
             can_stick: Vec::new(),
@@ -330,7 +331,7 @@ impl Condensed {
             certificate,
             length: 1.0,
             blocks,
-            laws: Vec::new(),
+            laws: Arc::default(),
             stiffness,
             reference_stiffness,
             can_stick,
@@ -349,6 +350,8 @@ impl Condensed {
     pub(super) fn set_length(&mut self, model: &Model, length: f64, assembled: &[AssembledDirection]) -> Result<()> {
         const CONTEXT: &str = "the contacts";
         self.length = length;
+        let contacts = assembled.chunk_by(|a, b| a.contact == b.contact).count();
+        let mut laws = try_room(contacts, CONTEXT)?;
         for one in assembled.chunk_by(|a, b| a.contact == b.contact) {
             let mut coordinates = Vec::new();
             for at in one {
@@ -360,10 +363,14 @@ impl Condensed {
                 contact,
                 normal: model.contacts()[contact].normal_direction(),
                 law: model.contacts()[contact].law(length)?,
-                load: TiedLoad::of(model, contact, length)?,
+                load: match TiedLoad::of(model, contact, length)? {
+                    Some(load) => Some(boxed(|| Ok(load))?),
+                    None => None,
+                },
             };
-            try_push(&mut self.laws, assembled, CONTEXT)?;
+            laws.push(assembled);
         }
+        self.laws = Arc::new(laws);
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::condense::tied_load::{LoadedLaw, TiedLoad};
 use crate::contact::Law;
-use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::error::{Result, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::degree_map::DegreeMap;
 use crate::model::reduced_wave::MotionRow;
@@ -48,7 +48,7 @@ pub struct AssembledLaw {
     /// The law in the solver's units; that of a reference load where the load depends on the frequency.
     pub law: Arc<dyn Law>,
     /// The load that depends on the frequency, if it does.
-    pub load: Option<TiedLoad>,
+    pub load: Option<Box<TiedLoad>>,
 }
 
 impl AssembledLaw {
@@ -76,7 +76,8 @@ pub struct Condensed {
     pub(super) certificate: f64,
     pub(super) length: f64,
     pub(super) blocks: Vec<HarmonicBlock>,
-    pub(super) laws: Vec<AssembledLaw>,
+    /// Shared by the condensed models of all resolutions.
+    pub(super) laws: Arc<Vec<AssembledLaw>>,
     /// Stiffness per coordinate: the sum of kt of its contacts, or more if one is a spring with growing stiffness.
     pub(super) stiffness: Vec<f64>,
     /// Stiffness per coordinate that defines κ: the same, or less where contacts are near-rigid.
@@ -101,15 +102,11 @@ impl Condensed {
     /// `OutOfMemory`.
     pub(super) fn with_blocks(&self, set: HarmonicSet, blocks: Vec<HarmonicBlock>) -> Result<Self> {
         const CONTEXT: &str = "the matrices per harmonic";
-        let mut laws = Vec::new();
-        for assembled in &self.laws {
-            try_push(&mut laws, assembled.clone(), CONTEXT)?;
-        }
         Ok(Self {
             set,
             degrees: self.degrees.clone(),
             blocks,
-            laws,
+            laws: Arc::clone(&self.laws),
             stiffness: try_copy(&self.stiffness, CONTEXT)?,
             reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
             can_stick: try_copy(&self.can_stick, CONTEXT)?,

@@ -2,13 +2,15 @@
 //! without force.
 
 use crate::contact::{Contact, Role};
-use crate::error::{Result, try_push};
+use crate::error::{Result, try_push, try_room};
 use crate::model::{Model, copy};
+use std::sync::Arc;
 
 /// All contacts of a model. Linear ones have no relative coordinate.
 #[derive(Clone, Debug, Default)]
 pub struct ContactClasses {
-    all: Vec<Contact>,
+    /// Shared by the condensed models of all resolutions.
+    all: Arc<Vec<Contact>>,
     pub(super) active: Vec<usize>,
     pub(super) never_slipping: Vec<usize>,
     /// Directions of the linear contacts, as (contact, direction).
@@ -20,9 +22,11 @@ impl ContactClasses {
     pub(super) fn new(model: &Model) -> Result<Self> {
         const CONTEXT: &str = "the contacts";
         let mut contact_classes = Self::default();
+        let mut all = try_room(model.contacts().len(), CONTEXT)?;
         for contact in model.contacts() {
-            try_push(&mut contact_classes.all, copy(contact)?, CONTEXT)?;
+            all.push(copy(contact)?);
         }
+        contact_classes.all = Arc::new(all);
         for (i, contact) in model.contacts().iter().enumerate() {
             match contact.role() {
                 Role::Active => try_push(&mut contact_classes.active, i, CONTEXT)?,

@@ -183,14 +183,18 @@ impl LowRank {
     ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
         for k in 0..=self.coordinates {
-            for p in 0..order {
-                let mut sum = plain.slope[k * rows + of.row_of(p)];
-                for q in 0..order {
-                    let entry = of.row_of(q) * rows + of.row_of(p);
-                    let d_e_x = of.d_entry(q, at.d_c) * self.inner[k * order + q];
-                    sum += plain.slope[entry] * self.force[k * order + q] + plain.value[entry] * d_e_x;
+            interrupt.check_before((2 * order * order) as u64)?;
+            let sums = &mut self.d_inner[k * order..(k + 1) * order];
+            for (p, sum) in sums.iter_mut().enumerate() {
+                *sum = plain.slope[k * rows + of.row_of(p)];
+            }
+            for q in 0..order {
+                let d_e_x = of.d_entry(q, at.d_c) * self.inner[k * order + q];
+                let (force, from) = (self.force[k * order + q], of.row_of(q) * rows);
+                for (p, sum) in sums.iter_mut().enumerate() {
+                    let entry = from + of.row_of(p);
+                    *sum += plain.slope[entry] * force + plain.value[entry] * d_e_x;
                 }
-                self.d_inner[k * order + p] = sum;
             }
         }
         self.lu.solve_columns(&mut self.d_inner, false, interrupt)?;

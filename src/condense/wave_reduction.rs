@@ -79,9 +79,11 @@ pub(super) fn reduced_blocks(
     {
         return declined(forced);
     }
-    let groups = groups(request)?;
-    let small = |group: &Group| SHARE * group.inputs.len() > n;
-    if groups.iter().any(|group| group.inputs.is_empty()) || (!forced && groups.iter().any(small)) {
+    let most = if forced { usize::MAX } else { n / SHARE };
+    let Some(groups) = groups(request, most, interrupt)? else {
+        return Ok(None);
+    };
+    if groups.iter().any(|group| group.inputs.is_empty()) {
         return Ok(None);
     }
     let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
@@ -135,11 +137,20 @@ fn wave_of(
     let error = |wave: &Arc<ReducedWave>| certificate_of(request, group, wave, kappa, interrupt);
     let mut inputs = Vec::new();
     for input in &group.inputs {
+        interrupt.check_before(100)?;
         try_push(&mut inputs, try_copy(input, CONTEXT)?, CONTEXT)?;
     }
     let kept = request.model.kept().find(group.key);
     if let Some(wave) = &kept {
-        if inputs.iter().all(|input| wave.inputs.contains(input)) {
+        let mut holds_all = true;
+        for input in &inputs {
+            interrupt.check_before(wave.inputs.len() as u64)?;
+            holds_all &= wave.inputs.contains(input);
+            if !holds_all {
+                break;
+            }
+        }
+        if holds_all {
             let error = error(wave)?;
             if error.basis <= limit || wave.exhausted {
                 return Ok(Some((Arc::clone(wave), error)));
@@ -147,6 +158,7 @@ fn wave_of(
         }
         // The new basis serves earlier calls, too.
         for input in &wave.inputs {
+            interrupt.check_before(inputs.len() as u64)?;
             if !inputs.contains(input) {
                 try_push(&mut inputs, try_copy(input, CONTEXT)?, CONTEXT)?;
             }
@@ -202,8 +214,9 @@ fn certificate_of(
     Ok(worst)
 }
 
-/// The waves of the carried harmonics, with the vectors whose flexibility each must hold.
-fn groups(request: &Request<'_>) -> Result<Vec<Group>> {
+/// The waves of the carried harmonics, with the vectors whose flexibility each must hold; `None` where they are more than
+/// `most` in one of them.
+fn groups(request: &Request<'_>, most: usize, interrupt: &Interrupt<'_>) -> Result<Option<Vec<Group>>> {
     let structure = request.model.structure();
     let mut groups: Vec<Group> = Vec::new();
     for (i, &number) in request.numbers.iter().enumerate() {
@@ -220,7 +233,8 @@ fn groups(request: &Request<'_>) -> Result<Vec<Group>> {
         }
         let group = &mut groups[at];
         try_push(&mut group.members, (i, conjugated), CONTEXT)?;
-        for mut input in inputs(request, number)? {
+        for mut input in inputs(request, number, interrupt)? {
+            interrupt.check_before(group.inputs.len() as u64)?;
             if conjugated {
                 for (_, z) in &mut input {
                     *z = z.conj();
@@ -228,14 +242,17 @@ fn groups(request: &Request<'_>) -> Result<Vec<Group>> {
             }
             if !input.is_empty() && !group.inputs.contains(&input) {
                 try_push(&mut group.inputs, input, CONTEXT)?;
+                if group.inputs.len() > most {
+                    return Ok(None);
+                }
             }
         }
     }
-    Ok(groups)
+    Ok(Some(groups))
 }
 
 /// The force vectors of one harmonic: contacts and springs, excitation, and the response.
-fn inputs(request: &Request<'_>, number: usize) -> Result<Vec<SparseVector>> {
+fn inputs(request: &Request<'_>, number: usize, interrupt: &Interrupt<'_>) -> Result<Vec<SparseVector>> {
     let model = request.model;
     let structure = model.structure();
     let mut found = Vec::new();
@@ -247,6 +264,7 @@ fn inputs(request: &Request<'_>, number: usize) -> Result<Vec<SparseVector>> {
         try_push(&mut found, input, CONTEXT)
     };
     for contact in model.contacts() {
+        interrupt.check_before(100)?;
         for k in 0..contact.directions() {
             add(&structure.contact_row(contact, k, number))?;
         }

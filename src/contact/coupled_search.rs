@@ -4,6 +4,7 @@
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::{Extremum, HarmonicSet, TurningPoints};
+use crate::interrupt::Interrupt;
 use std::f64::consts::PI;
 
 /// One bound of a slider: its signal and the turning points of it over a whole turn.
@@ -69,12 +70,22 @@ pub fn piece_lists(set: &HarmonicSet) -> Result<(Vec<Piece>, Vec<CoupledPiece>)>
 }
 
 /// Turning points over a whole turn, also for sets of odd harmonics: a varying load has no such symmetry.
-pub(super) fn find(search: &mut TurningPoints, set: &HarmonicSet, signal: &[f64], found: &mut Vec<Extremum>) {
-    search.find(set, signal, found);
+///
+/// # Errors
+/// `StoppedByCaller`.
+pub(super) fn find(
+    search: &mut TurningPoints,
+    set: &HarmonicSet,
+    signal: &[f64],
+    found: &mut Vec<Extremum>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    search.find(set, signal, found, interrupt)?;
     if set.is_odd() {
         for i in 0..found.len() {
             let Extremum { tau, x } = found[i];
             found.push(Extremum { tau: tau + PI, x: -x });
         }
     }
+    Ok(())
 }

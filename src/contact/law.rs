@@ -191,7 +191,17 @@ pub enum Form<'a> {
 pub trait PiecewiseLinear {
     /// Exact pieces over one turn (half a turn for sets of odd harmonics) from the turning points of the
     /// motion.
-    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>);
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    fn pieces(
+        &self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()>;
 
     /// Pieces in sample numbers over one turn from equidistant samples of the motion.
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>);
@@ -232,6 +242,9 @@ pub trait VaryingNormalLoad {
     /// Exact pieces of the normal force (slope −∂N/∂y) and of the tangential force over one turn. `motion` is
     /// the packed x, then the packed y. The tangential pieces begin anywhere in the turn and follow each
     /// other without a gap; without friction there are none.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
     fn coupled_pieces(
         &self,
         set: &HarmonicSet,
@@ -239,7 +252,8 @@ pub trait VaryingNormalLoad {
         search: &mut CoupledSearch,
         normal: &mut Vec<Piece>,
         tangential: &mut Vec<CoupledPiece>,
-    );
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()>;
 
     /// n₀ − kn·y: the normal load where it is positive; the contact is open where it is not.
     fn load_at(&self, y: f64) -> f64;

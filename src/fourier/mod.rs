@@ -8,5 +8,5 @@ mod turning_points;
 
 pub use harmonic_set::{HarmonicSet, gcd};
 pub use roots::safe_newton;
-pub use series::{Jet, crossing, jet};
+pub use series::{Jet, VALUES_OF_A_CROSSING, crossing, jet};
 pub use turning_points::{Extremum, TurningPoints};

@@ -101,6 +101,9 @@ fn last_step(set: &HarmonicSet) -> f64 {
     LAST_STEP / set.highest_reduced().max(1) as f64
 }
 
+/// Values of a series that a crossing takes, about.
+pub const VALUES_OF_A_CROSSING: usize = 8;
+
 /// The time in (a, b) at which a signal, monotone there, passes `level`.
 #[must_use]
 pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: f64, level: f64) -> f64 {

@@ -3,6 +3,7 @@
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::series::{jet, turning_point};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 use rustfft::{Fft, FftPlanner};
@@ -17,6 +18,9 @@ pub struct Extremum {
     /// Value of the signal there.
     pub x: f64,
 }
+
+/// Values of the series that a root takes, about.
+const VALUES_OF_A_ROOT: usize = 8;
 
 /// Grid points per period of the highest harmonic.
 const POINTS_PER_WAVE: usize = 8;
@@ -100,12 +104,21 @@ impl TurningPoints {
     /// No turning point is missed, however close to another: a force that lost a pair of them would jump as the
     /// motion varies. Bounds of x‴ identify the cells with at most one root; the others are halved until x varies
     /// in them by no more than rounding.
-    pub fn find(&mut self, set: &HarmonicSet, packed: &[f64], found: &mut Vec<Extremum>) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn find(
+        &mut self,
+        set: &HarmonicSet,
+        packed: &[f64],
+        found: &mut Vec<Extremum>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         found.clear();
         let bounds = Bounds::new(set, packed);
         // This also covers a motion that overflows, for which no bound would end the search.
         if !(bounds.bend > 0.0 && bounds.bend.is_finite()) {
-            return;
+            return Ok(());
         }
         self.scan(set, packed);
         let n = self.points;
@@ -157,6 +170,7 @@ impl TurningPoints {
                 },
             };
             if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
+                interrupt.check_before((VALUES_OF_A_ROOT * packed.len()) as u64)?;
                 isolate(set, packed, [left, right], &bounds, found);
             }
             left = right;
@@ -172,6 +186,7 @@ impl TurningPoints {
         if found.len() > 1 {
             found.sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau));
         }
+        Ok(())
     }
 
     /// x′ at the grid points.
@@ -360,7 +375,8 @@ mod tests {
 
     fn extrema(set: &HarmonicSet, packed: &[f64]) -> Vec<Extremum> {
         let mut found = Vec::new();
-        TurningPoints::new(set).unwrap().find(set, packed, &mut found);
+        let mut search = TurningPoints::new(set).unwrap();
+        search.find(set, packed, &mut found, &Interrupt::none()).unwrap();
         found
     }
 

@@ -4,7 +4,7 @@ use crate::contact::Contact;
 use crate::contact::laws::iwan::Iwan;
 use crate::contact::patch::Patch;
 use crate::contact::relative_motion::Direction;
-use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
+use crate::error::{Error, Result, fail, try_copy, try_extend, try_push, try_room};
 use crate::linalg::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
 use crate::model::reduced_wave::KeptWaves;
@@ -129,9 +129,9 @@ impl Model {
     /// # Errors
     /// `OutOfMemory`.
     pub fn try_clone(&self) -> Result<Self> {
-        let mut contacts = Vec::new();
+        let mut contacts = try_room(self.contacts.len(), CONTACTS)?;
         for contact in &self.contacts {
-            try_push(&mut contacts, copy(contact)?, CONTACTS)?;
+            contacts.push(copy(contact)?);
         }
         let mut springs = Vec::new();
         try_extend(&mut springs, &self.springs, "the springs")?;
@@ -227,11 +227,17 @@ impl Model {
                 .and_then(|()| contact.check_stiffness())
                 .map_err(|e| e.at(format_args!("entry {i}")))?;
         }
-        let mut copies = Vec::new();
+        let first = self.room_for(contacts.len())?;
         for contact in contacts {
-            try_push(&mut copies, copy(contact)?, CONTACTS)?;
+            match copy(contact) {
+                Ok(copied) => self.contacts.push(copied),
+                Err(e) => {
+                    self.contacts.truncate(first);
+                    return Err(e);
+                }
+            }
         }
-        self.append(copies)
+        Ok(first)
     }
 
     /// Adds the node pairs of a patch as contacts with consecutive numbers, and returns the first. All of them are
@@ -250,12 +256,17 @@ impl Model {
 
     /// Adds checked contacts and returns the number of the first.
     fn append(&mut self, mut contacts: Vec<Contact>) -> Result<usize> {
-        let first = self.contacts.len();
-        self.contacts
-            .try_reserve(contacts.len())
-            .map_err(|_| Error::out_of_memory(CONTACTS))?;
+        let first = self.room_for(contacts.len())?;
         self.contacts.append(&mut contacts);
         Ok(first)
+    }
+
+    /// Room for more contacts; returns the number of the first of them.
+    fn room_for(&mut self, contacts: usize) -> Result<usize> {
+        self.contacts
+            .try_reserve(contacts)
+            .map_err(|_| Error::out_of_memory(CONTACTS))?;
+        Ok(self.contacts.len())
     }
 
     /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts with consecutive numbers,

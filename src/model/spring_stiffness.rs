@@ -19,38 +19,43 @@ impl Model {
         wave: Wave,
         stuck: impl Iterator<Item = &'c Contact>,
     ) -> Result<Vec<(Row, Row, f64)>> {
-        self.spring_rows_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
+        let mut rows = Vec::new();
+        self.each_spring(
+            wave,
+            stuck.map(|c| (c, c)),
+            Contact::stiffness_at_small_motion,
+            |force, motion, stiffness| try_push(&mut rows, (*force, *motion, stiffness), "the springs"),
+        )?;
+        Ok(rows)
     }
 
-    /// The same with the stiffness of contacts between the motions of their directions k and l as given, for
-    /// whatever names a contact.
-    fn spring_rows_with<'c, T: Copy>(
+    /// Calls `take` with each of them, with the stiffness of contacts between the motions of their directions k and l as
+    /// given, for whatever names a contact.
+    fn each_spring<'c, T: Copy>(
         &self,
         wave: Wave,
         contacts: impl Iterator<Item = (T, &'c Contact)>,
         stiffness: impl Fn(T, usize, usize) -> f64,
-    ) -> Result<Vec<(Row, Row, f64)>> {
+        mut take: impl FnMut(&Row, &Row, f64) -> Result<()>,
+    ) -> Result<()> {
         let structure = self.structure();
-        let mut rows = Vec::new();
-        let mut add = |force: Row, motion: Row, stiffness: f64| -> Result<()> {
-            if stiffness == 0.0 {
-                return Ok(());
-            }
-            try_push(&mut rows, (force, motion, stiffness), "the springs")
+        let mut add = |force: &Row, motion: &Row, stiffness: f64| match stiffness {
+            0.0 => Ok(()),
+            stiffness => take(force, motion, stiffness),
         };
         for s in self.springs() {
             let row = structure.row(&structure.spring_motion(s), wave);
-            add(row, row, s.stiffness)?;
+            add(&row, &row, s.stiffness)?;
         }
         for (name, c) in contacts {
             let row = |k| structure.row(&structure.contact_motion(c, k), wave);
             for k in 0..c.directions() {
                 for l in 0..c.directions() {
-                    add(row(k), row(l), stiffness(name, k, l))?;
+                    add(&row(k), &row(l), stiffness(name, k, l))?;
                 }
             }
         }
-        Ok(rows)
+        Ok(())
     }
 
     /// K of a wave, at a fixed speed with Ω²K₁, with aerodynamic forces per displacement, the springs of the model and
@@ -63,7 +68,7 @@ impl Model {
         self.stiffness_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
     }
 
-    /// The same with the stiffness of contacts as in [`Self::spring_rows_with`].
+    /// The same with the stiffness of contacts as in [`Self::each_spring`].
     ///
     /// # Errors
     /// As [`Self::sprung_stiffness`].
@@ -77,13 +82,14 @@ impl Model {
         let n = structure.ndof();
         let own = structure.acting_stiffness(wave)?;
         let mut entries = Vec::new();
-        for (force, motion, stiffness) in self.spring_rows_with(wave, contacts, stiffness)? {
+        self.each_spring(wave, contacts, stiffness, |force, motion, stiffness| {
             for (p, x) in force.iter().flatten() {
                 for (q, y) in motion.iter().flatten() {
                     try_push(&mut entries, (*p, *q, x.conj() * y * stiffness), "the springs")?;
                 }
             }
-        }
+            Ok(())
+        })?;
         if entries.is_empty() {
             return Ok(own);
         }

@@ -211,7 +211,7 @@ impl<'a> ContactForces<'a> {
             let here = assembled.at(omega);
             let y = gather_scaled(at, (m, here.of_motion), &self.scaled, &mut self.gathered);
             if at.len() == 1 && (prepared != at[0] || here.of_motion.is_some()) {
-                self.evaluator.prepare(set, y);
+                self.evaluator.prepare(set, y, self.interrupt)?;
                 prepared = if here.of_motion.is_none() { at[0] } else { usize::MAX };
             }
             self.evaluator

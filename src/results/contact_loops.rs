@@ -121,7 +121,7 @@ impl<'a> Orbit<'a> {
         };
         match law.form() {
             Form::PiecewiseLinear(_) | Form::Spectral(_) => {
-                let orbit = ScalarOrbit::new(set, packed, law)?;
+                let orbit = ScalarOrbit::new(set, packed, law, interrupt)?;
                 let rows = out.force.iter_mut().zip(&mut out.state).zip(&out.motion);
                 for (j, ((force, state), x)) in rows.enumerate() {
                     check_time(interrupt, j, set)?;
@@ -129,7 +129,7 @@ impl<'a> Orbit<'a> {
                 }
             }
             Form::VaryingNormalLoad(law) => {
-                let orbit = CoupledOrbit::new(set, packed, law)?;
+                let orbit = CoupledOrbit::new(set, packed, law, interrupt)?;
                 let rows = out.force.chunks_exact_mut(2).zip(&mut out.state);
                 for (j, ((force, state), x)) in rows.zip(out.motion.chunks_exact(2)).enumerate() {
                     check_time(interrupt, j, set)?;
@@ -156,7 +156,9 @@ impl<'a> Orbit<'a> {
         };
         let PeriodicMotion { set, packed, .. } = self.motion;
         match law.form() {
-            Form::PiecewiseLinear(_) | Form::Spectral(_) => Ok(ScalarOrbit::new(set, packed, law)?.account()),
+            Form::PiecewiseLinear(_) | Form::Spectral(_) => {
+                Ok(ScalarOrbit::new(set, packed, law, interrupt)?.account())
+            }
             // A force that follows from one motion alone has a potential.
             Form::Memoryless(law) if law.directions() == 1 && !law.uses_velocity() => Ok(Account::default()),
             Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) | Form::Hysteretic(_) => {
@@ -197,14 +199,14 @@ impl<'a> Orbit<'a> {
     /// Smallest and largest motion in every direction, exactly.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    pub fn ranges(&self) -> Result<Vec<(f64, f64)>> {
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn ranges(&self, interrupt: &Interrupt<'_>) -> Result<Vec<(f64, f64)>> {
         let PeriodicMotion { set, directions, .. } = self.motion;
         let mut search = TurningPoints::new(set)?;
         let mut extrema = extrema(set)?;
         let mut ranges = Vec::new();
         for k in 0..directions {
-            search.find(set, self.motion.signal(k), &mut extrema);
+            search.find(set, self.motion.signal(k), &mut extrema, interrupt)?;
             try_push(&mut ranges, range(set, self.motion.signal(k), &extrema), CONTEXT)?;
         }
         Ok(ranges)

@@ -152,9 +152,9 @@ pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64], interrupt: &Int
             }
         }
         series.set_half_product(condensed.set().numbers(), &moved, &conjugate, n, interrupt)?;
-        largest[0] = series.maximum();
+        largest[0] = series.maximum(interrupt)?;
         series.add_sectors(condensed.sectors(), condensed.in_step());
-        largest[1] = series.maximum();
+        largest[1] = series.maximum(interrupt)?;
     }
     let [[kinetic, wheel_kinetic], [potential, wheel_potential]] = largest;
     Ok(Peaks {
@@ -231,12 +231,13 @@ impl Series {
     }
 
     /// Largest value of the series; its mean if it is constant.
-    fn maximum(&mut self) -> f64 {
+    fn maximum(&mut self, interrupt: &Interrupt<'_>) -> Result<f64> {
         for (i, &c) in self.coefficients.iter().enumerate() {
             self.set.set(&mut self.packed, i, c);
         }
-        self.turning_points.find(&self.set, &self.packed, &mut self.extrema);
+        let found = &mut self.extrema;
+        self.turning_points.find(&self.set, &self.packed, found, interrupt)?;
         let largest = self.extrema.iter().map(|e| e.x).fold(f64::NEG_INFINITY, f64::max);
-        largest.max(self.coefficients[0].re)
+        Ok(largest.max(self.coefficients[0].re))
     }
 }

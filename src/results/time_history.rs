@@ -164,7 +164,7 @@ impl Branch {
         let kept = self.check_contact(point, contact)?;
         self.with_orbit(point, contact, interrupt, |orbit, length| {
             let account = orbit.account(interrupt)?;
-            let ranges = orbit.ranges()?;
+            let ranges = orbit.ranges(interrupt)?;
             let mut summary = ContactSummary {
                 directions: orbit.directions(),
                 work: account.work * length * length,

@@ -152,7 +152,7 @@ pub(super) fn evaluate(
     let mut evaluator = Evaluator::refined(set, (samples, condensed.refinement()), core::iter::once(law))?;
     let mut found = Evaluation::new(set, law.directions())?;
     if law.directions() == 1 {
-        evaluator.prepare(set, &motion);
+        evaluator.prepare(set, &motion, interrupt)?;
     }
     evaluator.evaluate(law, set, &motion, omega, &mut found, interrupt)?;
     Ok(found)

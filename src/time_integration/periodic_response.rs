@@ -128,8 +128,9 @@ fn integrate(
     let recorded = event_loop.run(&mut system, &mut steady.state, observers);
     let summary = match recorded {
         Ok(summary) => summary,
-        // A part of a period has no harmonics.
+        // A part of a period has no harmonics; its samples are not kept beside those of the answer.
         Err(e) if e.status == Status::StoppedByCaller => {
+            drop(recorder);
             return Ok(TimeResponse {
                 residual: steady.residual,
                 periods: steady.periods,

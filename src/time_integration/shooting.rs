@@ -27,6 +27,10 @@ const SHORTEST: f64 = 1.0 / 64.0;
 /// that friction alone holds: the whole motion may be shifted along them.
 const NEUTRAL: f64 = 1e-9;
 
+/// Bytes of a matrix of derivatives that stretches of sliders may make larger than the structure needs: beyond it, periods are
+/// marched instead.
+const MOST_BYTES: usize = 100 << 20;
+
 /// Number of periods that are marched after the first failure of Newton's method; each time twice as many.
 const FIRST_MARCH: usize = 8;
 
@@ -239,6 +243,10 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// with it reduce the error fast; then each of them costs a lapse of the motion alone.
     fn shoot(&mut self) -> Result<Outcome> {
         let unknowns = self.state.len() + usize::from(self.free);
+        let of_structure = 2 * self.state.x.len();
+        if unknowns > 2 * of_structure && unknowns.saturating_mul(unknowns).saturating_mul(8) > MOST_BYTES {
+            return Ok(Outcome::Failed);
+        }
         let interrupt = self.system.interrupt;
         interrupt.check()?;
         let mut sensitivity = Sensitivity::new(self.system)?;

@@ -35,7 +35,7 @@ fn sets(highest: usize) -> [HarmonicSet; 4] {
 fn evaluate(law: &dyn Law, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, 1).unwrap();
     let mut evaluator = Evaluator::new(set, samples, std::iter::once(law)).unwrap();
-    evaluator.prepare(set, motion);
+    evaluator.prepare(set, motion, &Interrupt::none()).unwrap();
     evaluator
         .evaluate(law, set, motion, 1.0, &mut out, &Interrupt::none())
         .unwrap();

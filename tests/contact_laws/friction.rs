@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 fn scalar(law: &dyn Law, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, 1).unwrap();
     let mut way = Evaluator::new(set, 0, std::iter::once(law)).unwrap();
-    way.prepare(set, motion);
+    way.prepare(set, motion, &Interrupt::none()).unwrap();
     way.evaluate(law, set, motion, 1.0, &mut out, &Interrupt::none())
         .unwrap();
     out

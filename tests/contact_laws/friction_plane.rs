@@ -157,7 +157,7 @@ fn constant_load_on_a_line_is_the_jenkins_element_its_dragged_mean_included() {
         x[5] = 0.05 * amplitude * play;
         let mut exact = Evaluation::new(&set, 1).unwrap();
         let mut evaluator = Evaluator::new(&set, 0, std::iter::once(&jenkins as &dyn Law)).unwrap();
-        evaluator.prepare(&set, &x);
+        evaluator.prepare(&set, &x, &Interrupt::none()).unwrap();
         evaluator
             .evaluate(&jenkins, &set, &x, OMEGA, &mut exact, &Interrupt::none())
             .unwrap();

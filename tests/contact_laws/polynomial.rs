@@ -21,7 +21,7 @@ fn a_cubic_polynomial_is_the_cubic_spring() {
             let x = motion(set, 1, which + highest);
             let mut expected = Evaluation::new(set, 1).unwrap();
             let mut evaluator = Evaluator::new(set, 0, std::iter::once(&*spring)).unwrap();
-            evaluator.prepare(set, &x);
+            evaluator.prepare(set, &x, &Interrupt::none()).unwrap();
             evaluator
                 .evaluate(&*spring, set, &x, 1.3, &mut expected, &Interrupt::none())
                 .unwrap();

@@ -26,7 +26,7 @@ fn evaluate(law: &Table, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, 1).unwrap();
     let most = law.most_pieces(set.highest_reduced());
     let mut way = Exact::new(set, most).unwrap();
-    way.prepare(set, motion);
+    way.prepare(set, motion, &Interrupt::none()).unwrap();
     way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
     assert!(
         way.pieces().len() <= most,
@@ -39,7 +39,7 @@ fn evaluate(law: &Table, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
 fn sampled(law: &Table, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, 1).unwrap();
     let mut way = Sampled::new(set, samples).unwrap();
-    way.prepare(set, motion);
+    way.prepare(set, motion, &Interrupt::none()).unwrap();
     way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
     out
 }
@@ -95,7 +95,7 @@ fn two_lines_are_a_unilateral_spring() {
             let mut expected = Evaluation::new(&set, 1).unwrap();
             for samples in [0, 256] {
                 let mut evaluator = Evaluator::new(&set, samples, std::iter::once(&*spring)).unwrap();
-                evaluator.prepare(&set, &x);
+                evaluator.prepare(&set, &x, &Interrupt::none()).unwrap();
                 evaluator
                     .evaluate(&*spring, &set, &x, 1.0, &mut expected, &Interrupt::none())
                     .unwrap();
@@ -302,8 +302,10 @@ fn a_motion_that_rests_or_just_touches_a_point_meets_no_gap() {
                 x[1] = swing + nudge;
                 let mut pieces: Vec<Piece> = Vec::new();
                 let mut turning_points = Vec::new();
-                TurningPoints::new(&set).unwrap().find(&set, &x, &mut turning_points);
-                law.pieces(&set, &x, &turning_points, &mut pieces);
+                let mut search = TurningPoints::new(&set).unwrap();
+                let none = Interrupt::none();
+                search.find(&set, &x, &mut turning_points, &none).unwrap();
+                law.pieces(&set, &x, &turning_points, &mut pieces, &none).unwrap();
                 let covered: f64 = pieces.iter().map(|p| p.end - p.start).sum();
                 assert!((covered - TAU).abs() < 1e-12, "mean {mean}, swing {swing}: {covered}");
                 assert!(pieces.windows(2).all(|p| (p[0].end - p[1].start).abs() < 1e-15));

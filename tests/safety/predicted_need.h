@@ -88,7 +88,10 @@ static double need_of_structure(const sizes *s, double h)
     return (h + 1) * (96 * n * n + 128 * (n + s->motions) + 2 * KIB) + 400 * n * n;
 }
 
-static double need_of_linear_modes(const sizes *s) { return 400 * (double)s->dofs * (double)s->dofs + 512 * KIB; }
+static double need_of_linear_modes(const sizes *s)
+{
+    return 400 * (double)s->dofs * (double)s->dofs + 512 * KIB + 400 * s->squares;
+}
 
 /* Of building, changing, copying, saving and loading a model. */
 static double need_of_a_change(const sizes *s) { return 16 * KIB + 8 * (double)s->saved; }
@@ -110,6 +113,12 @@ static double need_of_a_branch(const sizes *s, const hbvib_solver_options *o, do
     const double pieces = s->most > 1 ? 2 * MIB * (h + 1) : 0;
     return need_of_structure(s, h) + (automatic ? 4 : 2) * equations + estimate + pieces +
            points * (48 * (h + 1) * ((double)s->dofs + s->motions) + 512) + need_of_linear_modes(s) + 2 * MIB;
+}
+
+/* Of the equations of a stored point and of its structure, for derivatives at it. */
+static double need_of_a_branch_point(const sizes *s, double h, double samples)
+{
+    return 4 * need_of_equations(s, h, samples) + 4 * need_of_structure(s, h) + 16 * MIB;
 }
 
 /* Numbers that describe the state of the whole wheel with its contacts, and some. */

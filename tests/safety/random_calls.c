@@ -44,6 +44,12 @@ static int64_t count(int64_t usual)
     return one_in(40) ? extreme[next() % 9] : usual;
 }
 
+/* Times, samples and harmonics: mostly the usual number, sometimes up to 2^24. */
+static int64_t times(int64_t usual)
+{
+    return one_in(60) ? (int64_t)1 << (10 + next() % 15) : count(usual);
+}
+
 /* Handles: live ones, those that were freed, and others. */
 static hbvib_model *models[MOST];
 static hbvib_branch *branches[MOST];
@@ -233,6 +239,18 @@ static hbvib_hooks hooks(void)
 
 static int64_t degree(int which) { return which < 0 ? 0 : count((int64_t)(next() % (uint64_t)dofs[which])); }
 
+/* A guess of some harmonics with random content, or none: its complex numbers are counted. The last few are not always there. */
+static double guessed[2 * 9 * 128];
+
+static int64_t guess(int which)
+{
+    const int64_t n = which < 0 ? 1 : dofs[which], len = (1 + (int64_t)(next() % 8)) * n;
+    int64_t i;
+    if (one_in(2)) return 0;
+    for (i = 0; i < 2 * len; i++) guessed[i] = one_in(3) ? number(uniform() - 0.5) : 0;
+    return one_in(20) ? count(len) % (9 * 128) : len;
+}
+
 /* Structs whose size may be stated as larger than they are, as by a newer header. */
 typedef union wide_options {
     hbvib_solver_options s;
@@ -252,7 +270,7 @@ static hbvib_solver_options solver(void)
     s.tolerance = one_in(4) ? number(0.05) : 0;
     s.harmonics = count(1 + (int64_t)(next() % 6));
     s.max_harmonics = count(30);
-    s.samples = one_in(5) ? count(64) : 0;
+    s.samples = one_in(5) ? times(64) : 0;
     s.max_points = count(20);
     s.max_newton = count(20);
     s.response_dof = one_in(5) ? count(0) : -1;
@@ -262,6 +280,11 @@ static hbvib_solver_options solver(void)
     s.flexibility = one_in(10) ? (int32_t)(next() % 5) - 1 : 0;
     if (one_in(10)) s.tol_residual = number(1e-9);
     if (one_in(10)) s.step_max = number(0.1);
+    /* Intervals of steps that the automatic ones cross, or that are empty. */
+    if (one_in(12)) s.step = number(pow(10, 6 * uniform() - 4));
+    if (one_in(12)) s.step_min = number(pow(10, 9 * uniform() - 7));
+    if (one_in(12)) s.step_max = number(pow(10, 9 * uniform() - 7));
+    if (one_in(30)) s.stability = (int32_t)(next() % 4);
     if (one_in(100)) s.struct_size = (uint32_t)next() % 300;
     if (one_in(100)) s.num_threads = (int32_t)next();
     return s;
@@ -310,6 +333,26 @@ static void usual_constants(hbvib_contact *c)
     }
 }
 
+/* Up to 20,000 contacts on few degrees of freedom. */
+static void many_contacts(hbvib_model *model, int which)
+{
+    enum { MANY = 20000 };
+    static int64_t a[MANY], b[MANY];
+    static double kt[MANY], mu[MANY], preload[MANY];
+    const int64_t n = 1 + (int64_t)(next() % MANY), free_ones = which < 0 ? 1 : dofs[which];
+    hbvib_status status;
+    int64_t i;
+    for (i = 0; i < n; i++) {
+        a[i] = (int64_t)(next() % (uint64_t)free_ones);
+        b[i] = one_in(2) ? HBVIB_GROUND : (int64_t)(next() % (uint64_t)free_ones);
+        if (b[i] == a[i]) b[i] = HBVIB_GROUND;
+        kt[i] = (0.1 + uniform()) / (double)n;
+        mu[i] = 0.3;
+        preload[i] = uniform() / (double)n;
+    }
+    CALL_WITHIN(1000 * (double)n + 8 * (double)sizes_of(model).saved, hbvib_model_add_jenkins, model, n, a, b, NULL, kt, mu, preload, NULL);
+}
+
 #define CHANGE(function, ...) CALL_WITHIN(need, function, __VA_ARGS__)
 
 static void change_model(void)
@@ -328,7 +371,7 @@ static void change_model(void)
     for (i = 0; i < 16; i++) x[i] = number(i % 4 == 0 ? 1 : 0.1) * (i % 3 == 0);
     a[0] = degree(which);
     a[1] = degree(which);
-    switch (next() % 14) {
+    switch (one_in(200) ? 14 : next() % 14) {
     case 0:
         usual_constants(c);
         if (one_in(3)) c->dof_b[0] = a[1];
@@ -366,6 +409,7 @@ static void change_model(void)
         CHANGE(hbvib_model_add_user_force, model, &force, &id);
         break;
     case 12: CHANGE(hbvib_model_set_preload_at_speed, model, count(0), number(0.3), number(0.01)); break;
+    case 14: many_contacts(model, which); break;
     default: CHANGE(hbvib_model_add_iwan, model, a[0], HBVIB_GROUND, 0, number(0.2), number(1), number(-0.3), number(0.1), count(5), &id);
     }
 }
@@ -389,6 +433,7 @@ static double somewhere(int which)
 
 static void solve(void)
 {
+    static double at[1];
     int which;
     hbvib_model *model = some_model(&which);
     wide_options wide = {solver()};
@@ -412,6 +457,15 @@ static void solve(void)
         hbvib_forced_options_init(&o, sizeof o);
         o.omega_start = somewhere(which);
         o.omega_stop = one_in(3) ? o.omega_start : o.omega_start * number(1.02);
+        if (one_in(4)) {
+            o.guess_len = guess(which);
+            o.guess = o.guess_len != 0 || one_in(20) ? guessed : NULL;
+        }
+        if (one_in(8)) {
+            at[0] = o.omega_start * number(1);
+            o.at = at;
+            o.at_len = 1;
+        }
         if (one_in(20)) {
             hbvib_solver_options_init(s, sizeof *s);
             from.harmonics = highest(s);
@@ -428,6 +482,21 @@ static void solve(void)
         o.log10_start = which >= 0 && dofs[which] == 4 ? -5.6 : number(-1);
         o.log10_stop = o.log10_start + fabs(number(0.5));
         o.mode_index = count(0);
+        if (one_in(3)) o.diameter = count((int64_t)(next() % 9) - 4);
+        if (one_in(4)) o.damping_form = (int32_t)(next() % 3);
+        if (one_in(6)) o.amplitude_contact = count(0);
+        if (one_in(6)) o.reference_dof = degree(which);
+        if (one_in(4)) {
+            o.guess_len = guess(which);
+            o.guess = o.guess_len != 0 ? guessed : NULL;
+            if (o.guess_len != 0) o.guess_omega = somewhere(which);
+            if (o.guess_len != 0) o.guess_damping = number(0.02);
+        }
+        if (one_in(8)) {
+            at[0] = number(o.log10_start);
+            o.at = at;
+            o.at_len = 1;
+        }
         CALL_NAMED(estimates ? "hbvib_nonlinear_mode" : "hbvib_nonlinear_mode, no estimate",
                    need_of_a_branch(&from.model, s, MOST_POINTS), hbvib_nonlinear_mode, model, s, &o, &h, &branch);
     } else {
@@ -441,12 +510,101 @@ static void solve(void)
         o.omega = somewhere(which);
         o.max_periods = count(40);
         o.harmonics = 5;
-        CALL_WITHIN(need_in_time(&from.model, 5), hbvib_time_response, model, &o, &h, which < 0 ? NULL : x, which < 0 ? 0 : 6 * dofs[which], NULL, 0, &info);
+        o.method = one_in(4);
+        if (one_in(10)) o.tolerance = number(1e-9);
+        if (one_in(4)) {
+            o.start_len = guess(which);
+            o.start = o.start_len != 0 ? guessed : NULL;
+        }
+        if (one_in(20) && which >= 0 && dofs[which] < 5) {
+            /* A long record, or many harmonics. */
+            const int64_t n = dofs[which];
+            double *series = NULL, *record = NULL;
+            if (one_in(2)) o.harmonics = times(5);
+            else o.samples = times(1 << 16);
+            if (o.harmonics >= 0 && o.harmonics <= 1 << 24) series = malloc((size_t)((o.harmonics + 1) * n) * 2 * sizeof *series);
+            if (o.samples >= 0 && o.samples <= 1 << 24) record = malloc((size_t)(o.samples * n) * sizeof *record + 8);
+            CALL_NAMED("hbvib_time_response, long", need_in_time(&from.model, within(o.harmonics, 1e5)) + 8 * within(o.samples, 1 << 24) * (double)n,
+                       hbvib_time_response, model, &o, &h, series, series == NULL ? 0 : (o.harmonics + 1) * n, o.samples == 0 ? NULL : record,
+                       record == NULL ? 0 : o.samples * n, &info);
+            free(series);
+            free(record);
+        } else {
+            CALL_WITHIN(need_in_time(&from.model, 5), hbvib_time_response, model, &o, &h, which < 0 ? NULL : x,
+                        which < 0 ? 0 : 6 * dofs[which], NULL, 0, &info);
+        }
     }
     solves++;
     if (status >= 0) solved++;
     solving[0] = '\0';
     keep(branch, &from);
+}
+
+/* Damped modes, Campbell and interference diagrams of signed diameters. */
+static void ask_for_waves(void)
+{
+    static double value[2 * 64 * 128], second[64 * 128];
+    static int64_t diameter[64], direction[64 * 128];
+    static const double speeds[3] = {0.1, 0.3, 0.7};
+    int which;
+    hbvib_model *model = some_model(&which);
+    hbvib_hooks h = hooks();
+    hbvib_status status;
+    const sizes m = sizes_of(model);
+    const int64_t sectors = m.dofs > 0 ? m.wheel / m.dofs : 1, n = count(1 + (int64_t)(next() % 3));
+    const int64_t d = count((int64_t)(next() % 9) - 4), order = count(1 + (int64_t)(next() % 9));
+    const int32_t contacts = (int32_t)(next() % 4);
+    /* Of all waves and speeds at a time. */
+    const double need = 4 * need_of_linear_modes(&m) + 2000 * (double)(m.wheel + 64) + 100 * (double)(m.saved);
+    int64_t found = 0;
+    if (n > 3) return;
+    switch (next() % 4) {
+    case 0: CALL_WITHIN(need, hbvib_damped_modes, model, d, contacts, n, value, one_in(2) ? NULL : second, direction, &h); break;
+    case 1: CALL_WITHIN(need, hbvib_campbell, model, 3, speeds, d, contacts, n, value, second, direction, &h); break;
+    case 2:
+        CALL_WITHIN(need, hbvib_campbell_crossings, model, 3, speeds, d, contacts, n, order, 64, value, second, direction, &found, &h);
+        break;
+    default:
+        CALL_WITHIN(need, hbvib_interference, model, contacts, n, one_in(20) ? count(64) & 63 : 64, diameter, value, second, direction,
+                    one_in(2) ? NULL : &found, &h);
+        for (found = 0; status == HBVIB_OK && found < sectors && found < 64; found++)
+            failures += 2 * diameter[found] <= -sectors || 2 * diameter[found] > sectors;
+    }
+}
+
+/* Loops and histories of up to 2^24 times. */
+static void ask_for_many_times(const hbvib_branch *branch, int64_t point, double need, const hbvib_hooks *h)
+{
+    const int64_t n = times(1 << 12);
+    const double record = 8 * within(n, 1 << 24);
+    hbvib_status status;
+    double *y, *f;
+    int32_t *states;
+    if (n < 0 || n > 1 << 24) return;
+    y = malloc((size_t)n * sizeof *y + 8);
+    f = malloc((size_t)n * sizeof *f + 8);
+    states = malloc((size_t)n * sizeof *states + 8);
+    if (one_in(2)) CALL_NAMED("hbvib_branch_time_history_with_hooks, long", need + 4 * record, hbvib_branch_time_history_with_hooks, branch, point, 0, n, y, h);
+    else CALL_NAMED("hbvib_branch_contact_loop_with_hooks, long", need + 32 * record, hbvib_branch_contact_loop_with_hooks, branch, point, count(0), count(0), n, y, f, states, h);
+    free(y);
+    free(f);
+    free(states);
+}
+
+/* Derivatives at a point of a branch, whose model has changed since, mostly. */
+static void ask_for_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, double need)
+{
+    hbvib_hooks h = hooks();
+    hbvib_parameter p;
+    hbvib_status status;
+    double derivative;
+    int64_t reason, onset;
+    memset(&p, 0, sizeof p);
+    hbvib_parameter_init(&p, sizeof p);
+    p.kind = (int32_t)(next() % 11) - 1;
+    p.contact = one_in(2) ? -1 : count(0);
+    p.scaling = (int32_t)(next() % 2);
+    CALL_WITHIN(need, hbvib_sensitivity, model, branch, point, (int32_t)(next() % 6), &p, 1, &derivative, 1, &reason, &onset, &h);
 }
 
 static void ask(void)
@@ -472,11 +630,13 @@ static void ask(void)
     const double result = need_of_a_result(&of.model, of.harmonics, of.samples);
     memset(&r, 0, sizeof r);
     hbvib_reduction_init(&r, sizeof r);
-    switch (next() % 12) {
+    switch (next() % 16) {
     case 0:
         memset(&view, 0, sizeof view);
         hbvib_view_init(&view, sizeof view);
-        CALL(hbvib_branch_field, branch, (int32_t)(next() % 18) - 1, &view);
+        if (one_in(2)) CALL(hbvib_branch_field, branch, (int32_t)(next() % 22) - 1, &view);
+        else CALL(hbvib_branch_stored_field, branch, (int32_t)(next() % 22) - 1, &view);
+        if (status == HBVIB_OK && view.data != NULL && view.shape[0] > 0) y[0] = view.data[(view.shape[0] - 1) * view.stride[0]];
         break;
     case 1:
         CALL(hbvib_branch_reduction, branch, &r);
@@ -509,8 +669,31 @@ static void ask(void)
         CALL_WITHIN(result + need_of_multipliers(&m, of.harmonics), hbvib_floquet, model, branch, at, NULL, &h, x, 64, NULL, 0, &info);
         break;
     case 10: CALL_WITHIN(result, hbvib_branch_synthesis_with_hooks, branch, model, NULL, 64, y, x, f, &n, &h); break;
-    default: CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model, count(0), (int32_t)(next() % 4), count(1), y, NULL, &h);
+    case 11: ask_for_waves(); break;
+    case 12: ask_for_many_times(branch, at, result, &h); break;
+    case 13: ask_for_sensitivity(model, branch, at, result + need_of_a_branch_point(&of.model, of.harmonics, of.samples) + 8 * (double)m.saved); break;
+    case 14: CALL_WITHIN(result, hbvib_branch_slip_fraction, branch, at, y, one_in(20) ? count(1) : hbvib_model_contacts(model) & 255); break;
+    default: CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model, count((int64_t)(next() % 9) - 4), (int32_t)(next() % 4), count(1), y, NULL, &h);
     }
+}
+
+/* A law at a motion of up to 10,000 harmonics, with and without its Jacobian, exactly or by samples. */
+static void many_harmonics(const hbvib_contact *c, int64_t d)
+{
+    const int with = one_in(2);
+    const int64_t h = (int64_t)(pow(10, with ? 3 * uniform() : 4 * uniform())), n = d * (h + 1), samples = one_in(2) ? times(4 * h + 16) : 0;
+    const double need = need_of_a_law((double)d, (double)h, within(samples, 1 << 24));
+    double *motion = malloc((size_t)n * 2 * sizeof *motion), *force = malloc((size_t)n * 2 * sizeof *force), *jac = NULL;
+    hbvib_hooks hook = hooks();
+    hbvib_status status;
+    int64_t i;
+    if (with) jac = malloc((size_t)(4 * n * n) * sizeof *jac);
+    for (i = 0; i < 2 * n; i++) motion[i] = number(uniform() - 0.5) / (1 + (double)(i / 2 % (h + 1)));
+    CALL_NAMED(with ? "hbvib_contact_evaluate_with_hooks, jac" : "hbvib_contact_evaluate_with_hooks", with || need < 500e6 ? need : 500e6,
+               hbvib_contact_evaluate_with_hooks, c, h, samples, number(1), motion, n, force, n, jac, with ? 4 * n * n : 0, &hook);
+    free(motion);
+    free(force);
+    free(jac);
 }
 
 static void low(void)
@@ -528,8 +711,9 @@ static void low(void)
         const int64_t d = c.kind == HBVIB_FRICTION_3D && c.kn != 0 ? 3
                           : c.kind == HBVIB_FRICTION_3D || (c.kind == HBVIB_FRICTION_2D && c.kn != 0) ? 2 : 1;
         const int64_t n = one_in(20) ? 6 : 6 * d, samples = one_in(3) ? count(32) : 0;
-        const double times = (double)(samples > 1 << 20 ? 1 << 20 : samples);
-        CALL_WITHIN(need_of_a_law((double)d, 5, times), hbvib_contact_evaluate, &c, 5, samples, number(1), x, n, y, n, jac, 4 * n * n);
+        const double held = (double)(samples > 1 << 20 ? 1 << 20 : samples);
+        if (one_in(15)) many_harmonics(&c, d);
+        else CALL_WITHIN(need_of_a_law((double)d, 5, held), hbvib_contact_evaluate, &c, 5, samples, number(1), x, n, y, n, jac, 4 * n * n);
         return;
     }
     CALL(hbvib_model_save, some_model(&which), sizeof bytes, bytes, &size);

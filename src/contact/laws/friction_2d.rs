@@ -33,6 +33,7 @@ use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, jet};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -226,19 +227,21 @@ impl VaryingNormalLoad for Friction2d {
         search: &mut CoupledSearch,
         normal: &mut Vec<Piece>,
         tangential: &mut Vec<CoupledPiece>,
-    ) {
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         normal.clear();
         tangential.clear();
         let (x, y) = motion.split_at(set.packed_len());
-        self.normal_pieces(set, y, search, normal);
+        self.normal_pieces(set, y, search, normal, interrupt)?;
         if self.kt == 0.0 || self.mu == 0.0 {
-            return;
+            return Ok(());
         }
         for (bound, sign) in search.bounds.iter_mut().zip([1.0, -1.0]) {
             for ((u, x), y) in bound.signal.iter_mut().zip(x).zip(y) {
                 *u = self.kt * x + sign * (self.mu * self.kn) * y;
             }
-            find(&mut search.search, set, &bound.signal, &mut bound.turning_points);
+            let found = &mut bound.turning_points;
+            find(&mut search.search, set, &bound.signal, found, interrupt)?;
         }
         let mut walk = Walk {
             play: Play {
@@ -253,8 +256,8 @@ impl VaryingNormalLoad for Friction2d {
             pieces: tangential,
         };
         match normal.as_slice() {
-            [only] if only.is_closed() => always_closed(&mut walk),
-            pieces => closed_times(pieces, &mut walk),
+            [only] if only.is_closed() => always_closed(&mut walk, interrupt),
+            pieces => closed_times(pieces, &mut walk, interrupt),
         }
     }
 
@@ -273,7 +276,14 @@ impl Friction2d {
     }
 
     /// Pieces of the normal force.
-    fn normal_pieces(&self, set: &HarmonicSet, y: &[f64], search: &mut CoupledSearch, pieces: &mut Vec<Piece>) {
+    fn normal_pieces(
+        &self,
+        set: &HarmonicSet,
+        y: &[f64],
+        search: &mut CoupledSearch,
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         if self.kn == 0.0 {
             pieces.push(Piece {
                 start: 0.0,
@@ -282,33 +292,33 @@ impl Friction2d {
                 anchor: None,
                 offset: if self.load > 0.0 { -self.load } else { 0.0 },
             });
-            return;
+            return Ok(());
         }
-        find(&mut search.search, set, y, &mut search.normal);
+        find(&mut search.search, set, y, &mut search.normal, interrupt)?;
         let spring = Unilateral {
             stiffness: self.kn,
             gap: -self.load / self.kn,
         };
-        spring.pieces(set, y, &search.normal, pieces);
+        spring.pieces(set, y, &search.normal, pieces, interrupt)?;
         for piece in pieces.iter_mut().filter(|p| p.slope != 0.0) {
             // From the load itself, without the rounding of the gap.
             piece.offset = -self.load;
         }
+        Ok(())
     }
 }
 
 /// Pieces of a motion that never opens the contact. It slips where the bounds, each over the whole turn, leave
 /// no room for a slider at rest, and then the highest q₊ drags the slider: below it the slider was
 /// when the lowest q₋ had passed, and only q₊ has moved it up since.
-fn always_closed(walk: &mut Walk<'_>) {
+fn always_closed(walk: &mut Walk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
     let [upper, lower] = walk.bounds;
     let limit = walk.play.mu * walk.play.load;
     let highest = extreme(walk.set, upper, 1.0);
     let lowest = extreme(walk.set, lower, -1.0);
     let room = (lowest.x + limit) - (highest.x - limit);
     if room < 0.0 && !upper.turning_points.is_empty() {
-        walk.run([highest.tau, highest.tau + TAU], Phase::slip(0, highest.tau));
-        return;
+        return walk.run([highest.tau, highest.tau + TAU], Phase::slip(0, highest.tau), interrupt);
     }
     let dragged = if highest.x > limit {
         Some((1.0, highest.tau))
@@ -321,10 +331,11 @@ fn always_closed(walk: &mut Walk<'_>) {
     let mut piece = dragged.map_or(play.stick(), |(sign, tau)| play.stick_after_slip(sign, tau));
     (piece.start, piece.end) = (0.0, TAU);
     walk.pieces.push(piece);
+    Ok(())
 }
 
 /// Walks every closed time from its closing on; the open times between them carry no force.
-fn closed_times(normal: &[Piece], walk: &mut Walk<'_>) {
+fn closed_times(normal: &[Piece], walk: &mut Walk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
     let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
     // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true] && normal.len() > 1;
@@ -336,11 +347,12 @@ fn closed_times(normal: &[Piece], walk: &mut Walk<'_>) {
         };
         if piece.is_closed() {
             let phase = walk.closing(piece.start);
-            walk.run([piece.start, end], phase);
+            walk.run([piece.start, end], phase, interrupt)?;
         } else {
             walk.push(CoupledPiece::OPEN, piece.start, end);
         }
     }
+    Ok(())
 }
 
 /// The highest (sign 1) or lowest (−1) value of a bound's signal.

@@ -8,8 +8,10 @@
 use crate::contact::contact_state::State;
 use crate::contact::coupled_search::Bound;
 use crate::contact::piece::CoupledPiece;
+use crate::error::Result;
 use crate::fourier::HarmonicSet;
-use crate::fourier::{Extremum, crossing, jet};
+use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing, jet};
+use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 /// Constants of the slider: those of friction under a varying normal load.
@@ -117,7 +119,10 @@ impl Walk<'_> {
     }
 
     /// Walks over a time in which the contact is closed.
-    pub(super) fn run(&mut self, [begin, end]: [f64; 2], mut phase: Phase) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub(super) fn run(&mut self, [begin, end]: [f64; 2], mut phase: Phase, interrupt: &Interrupt<'_>) -> Result<()> {
         let [upper, lower] = self.bounds;
         let mut cursors = [
             Cursor::after(&upper.turning_points, begin),
@@ -125,6 +130,7 @@ impl Walk<'_> {
         ];
         let mut from = self.instant(begin);
         while from.tau < end {
+            interrupt.check_before((VALUES_OF_A_CROSSING * self.motion.0.len()) as u64)?;
             let to = self.instant(cursors.iter().fold(end, |t, c| t.min(c.tau())));
             let drags = [0, 1].map(|side| SIGNS[side] * cursors[side].rise() > 0.0);
             phase = self.advance(phase, from, to, drags);
@@ -137,6 +143,7 @@ impl Walk<'_> {
             Phase::Slip { side, start } => self.push(self.play.slip(SIGNS[side]), start, end),
             Phase::Stick { piece, .. } => self.push(piece, piece.start, end),
         }
+        Ok(())
     }
 
     fn instant(&self, tau: f64) -> Instant {

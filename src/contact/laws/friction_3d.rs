@@ -262,14 +262,15 @@ impl VaryingNormalLoad for Friction3d {
         search: &mut CoupledSearch,
         normal: &mut Vec<Piece>,
         tangential: &mut Vec<CoupledPiece>,
-    ) {
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let law = Friction2d {
             kt: 0.0,
             kn: self.kn,
             mu: self.mu,
             load: self.load,
         };
-        law.coupled_pieces(set, motion, search, normal, tangential);
+        law.coupled_pieces(set, motion, search, normal, tangential, interrupt)
     }
 
     fn load_at(&self, y: f64) -> f64 {

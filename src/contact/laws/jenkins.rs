@@ -17,7 +17,8 @@ use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::Piece;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
-use crate::fourier::{Extremum, crossing};
+use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -196,9 +197,16 @@ impl Law for Jenkins {
 }
 
 impl PiecewiseLinear for Jenkins {
-    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>) {
+    fn pieces(
+        &self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         if self.is_inert() {
-            return;
+            return Ok(());
         }
         let turn = if set.is_odd() { PI } else { TAU };
         let play = self.limit / self.stiffness;
@@ -207,7 +215,7 @@ impl PiecewiseLinear for Jenkins {
         // A motion without turning points does not move, or is not finite.
         if turning_points.is_empty() || highest.1 - lowest.1 <= 2.0 * play {
             self.stuck(turn, lowest, highest, pieces);
-            return;
+            return Ok(());
         }
         // The motion is known to slip into its highest value (odd sets: its largest magnitude).
         let mut first = 0;
@@ -245,6 +253,7 @@ impl PiecewiseLinear for Jenkins {
                 let slip = if direction * (last.x - threshold) >= 0.0 {
                     last.tau
                 } else {
+                    interrupt.check_before((VALUES_OF_A_CROSSING * motion.len()) as u64)?;
                     crossing(set, motion, last.tau, next.tau, last.x, next.x, threshold)
                 };
                 self.push_stick(&stick, slip, pieces);
@@ -267,6 +276,7 @@ impl PiecewiseLinear for Jenkins {
         if stick.start < last.tau {
             self.push_stick(&stick, last.tau, pieces);
         }
+        Ok(())
     }
 
     /// The slider is marched from the highest sample, which it reaches slipping, once around.

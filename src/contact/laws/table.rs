@@ -14,7 +14,8 @@ use crate::contact::piece::Piece;
 use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
-use crate::fourier::{Extremum, crossing};
+use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -306,13 +307,20 @@ impl Law for Table {
 }
 
 impl PiecewiseLinear for Table {
-    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>) {
+    fn pieces(
+        &self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let turn = if set.is_odd() { PI } else { TAU };
         let Some(first) = turning_points.first() else {
             let rest = if set.has_mean() { motion[0] } else { 0.0 };
             self.push(0.0, turn, self.line_from(rest), pieces);
             self.part_from_rest(pieces);
-            return;
+            return Ok(());
         };
         // The turn ends as it begins, with opposite sign half a turn later.
         let end = Extremum {
@@ -336,6 +344,7 @@ impl PiecewiseLinear for Table {
                 let level = self.scaled(self.lines[line.max(next)].from);
                 let ahead = (level - passed.x) * (to.x - level) > 0.0;
                 let tau = if ahead {
+                    interrupt.check_before((VALUES_OF_A_CROSSING * motion.len()) as u64)?;
                     crossing(set, motion, passed.tau, to.tau, passed.x, to.x, level)
                 } else {
                     passed.tau
@@ -351,6 +360,7 @@ impl PiecewiseLinear for Table {
             self.push(start, end.tau, line, pieces);
         }
         self.part_from_rest(pieces);
+        Ok(())
     }
 
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {

@@ -16,7 +16,8 @@ use crate::contact::piece::Piece;
 use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
-use crate::fourier::{Extremum, crossing};
+use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -162,12 +163,19 @@ impl Law for Unilateral {
 }
 
 impl PiecewiseLinear for Unilateral {
-    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>) {
+    fn pieces(
+        &self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let level = -self.gap;
         let Some(first) = turning_points.first() else {
             let rest = if set.has_mean() { motion[0] } else { 0.0 };
             self.push(0.0, TAU, rest < level, pieces);
-            return;
+            return Ok(());
         };
         // From one turning point to the next the motion passes the level once at most.
         let mut start = first.tau;
@@ -178,6 +186,7 @@ impl PiecewiseLinear for Unilateral {
                 to.tau += TAU;
             }
             if (to.x < level) != closed {
+                interrupt.check_before((VALUES_OF_A_CROSSING * motion.len()) as u64)?;
                 let at = crossing(set, motion, from.tau, to.tau, from.x, to.x, level);
                 self.push(start, at, closed, pieces);
                 start = at;
@@ -185,6 +194,7 @@ impl PiecewiseLinear for Unilateral {
             }
         }
         self.push(start, first.tau + TAU, closed, pieces);
+        Ok(())
     }
 
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {

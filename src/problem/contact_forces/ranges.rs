@@ -38,8 +38,8 @@ impl ContactForces<'_> {
             };
             let y = gather_scaled(at, (m, here.of_motion), motion, &mut self.gathered);
             if at.len() == 1 {
-                self.evaluator.prepare(set, y);
-                other.prepare(set, y);
+                self.evaluator.prepare(set, y, self.interrupt)?;
+                other.prepare(set, y, self.interrupt)?;
             }
             let reported = |e: Error| e.at(format_args!("contact {}", assembled.contact));
             let interrupt = self.interrupt;
@@ -86,7 +86,7 @@ impl ContactForces<'_> {
         let m = set.packed_len();
         let mut ranges = Vec::new();
         for y in motion.chunks_exact(m.max(1)) {
-            self.evaluator.prepare(set, y);
+            self.evaluator.prepare(set, y, self.interrupt)?;
             let range = Range {
                 half: self.evaluator.half_range(set),
                 mean: if set.has_mean() { y[0] } else { 0.0 },

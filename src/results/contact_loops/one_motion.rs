@@ -9,6 +9,7 @@ use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{TurningPoints, jet};
+use crate::interrupt::Interrupt;
 use crate::results::contact_loops::period::{Account, CONTEXT, extrema};
 use std::f64::consts::{PI, TAU};
 
@@ -26,18 +27,19 @@ impl<'a> ScalarOrbit<'a> {
     /// Locates the events of `law`, if it has any.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(set: &'a HarmonicSet, motion: &'a [f64], law: &'a dyn Law) -> Result<Self> {
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn new(set: &'a HarmonicSet, motion: &'a [f64], law: &'a dyn Law, interrupt: &Interrupt<'_>) -> Result<Self> {
         let (mut pieces, mut anchors) = (Vec::new(), Vec::new());
         if let Form::PiecewiseLinear(law) = law.form() {
             let mut turning_points = extrema(set)?;
-            TurningPoints::new(set)?.find(set, motion, &mut turning_points);
+            TurningPoints::new(set)?.find(set, motion, &mut turning_points, interrupt)?;
             pieces
                 .try_reserve(law.most_pieces(set.highest_reduced()))
                 .map_err(|_| Error::out_of_memory(CONTEXT))?;
-            law.pieces(set, motion, &turning_points, &mut pieces);
+            law.pieces(set, motion, &turning_points, &mut pieces, interrupt)?;
         }
         for piece in &pieces {
+            interrupt.check_before(motion.len() as u64)?;
             let x = piece.anchor.map_or(0.0, |tau| jet(set, motion, tau).x);
             try_push(&mut anchors, x, CONTEXT)?;
         }

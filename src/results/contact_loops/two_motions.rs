@@ -8,6 +8,7 @@ use crate::contact::piece::CoupledPiece;
 use crate::error::{Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
+use crate::interrupt::Interrupt;
 use crate::results::contact_loops::period::CONTEXT;
 use std::f64::consts::TAU;
 
@@ -24,13 +25,20 @@ impl<'a> CoupledOrbit<'a> {
     /// Locates the events of `law`.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet, motion: &[f64], law: &'a dyn VaryingNormalLoad) -> Result<Self> {
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn new(
+        set: &HarmonicSet,
+        motion: &[f64],
+        law: &'a dyn VaryingNormalLoad,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Self> {
         let (mut normal, mut pieces) = piece_lists(set)?;
-        law.coupled_pieces(set, motion, &mut CoupledSearch::new(set)?, &mut normal, &mut pieces);
+        let mut search = CoupledSearch::new(set)?;
+        law.coupled_pieces(set, motion, &mut search, &mut normal, &mut pieces, interrupt)?;
         let (x, y) = motion.split_at(set.packed_len());
         let mut kept = Vec::new();
         for piece in &pieces {
+            interrupt.check_before(motion.len() as u64)?;
             let remembered = piece
                 .anchor
                 .map_or(0.0, |r| piece.at_x * jet(set, x, r).x + piece.at_y * jet(set, y, r).x);
