@@ -14,6 +14,9 @@ use crate::time_integration::variation::{Collocation, Interval, Variation};
 
 const CONTEXT: &str = "the motion in time";
 
+/// Operations that a law takes in a step, about.
+const OPERATIONS_OF_A_LAW: usize = 200;
+
 /// Steps of one lapse before the integration stops with an error: for integration in time the structure is then too
 /// stiff against its period.
 const MOST_STEPS: usize = 20_000_000;
@@ -250,6 +253,8 @@ impl EventLoop {
             system
                 .interrupt
                 .phase(Phase::TimeIntegration, 0.1 * (10.0 * t / end).floor())?;
+            let work = OPERATIONS_OF_A_LAW * system.elements.len();
+            system.interrupt.check_before(work as u64)?;
             steps += 1;
             if steps > MOST_STEPS {
                 return fail!(

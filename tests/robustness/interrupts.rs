@@ -404,3 +404,21 @@ fn every_analysis_of_the_largest_models_returns_within_a_tenth_of_a_second() {
     }
     all.check();
 }
+
+/// Samples, turning points and columns are checked as they are computed: no long stretch of one evaluation is without a check.
+#[test]
+fn samples_and_turning_points_of_many_harmonics_are_checked() {
+    const HIGHEST: usize = 300;
+    let law = Contact::jenkins(0, None, 1.0, 1.0, 0.01);
+    let signal: Vec<Complex64> = (0..=HIGHEST)
+        .map(|h| Complex64::cis((h * h) as f64) / (1 + h) as f64)
+        .collect();
+    let mut force = vec![Complex64::ZERO; signal.len()];
+    for (samples, most, least) in [(0, 1_000_000, 1_000), (1 << 16, 3_000_000, 30)] {
+        let interrupt = Interrupt::none();
+        contact_evaluate_with(&law, (HIGHEST, samples, 1.0), &signal, &mut force, None, &interrupt).unwrap();
+        let (checks, largest) = (interrupt.checks(), interrupt.largest());
+        println!("{samples} samples: {checks} checks, at most {largest} operations between them");
+        assert!(checks >= least && largest <= most, "{samples} samples");
+    }
+}

@@ -90,7 +90,7 @@ static double need_of_structure(const sizes *s, double h)
 
 static double need_of_linear_modes(const sizes *s)
 {
-    return 400 * (double)s->dofs * (double)s->dofs + 512 * KIB + 400 * s->squares;
+    return 400 * (double)s->dofs * (double)s->dofs + 512 * KIB + 800 * s->squares;
 }
 
 /* Of building, changing, copying, saving and loading a model. */
