@@ -24,7 +24,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{Content, ForcedOptions, SolverOptions};
+use crate::options::{Content, ForcedOptions, SolverOptions, check_highest};
 use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -77,13 +77,14 @@ fn with_detail(
 ) -> Result<Branch> {
     solver.check()?;
     range.check()?;
-    range.check_guess(model.ndof(), solver)?;
+    range.check_guess(model.ndof())?;
     model.check_response_dof(solver.response_dof)?;
     let interrupt = hooks.interrupt();
     let with_guess;
     let solver = match range.guess {
         Some(guess) => {
-            let (content, _) = Content::of(guess, model.ndof());
+            let (content, highest) = Content::of(guess, &model.felt_by_contacts()?);
+            check_highest(highest, solver)?;
             with_guess = SolverOptions { content, ..*solver };
             &with_guess
         }
@@ -134,7 +135,7 @@ fn follow(
     let stuck = HarmonicLevels::new(model, solver, &forced, stuck)?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = match range.guess {
-        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess, model.ndof()).1),
+        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess, &model.felt_by_contacts()?).1),
         _ if levels.is_automatic() => 0,
         _ => levels.first(solver.harmonics),
     };

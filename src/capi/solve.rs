@@ -15,7 +15,7 @@ use crate::analysis;
 use crate::error::{Result, fail};
 use crate::hooks::Hooks;
 use crate::model::Model;
-use crate::options::{ForcedOptions, SolverOptions};
+use crate::options::ForcedOptions;
 use crate::results::Branch;
 use core::ptr;
 use num_complex::Complex64;
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn hbvib_forced_response(
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
         let forced = unsafe { load(forced, 3) }?;
-        let forced = unsafe { forced_options(&forced, model.ndof(), &solver) }.with_argument(3)?;
+        let forced = unsafe { forced_options(&forced, model.ndof()) }.with_argument(3)?;
         unsafe {
             follow(hooks, out, forced.at.len(), |hooks| {
                 analysis::forced_response(&model, &solver, &forced, hooks)
@@ -138,11 +138,7 @@ pub unsafe extern "C" fn hbvib_forced_response(
     })
 }
 
-unsafe fn forced_options<'a>(
-    o: &hbvib_forced_options,
-    ndof: usize,
-    solver: &SolverOptions,
-) -> Result<ForcedOptions<'a>> {
+unsafe fn forced_options<'a>(o: &hbvib_forced_options, ndof: usize) -> Result<ForcedOptions<'a>> {
     check_reserved(o.reserved, 3, "hbvib_forced_options")?;
     let at_len = count(o.at_len, 3, "at_len")?;
     let given = count(o.guess_len, 3, "guess_len")?;
@@ -163,7 +159,7 @@ unsafe fn forced_options<'a>(
         guess,
     };
     options.check()?;
-    options.check_guess(ndof, solver)?;
+    options.check_guess(ndof)?;
     Ok(options)
 }
 

@@ -3,11 +3,26 @@
 
 use crate::contact::Contact;
 use crate::contact::relative_motion::Direction;
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 
 impl Model {
+    /// For each degree of freedom of the caller whether a contact acts on it.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn felt_by_contacts(&self) -> Result<Vec<bool>> {
+        let mut felt = try_vec(self.ndof(), false, "the guess")?;
+        for contact in self.contacts() {
+            let sides = contact.dof_a.iter().chain(&contact.dof_b).flatten();
+            for &dof in sides.chain(&contact.dofs) {
+                felt[dof] = true;
+            }
+        }
+        Ok(felt)
+    }
+
     pub(super) fn check_contact(&self, contact: &Contact) -> Result<()> {
         contact.check_constants()?;
         for (name, side) in [("dof_a", &contact.dof_a), ("dof_b", &contact.dof_b)] {
