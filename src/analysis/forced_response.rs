@@ -98,7 +98,7 @@ fn with_detail(
         outcome => *outcome?,
     };
     branch.set_origin(model, true);
-    odd_laws::check(model, &branch)?;
+    odd_laws::check(model, &mut branch)?;
     Ok(branch)
 }
 

@@ -115,7 +115,7 @@ pub fn nonlinear_mode(
     }
     .and_then(|mut branch| {
         branch.set_origin(given, range.diameter.is_none());
-        odd_laws::check(model, &branch)?;
+        odd_laws::check(model, &mut branch)?;
         Ok(branch)
     })
 }

@@ -17,11 +17,27 @@ const ROUNDING: f64 = 1e-6;
 
 const CONTEXT: &str = "the check of an odd force";
 
-/// Refuses a branch whose laws of the caller are not as odd as they claim, at its point of the largest amplitude.
+/// Refuses a branch whose laws of the caller are not as odd as they claim, at its point of the largest amplitude. A callback that
+/// gives up at the check ends the branch, which keeps its points.
 ///
 /// # Errors
-/// `Argument`, naming the contact; those of the callback; `OutOfMemory`.
-pub(super) fn check(model: &Model, branch: &Branch) -> Result<()> {
+/// `Argument`, naming the contact; `OutOfMemory`.
+pub(super) fn check(model: &Model, branch: &mut Branch) -> Result<()> {
+    if matches!(branch.status(), Status::StoppedCallback | Status::StoppedByCaller) {
+        return Ok(());
+    }
+    match compare(model, branch) {
+        // The law cannot evaluate the opposite motion: nothing is known.
+        Err(e) if e.recoverable => Ok(()),
+        Err(e) if e.status == Status::Callback => {
+            branch.set_ending(Status::StoppedCallback, Some(e), (false, false));
+            Ok(())
+        }
+        compared => compared,
+    }
+}
+
+fn compare(model: &Model, branch: &Branch) -> Result<()> {
     let is_claimed = |contact: usize| model.contacts()[contact].kind.user().is_some_and(|law| law.odd);
     let points = 0..branch.stored();
     let largest = points.max_by(|&a, &b| branch.stored_amplitude(a).total_cmp(&branch.stored_amplitude(b)));
@@ -45,11 +61,12 @@ pub(super) fn check(model: &Model, branch: &Branch) -> Result<()> {
             let found = jet(set, &motion[c * m..(c + 1) * m], TAU * (at / d) as f64 / TIMES as f64);
             (*u, *v) = (found.x, rate * found.dx);
         }
-        let there = forces(&*assembled.law, omega, &u, &v)?;
+        let named = |e: Error| e.at(format_args!("contact {}", assembled.contact));
+        let there = forces(&*assembled.law, omega, &u, &v).map_err(named)?;
         for x in u.iter_mut().chain(&mut v) {
             *x = -*x;
         }
-        let opposite = forces(&*assembled.law, omega, &u, &v)?;
+        let opposite = forces(&*assembled.law, omega, &u, &v).map_err(named)?;
         let size = there.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         for (at, (f, g)) in there.iter().zip(&opposite).enumerate() {
             if (f + g).abs() > ROUNDING * size {
