@@ -15,7 +15,7 @@ use crate::analysis;
 use crate::error::{Result, fail};
 use crate::hooks::Hooks;
 use crate::model::Model;
-use crate::options::ForcedOptions;
+use crate::options::{ForcedOptions, MAX_HARMONIC};
 use crate::results::Branch;
 use core::ptr;
 use num_complex::Complex64;
@@ -144,12 +144,12 @@ unsafe fn forced_options<'a>(o: &hbvib_forced_options, ndof: usize) -> Result<Fo
     let given = count(o.guess_len, 3, "guess_len")?;
     let guess = if o.guess.is_null() && given == 0 {
         None
-    } else if given > 0 && given % ndof == 0 {
+    } else if given > 0 && given % ndof == 0 && given / ndof <= MAX_HARMONIC + 1 {
         Some(unsafe { input::<Complex64>(o.guess.cast(), given, 3, "guess") }?)
     } else {
         return fail!(
             Dimension,
-            "guess_len = {given}, needs (H + 1) * ndof, a multiple of {ndof}"
+            "guess_len = {given}, needs (H + 1) * ndof, a multiple of {ndof}, H = 0 .. {MAX_HARMONIC}"
         );
     };
     let options = ForcedOptions {
