@@ -222,7 +222,7 @@ fn where_next(
         ..Hooks::default()
     };
     let branch = forced_response(&design, &solver, &around, &mut quiet).ok();
-    let peaks = branch.iter().flat_map(|branch| branch.peaks());
+    let peaks = branch.iter().flat_map(Branch::peaks);
     let status = Status::StoppedPeakVanished;
     Ok(match peaks.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)) {
         Some(peak) => Error::new(

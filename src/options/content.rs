@@ -35,7 +35,7 @@ impl Content {
             base,
             even: counting().any(|h| h == 0 || (h / base.max(1)) % 2 == 0),
         };
-        (content, counting().last().unwrap_or(0))
+        (content, counting().next_back().unwrap_or(0))
     }
 
     /// Numbers whose motions have these harmonics, and no more.
