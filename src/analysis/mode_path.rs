@@ -217,7 +217,7 @@ fn first_nonlinear(
     }
     fail!(
         NoConvergence,
-        "log10_start = {} was not reached from where the mode ceases to be linear, {near}; start below that, or raise max_newton or max_points",
+        "log10_start = {} was not reached from where the mode ceases to be linear, {near}; start below that, pass a guess, or raise max_newton or max_points",
         settings.start
     )
 }
