@@ -55,11 +55,18 @@ class _BranchFields(_Owner):
         >>> bool((branch.field("omega") == branch.omega).all())
         True
         """
+        return self._viewed("hbvib_branch_field", field)
+
+    def _stored_field(self, field: Fields) -> Optional[FloatArray]:
+        """The same with the points beside the curve after those on it, NaN for stability there; None for a loaded branch."""
+        return self._viewed("hbvib_branch_stored_field", field)
+
+    def _viewed(self, function: str, field: Fields) -> FloatArray:
         lease = _Lease(self)
         self._leases.add(lease)  # before the handle is read: free looks for leases after it has taken the handle
         view = _new("hbvib_view")
         try:
-            _call("hbvib_branch_field", self.handle, _member(Field, field), view)
+            _call(function, self.handle, _member(Field, field), view)
         except BaseException:
             self._leases.discard(lease)  # the traceback holds it, and no array was made
             raise

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, cast
 
 import numpy as np
 
-from ._c import Bifurcation
+from ._c import Bifurcation, Field
 from ._calls import _Owner, _stoppable
 from ._convert import _whole
 from ._errors import ArgumentError
@@ -289,6 +289,9 @@ class _BranchPoints(_Owner):
     def _omega_at(self, wanted: int, points: IntArray) -> FloatArray:
         """Angular frequencies of the solutions at an entry of `at`; NaN where the library does not tell them."""
         curve: Branch = cast("Branch", self)
+        stored = curve._stored_field(Field.OMEGA)
+        if stored is not None:
+            return np.array(stored[points], float)
         if curve.is_mode:
             return np.array([self.mode_point(int(point)).omega for point in points], float)
         omega = self._at[wanted] if self._at.size else np.nan

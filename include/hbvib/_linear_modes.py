@@ -108,6 +108,7 @@ class _LinearModes(_Matrices):
         orders = [_whole(order, name="engine_order") for order in engine_orders]
         if diameter is None:
             diameter = self._signed(orders[0]) if orders else 0
+        diameter = _whole(diameter, name="diameter")
         omega, ratio = np.empty((speeds.size, count)), np.empty((speeds.size, count))
         direction = np.empty((speeds.size, count), np.int64)
         self._call("hbvib_campbell", speeds.size, speeds, diameter, state, count, omega, ratio, direction, None)

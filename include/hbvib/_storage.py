@@ -130,6 +130,9 @@ class SavedBranch(Branch):
         for name, values in arrays.items():
             values.flags.writeable = False
 
+    def _stored_field(self, field: Fields) -> None:
+        return None
+
     def __reduce__(self) -> tuple[Callable[..., SavedBranch], tuple[Any, ...]]:
         return SavedBranch, (self._arrays,)
 

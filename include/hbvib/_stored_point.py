@@ -53,8 +53,9 @@ class StoredPoint:
     def field(self, field: Fields) -> Union[float, FloatArray]:
         """A field of the branch at this point, by Field or name: a number, shares of the contacts for slip_fraction.
 
-        Beside the curve the library has those of omega, amplitude, slip_fraction and a nonlinear mode, and in a parameter
-        response parameter_value: UnsupportedError for others. ArgumentError for a field that the branch does not have.
+        The fields of stability are NaN beside the curve. ArgumentError for a field that the branch does not have. A loaded
+        branch has beside the curve omega, amplitude, slip_fraction, those of a nonlinear mode and parameter_value:
+        UnsupportedError for others.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -65,6 +66,10 @@ class StoredPoint:
         True
         """
         which = _member(Field, field)
+        stored = self._branch._stored_field(which)
+        if stored is not None:
+            value = stored[self.number]
+            return np.array(value) if value.ndim else float(value)
         whole = self._branch.field(which)
         if self.on_curve:
             value = whole[self.number]

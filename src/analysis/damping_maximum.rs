@@ -48,7 +48,12 @@ pub(super) fn follow(
             Err(stopped) => return without_points(first, solver, &stopped),
         },
     };
-    let branch = nonlinear_mode(first, solver, &options(ends), hooks)?;
+    // The limit is that of the curve, not of the search for its first point.
+    let seek = SolverOptions {
+        max_points: solver.max_points.max(SolverOptions::default().max_points),
+        ..*solver
+    };
+    let branch = nonlinear_mode(first, &seek, &options(ends), hooks)?;
     if branch.status() == Status::StoppedByCaller {
         return without_points(first, solver, &branch);
     }
@@ -116,6 +121,7 @@ pub(super) fn follow(
     );
     let (status, missed) = recorder.record(hooks)?;
     found.set_parameter_data(data);
+    found.complete_reduction(first, solver);
     found.set_ending(status, None, (false, missed));
     Ok(found)
 }

@@ -24,7 +24,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{Content, ForcedOptions, SolverOptions};
+use crate::options::{Content, ForcedOptions, SolverOptions, check_highest};
 use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -77,13 +77,14 @@ fn with_detail(
 ) -> Result<Branch> {
     solver.check()?;
     range.check()?;
-    range.check_guess(model.ndof(), solver)?;
+    range.check_guess(model.ndof())?;
     model.check_response_dof(solver.response_dof)?;
     let interrupt = hooks.interrupt();
     let with_guess;
     let solver = match range.guess {
         Some(guess) => {
-            let (content, _) = Content::of(guess, model.ndof());
+            let (content, highest) = Content::of(guess, &model.felt_by_contacts()?);
+            check_highest(highest, solver)?;
             with_guess = SolverOptions { content, ..*solver };
             &with_guess
         }
@@ -97,7 +98,7 @@ fn with_detail(
         outcome => *outcome?,
     };
     branch.set_origin(model, true);
-    odd_laws::check(model, &branch)?;
+    odd_laws::check(model, &mut branch)?;
     Ok(branch)
 }
 
@@ -133,11 +134,7 @@ fn follow(
     let stuck = |highest, fewer: Option<&Condensed>| condensed(highest, Some(Reference::Stuck), fewer);
     let stuck = HarmonicLevels::new(model, solver, &forced, stuck)?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
-    let level = match range.guess {
-        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess, model.ndof()).1),
-        _ if levels.is_automatic() => 0,
-        _ => levels.first(solver.harmonics),
-    };
+    let level = first_level(model, solver, range, &levels)?;
     let resolution = levels.at(level)?;
     let length = resolution.condensed.length();
     // The lower end is used, so that both directions follow the same degree of freedom.
@@ -191,15 +188,8 @@ fn follow(
             {
                 return Err(reason);
             }
-            let from_guess = way == Way::Newton(InitialGuess::Given);
-            if range.guess.is_some() && !from_guess {
-                hooks.log(
-                    LogLevel::Warn,
-                    "no solution was found from the given start; another way found this first point",
-                );
-            }
-            response.note_guess(range.guess.map(|_| from_guess));
-            hooks.log(LogLevel::Info, way.sentence());
+            let used = told_way(way, range.guess.is_some(), hooks);
+            response.note_guess(range.guess.map(|_| used));
             response.note_first(&point);
             trace(&mut tracer, &mut response, point, hooks)
         }
@@ -232,6 +222,33 @@ fn follow(
         branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
     }
     Ok(Ok(branch))
+}
+
+/// The level of the first point.
+fn first_level(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ForcedOptions<'_>,
+    levels: &HarmonicLevels<'_>,
+) -> Result<usize> {
+    Ok(match range.guess {
+        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess, &model.felt_by_contacts()?).1),
+        _ if levels.is_automatic() => 0,
+        _ => levels.first(solver.harmonics),
+    })
+}
+
+/// Logs the way to a first point; returns whether it is the guess.
+pub(super) fn told_way(way: Way, has_guess: bool, hooks: &mut Hooks<'_>) -> bool {
+    let used = way == Way::Newton(InitialGuess::Given);
+    if has_guess && !used {
+        hooks.log(
+            LogLevel::Warn,
+            "no solution was found from the given start; another way found this first point",
+        );
+    }
+    hooks.log(LogLevel::Info, way.sentence());
+    used
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and

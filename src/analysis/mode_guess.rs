@@ -27,7 +27,7 @@ pub(super) fn unknowns(
     degrees.restrict(&guess.motion[given..2 * given], &mut first);
     let amplitude = amplitude(condensed.blocks().iter().find(|b| b.number == 1), gauge, &first)?;
     let reference = first[gauge.reference_dof];
-    if !(amplitude > 0.0) || reference == Complex64::ZERO {
+    if amplitude == 0.0 || reference == Complex64::ZERO {
         return fail!(
             Argument,
             "guess: its fundamental has amplitude {amplitude}, and {} at the reference of the phase: needs a motion of both",

@@ -2,6 +2,7 @@
 
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
+use crate::analysis::forced_response::told_way;
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::sampling::may_refine;
 use crate::continuation::initial_point::{self, First, Way};
@@ -10,7 +11,7 @@ use crate::error::{Result, Status, fail};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::options::{ModeOptions, SolverOptions};
-use crate::problem::{InitialGuess, Problem};
+use crate::problem::Problem;
 use crate::results::SpecialKind;
 
 /// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset itself the branch
@@ -137,15 +138,7 @@ fn from_guess(
     interrupt.phase(Phase::FirstPoint, 0.0)?;
     mode.set_guess(guess);
     let First { point, way } = initial_point::solve(mode.problem(), &settings, interrupt)?;
-    let used = way == Way::Newton(InitialGuess::Given);
-    if !used {
-        hooks.log(
-            LogLevel::Warn,
-            "no solution was found from the given start; another way found this first point",
-        );
-    }
-    mode.note_guess(used);
-    hooks.log(LogLevel::Info, way.sentence());
+    mode.note_guess(told_way(way, true, hooks));
     tracer.trace(mode, point, hooks)
 }
 
@@ -224,7 +217,7 @@ fn first_nonlinear(
     }
     fail!(
         NoConvergence,
-        "log10_start = {} was not reached from where the mode ceases to be linear, {near}; start below that, or raise max_newton or max_points",
+        "log10_start = {} was not reached from where the mode ceases to be linear, {near}; start below that, pass a guess, or raise max_newton or max_points",
         settings.start
     )
 }

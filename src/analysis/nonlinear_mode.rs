@@ -102,7 +102,7 @@ pub fn nonlinear_mode(
     let with_guess;
     let solver = match &range.guess {
         Some(guess) => {
-            let (content, highest) = Content::of(guess.motion, model.ndof());
+            let (content, highest) = Content::of(guess.motion, &model.felt_by_contacts()?);
             check_highest(highest, solver)?;
             with_guess = SolverOptions { content, ..*solver };
             &with_guess
@@ -115,7 +115,7 @@ pub fn nonlinear_mode(
     }
     .and_then(|mut branch| {
         branch.set_origin(given, range.diameter.is_none());
-        odd_laws::check(model, &branch)?;
+        odd_laws::check(model, &mut branch)?;
         Ok(branch)
     })
 }
@@ -172,7 +172,9 @@ fn on_wave(
         waves.attach(model, (condensed, 0), interrupt)
     })?;
     let level = match &range.guess {
-        Some(guess) if levels.is_automatic() => levels.level_with(Content::of(guess.motion, model.ndof()).1),
+        Some(guess) if levels.is_automatic() => {
+            levels.level_with(Content::of(guess.motion, &model.felt_by_contacts()?).1)
+        }
         _ => levels.first(solver.harmonics),
     };
     let resolution = levels.at(level)?;

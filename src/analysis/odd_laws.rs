@@ -9,19 +9,32 @@ use crate::model::Model;
 use crate::results::Branch;
 use std::f64::consts::TAU;
 
-/// Times of a period at which a force is compared.
-const TIMES: usize = 16;
-
 /// Difference of a force from the opposite one, over the largest force, that is rounding of a callback.
 const ROUNDING: f64 = 1e-6;
 
 const CONTEXT: &str = "the check of an odd force";
 
-/// Refuses a branch whose laws of the caller are not as odd as they claim, at its point of the largest amplitude.
+/// Refuses a branch whose laws of the caller are not as odd as they claim, at its point of the largest amplitude. A callback that
+/// gives up at the check ends the branch, which keeps its points.
 ///
 /// # Errors
-/// `Argument`, naming the contact; those of the callback; `OutOfMemory`.
-pub(super) fn check(model: &Model, branch: &Branch) -> Result<()> {
+/// `Argument`, naming the contact; `OutOfMemory`.
+pub(super) fn check(model: &Model, branch: &mut Branch) -> Result<()> {
+    if matches!(branch.status(), Status::StoppedCallback | Status::StoppedByCaller) {
+        return Ok(());
+    }
+    match compare(model, branch) {
+        // The law cannot evaluate the opposite motion: nothing is known.
+        Err(e) if e.recoverable => Ok(()),
+        Err(e) if e.status == Status::Callback => {
+            branch.set_ending(Status::StoppedCallback, Some(e), (false, false));
+            Ok(())
+        }
+        compared => compared,
+    }
+}
+
+fn compare(model: &Model, branch: &Branch) -> Result<()> {
     let is_claimed = |contact: usize| model.contacts()[contact].kind.user().is_some_and(|law| law.odd);
     let points = 0..branch.stored();
     let largest = points.max_by(|&a, &b| branch.stored_amplitude(a).total_cmp(&branch.stored_amplitude(b)));
@@ -39,17 +52,27 @@ pub(super) fn check(model: &Model, branch: &Branch) -> Result<()> {
     let rate = set.base() as f64 * omega;
     for assembled in condensed.laws().iter().filter(|law| is_claimed(law.contact)) {
         let d = assembled.coordinates.len();
-        let (mut u, mut v) = (try_vec(TIMES * d, 0.0, CONTEXT)?, try_vec(TIMES * d, 0.0, CONTEXT)?);
+        let (highest, requested) = (set.highest_reduced(), branch.samples_at(point));
+        // As many times as in the solution.
+        let times = match assembled.law.form() {
+            Form::Memoryless(law) => law.samples(highest, requested),
+            Form::Hysteretic(law) => law.samples(highest, requested),
+            Form::PiecewiseLinear(_) | Form::Spectral(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) => {
+                continue;
+            }
+        };
+        let (mut u, mut v) = (try_vec(times * d, 0.0, CONTEXT)?, try_vec(times * d, 0.0, CONTEXT)?);
         for (at, (u, v)) in u.iter_mut().zip(&mut v).enumerate() {
             let c = assembled.coordinates[at % d];
-            let found = jet(set, &motion[c * m..(c + 1) * m], TAU * (at / d) as f64 / TIMES as f64);
+            let found = jet(set, &motion[c * m..(c + 1) * m], TAU * (at / d) as f64 / times as f64);
             (*u, *v) = (found.x, rate * found.dx);
         }
-        let there = forces(&*assembled.law, omega, &u, &v)?;
+        let named = |e: Error| e.at(format_args!("contact {}", assembled.contact));
+        let there = forces(&*assembled.law, (omega, times), &u, &v).map_err(named)?;
         for x in u.iter_mut().chain(&mut v) {
             *x = -*x;
         }
-        let opposite = forces(&*assembled.law, omega, &u, &v)?;
+        let opposite = forces(&*assembled.law, (omega, times), &u, &v).map_err(named)?;
         let size = there.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         for (at, (f, g)) in there.iter().zip(&opposite).enumerate() {
             if (f + g).abs() > ROUNDING * size {
@@ -73,7 +96,7 @@ pub(super) fn check(model: &Model, branch: &Branch) -> Result<()> {
 }
 
 /// Forces of a law at some times of a motion, from rest if it has states.
-fn forces(law: &dyn Law, omega: f64, u: &[f64], v: &[f64]) -> Result<Vec<f64>> {
+fn forces(law: &dyn Law, (omega, times): (f64, usize), u: &[f64], v: &[f64]) -> Result<Vec<f64>> {
     let d = law.directions();
     let mut f = try_vec(u.len(), 0.0, CONTEXT)?;
     match law.form() {
@@ -85,12 +108,12 @@ fn forces(law: &dyn Law, omega: f64, u: &[f64], v: &[f64]) -> Result<Vec<f64>> {
                 df_dv: &mut try_vec(felt.len() * d, 0.0, CONTEXT)?,
                 scratch: &mut try_vec(2 * u.len(), 0.0, CONTEXT)?,
             };
-            law.evaluate(omega, TIMES, u, felt, samples)?;
+            law.evaluate(omega, times, u, felt, samples)?;
         }
         Form::Hysteretic(law) => {
-            let mut march = March::new(d, law.states(), TIMES)?;
+            let mut march = March::new(d, law.states(), times)?;
             let rest = try_vec(law.states(), 0.0, CONTEXT)?;
-            law.march(omega, TIMES, u, v, &rest, &mut march)?;
+            law.march(omega, times, u, v, &rest, &mut march)?;
             f.copy_from_slice(&march.f[..u.len()]);
         }
         Form::PiecewiseLinear(_) | Form::Spectral(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) => {}

@@ -67,10 +67,16 @@ pub fn parameter_response(
         Follow::Peak(omega) => (omega, ResponsePoint::Peak),
         Follow::Fold(omega) => (omega, ResponsePoint::Fold),
         Follow::ModeMaxDamping { omega, log10_range } => {
+            if solver.samples > 0 {
+                return Err(needs_events(solver.samples));
+            }
             let models = (model, &first, parameter);
             return damping_maximum::follow(models, solver, range, (omega, log10_range), hooks, &interrupt);
         }
     };
+    if kind != ResponsePoint::Fixed && solver.samples > 0 {
+        return Err(needs_events(solver.samples));
+    }
     let models = (model, &first, parameter);
     let mut data = ParameterData::default();
     let mut found = follow(models, solver, (range, omega, kind), &mut data, hooks, &interrupt)?;
@@ -85,6 +91,16 @@ pub fn parameter_response(
     Ok(found)
 }
 
+/// The error of a point that is found by second derivatives, which sampled forces do not have.
+fn needs_events(samples: usize) -> Error {
+    Error::new(
+        Status::Argument,
+        format_args!(
+            "samples = {samples}, needs 0: a peak, a fold or a maximum of damping that is followed needs exact events of contacts"
+        ),
+    )
+}
+
 /// Follows a point of a forced response.
 fn follow(
     (model, first, parameter): (&Model, &Model, Parameter<'_>),
@@ -94,7 +110,12 @@ fn follow(
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Branch> {
-    let branch = forced_response(first, solver, &sweep(omega, kind), hooks)?;
+    // The limit is that of the curve, not of the search for its first point.
+    let seek = SolverOptions {
+        max_points: solver.max_points.max(SolverOptions::default().max_points),
+        ..*solver
+    };
+    let branch = forced_response(first, &seek, &sweep(omega, kind), hooks)?;
     if branch.status() == Status::StoppedByCaller {
         return Branch::stopped(first, solver);
     }
@@ -157,6 +178,7 @@ fn follow(
         interrupt,
     );
     let (status, missed) = recorder.record(hooks)?;
+    found.complete_reduction(first, solver);
     found.set_ending(status, None, (false, missed));
     Ok(found)
 }
@@ -200,7 +222,7 @@ fn where_next(
         ..Hooks::default()
     };
     let branch = forced_response(&design, &solver, &around, &mut quiet).ok();
-    let peaks = branch.iter().flat_map(|branch| branch.peaks());
+    let peaks = branch.iter().flat_map(Branch::peaks);
     let status = Status::StoppedPeakVanished;
     Ok(match peaks.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)) {
         Some(peak) => Error::new(

@@ -64,7 +64,7 @@ pub struct Verification {
     pub harmonics: Vec<Complex64>,
 }
 
-/// Compares a stored point of a forced response with the periodic motion that [`time_response`] finds from
+/// Compares a stored point of a forced response with the periodic motion that [`time_response`](crate::time_response) finds from
 /// it, at the point's frequency. `model` is the one that the branch was computed with. The point is not changed.
 ///
 /// Where several motions coexist the integration may end in another one than that of the point: then `same` is
@@ -72,7 +72,8 @@ pub struct Verification {
 ///
 /// # Errors
 /// `Index` for an unknown point, `Argument` for another model than that of the branch, `Unsupported` for a point of a
-/// nonlinear mode; bad options (see [`VerifyOptions::check`]), and the errors of [`time_response`].
+/// nonlinear mode; bad options (see [`VerifyOptions::check`]), and the errors of
+/// [`time_response`](crate::time_response).
 ///
 /// # Example
 /// ```

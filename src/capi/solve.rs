@@ -15,7 +15,7 @@ use crate::analysis;
 use crate::error::{Result, fail};
 use crate::hooks::Hooks;
 use crate::model::Model;
-use crate::options::{ForcedOptions, SolverOptions};
+use crate::options::{ForcedOptions, MAX_HARMONIC};
 use crate::results::Branch;
 use core::ptr;
 use num_complex::Complex64;
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn hbvib_forced_response(
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
         let forced = unsafe { load(forced, 3) }?;
-        let forced = unsafe { forced_options(&forced, model.ndof(), &solver) }.with_argument(3)?;
+        let forced = unsafe { forced_options(&forced, model.ndof()) }.with_argument(3)?;
         unsafe {
             follow(hooks, out, forced.at.len(), |hooks| {
                 analysis::forced_response(&model, &solver, &forced, hooks)
@@ -138,22 +138,18 @@ pub unsafe extern "C" fn hbvib_forced_response(
     })
 }
 
-unsafe fn forced_options<'a>(
-    o: &hbvib_forced_options,
-    ndof: usize,
-    solver: &SolverOptions,
-) -> Result<ForcedOptions<'a>> {
+unsafe fn forced_options<'a>(o: &hbvib_forced_options, ndof: usize) -> Result<ForcedOptions<'a>> {
     check_reserved(o.reserved, 3, "hbvib_forced_options")?;
     let at_len = count(o.at_len, 3, "at_len")?;
     let given = count(o.guess_len, 3, "guess_len")?;
     let guess = if o.guess.is_null() && given == 0 {
         None
-    } else if given > 0 && given % ndof == 0 {
+    } else if given > 0 && given % ndof == 0 && given / ndof <= MAX_HARMONIC + 1 {
         Some(unsafe { input::<Complex64>(o.guess.cast(), given, 3, "guess") }?)
     } else {
         return fail!(
             Dimension,
-            "guess_len = {given}, needs (H + 1) * ndof, a multiple of {ndof}"
+            "guess_len = {given}, needs (H + 1) * ndof, a multiple of {ndof}, H = 0 .. {MAX_HARMONIC}"
         );
     };
     let options = ForcedOptions {
@@ -163,7 +159,7 @@ unsafe fn forced_options<'a>(
         guess,
     };
     options.check()?;
-    options.check_guess(ndof, solver)?;
+    options.check_guess(ndof)?;
     Ok(options)
 }
 

@@ -1,7 +1,6 @@
 //! Forces per degree of freedom and harmonic.
 
 use crate::error::{Result, fail, try_extend, try_push};
-use crate::model::mechanical_model::Model;
 use crate::options::MAX_HARMONIC;
 use num_complex::Complex64;
 
@@ -27,29 +26,6 @@ impl Force {
         } else {
             self.value
         }
-    }
-}
-
-/// Size of a force, over that of the largest one, from which its harmonic is watched.
-const WATCHED: f64 = 1e-3;
-
-impl Model {
-    /// The forces that are not zero, on degrees of freedom that move.
-    pub(crate) fn acting_forces(&self) -> impl Iterator<Item = &Force> {
-        let degrees = self.structure().degrees();
-        let forces = self.excitation().forces().iter();
-        forces.filter(|f| f.value != Complex64::ZERO && !degrees.is_fixed(f.dof))
-    }
-
-    /// The harmonic whose amplitude is that of the response: the lowest one in which a vibrating force acts that is no trace
-    /// of the largest one; `None` without vibrating forces. An unbalance acts in its harmonic at any size.
-    pub(crate) fn watched_harmonic(&self) -> Option<usize> {
-        let vibrating = || self.acting_forces().filter(|f| f.harmonic > 0);
-        let largest = vibrating()
-            .filter(|f| !f.per_omega2)
-            .fold(0.0_f64, |most, f| most.max(f.value.norm()));
-        let counts = |f: &&Force| f.per_omega2 || f.value.norm() >= WATCHED * largest;
-        vibrating().filter(counts).map(|f| f.harmonic).min()
     }
 }
 

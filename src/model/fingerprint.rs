@@ -217,6 +217,8 @@ mod tests {
         assert_eq!(made, changed.fingerprint());
     }
 
+    type Change = fn(&mut Model);
+
     #[test]
     fn the_part_that_differs_is_named_where_it_counts() {
         let made = model().fingerprint();
@@ -226,7 +228,6 @@ mod tests {
             Use::Mode { on_wave: false },
             Use::Synthesis,
         ];
-        type Change = fn(&mut Model);
         let cases: [(Change, &str, [bool; 4]); 7] = [
             (|m| m.set_preload(0, 3.0).unwrap(), "contacts", [true; 4]),
             (

@@ -3,11 +3,51 @@
 
 use crate::contact::Contact;
 use crate::contact::relative_motion::Direction;
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
+use crate::model::excitation::Force;
 use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
+
+/// Size of a force, over that of the largest one, from which its harmonic is watched.
+const WATCHED: f64 = 1e-3;
 
 impl Model {
+    /// The forces that are not zero, on degrees of freedom that move.
+    pub(crate) fn acting_forces(&self) -> impl Iterator<Item = &Force> {
+        let degrees = self.structure().degrees();
+        let forces = self.excitation().forces().iter();
+        forces.filter(|f| f.value != Complex64::ZERO && !degrees.is_fixed(f.dof))
+    }
+
+    /// The harmonic whose amplitude is that of the response: the lowest one in which a vibrating force acts that is no trace
+    /// of the largest one; `None` without vibrating forces. An unbalance acts in its harmonic at any size.
+    pub(crate) fn watched_harmonic(&self) -> Option<usize> {
+        let vibrating = || self.acting_forces().filter(|f| f.harmonic > 0);
+        let largest = vibrating()
+            .filter(|f| !f.per_omega2)
+            .fold(0.0_f64, |most, f| most.max(f.value.norm()));
+        let counts = |f: &&Force| f.per_omega2 || f.value.norm() >= WATCHED * largest;
+        vibrating().filter(counts).map(|f| f.harmonic).min()
+    }
+}
+
+impl Model {
+    /// For each degree of freedom of the caller whether a contact acts on it.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn felt_by_contacts(&self) -> Result<Vec<bool>> {
+        let mut felt = try_vec(self.ndof(), false, "the guess")?;
+        for contact in self.contacts() {
+            let sides = contact.dof_a.iter().chain(&contact.dof_b).flatten();
+            for &dof in sides.chain(&contact.dofs) {
+                felt[dof] = true;
+            }
+        }
+        Ok(felt)
+    }
+
     pub(super) fn check_contact(&self, contact: &Contact) -> Result<()> {
         contact.check_constants()?;
         for (name, side) in [("dof_a", &contact.dof_a), ("dof_b", &contact.dof_b)] {

@@ -18,11 +18,16 @@ pub struct Content {
 }
 
 impl Content {
-    /// The harmonics that count of a guess, harmonic after harmonic of `ndof` numbers each, and the highest of them.
+    /// The harmonics that count of a guess, harmonic after harmonic of a number for each degree of freedom, and the highest of
+    /// them; `counts` tells the degrees of freedom whose motion has an effect, as has the real part of the mean.
     #[must_use]
-    pub fn of(guess: &[Complex64], ndof: usize) -> (Self, usize) {
-        let size = |row: &[Complex64]| row.iter().fold(0.0_f64, |most, z| most.max(z.norm()));
-        let rows = || guess.chunks_exact(ndof.max(1)).map(size).enumerate();
+    pub fn of(guess: &[Complex64], counts: &[bool]) -> (Self, usize) {
+        let size = |(h, row): (usize, &[Complex64])| {
+            let felt = row.iter().zip(counts).filter(|(_, counts)| **counts);
+            let size = |z: &Complex64| if h == 0 { z.re.abs() } else { z.norm() };
+            (h, felt.fold(0.0_f64, |most, (z, _)| most.max(size(z))))
+        };
+        let rows = || guess.chunks_exact(counts.len().max(1)).enumerate().map(size);
         let most = rows().fold(0.0_f64, |most, (_, size)| most.max(size));
         let counting = || rows().filter(|(_, size)| *size > COUNTS * most).map(|(h, _)| h);
         let base = counting().fold(0, gcd);
@@ -30,7 +35,7 @@ impl Content {
             base,
             even: counting().any(|h| h == 0 || (h / base.max(1)) % 2 == 0),
         };
-        (content, counting().last().unwrap_or(0))
+        (content, counting().next_back().unwrap_or(0))
     }
 
     /// Numbers whose motions have these harmonics, and no more.
@@ -52,11 +57,17 @@ mod tests {
     #[test]
     fn harmonics_count_by_their_size_and_symmetry_by_their_numbers() {
         let of = |sizes: &[f64]| {
-            let rows: Vec<Complex64> = sizes
-                .iter()
-                .flat_map(|x| [Complex64::new(0.0, *x), Complex64::ZERO])
-                .collect();
-            let (content, highest) = Content::of(&rows, 2);
+            // The second motion, and the imaginary part of the mean, have no effect.
+            let row = |(h, x): (usize, &f64)| {
+                let felt = if h == 0 {
+                    Complex64::new(*x, 3.0)
+                } else {
+                    Complex64::new(0.0, *x)
+                };
+                [felt, Complex64::new(5.0, 5.0)]
+            };
+            let rows: Vec<Complex64> = sizes.iter().enumerate().flat_map(row).collect();
+            let (content, highest) = Content::of(&rows, &[true, false]);
             (content.base, content.even, highest)
         };
         assert_eq!(of(&[0.0, 1.0, 0.0, 0.2]), (1, false, 3));

@@ -1,7 +1,6 @@
 //! Options of a forced response.
 
 use crate::error::{Result, fail};
-use crate::options::content::Content;
 use crate::options::solver_options::{MAX_HARMONIC, SolverOptions};
 use num_complex::Complex64;
 
@@ -49,11 +48,11 @@ impl ForcedOptions<'_> {
         Ok(())
     }
 
-    /// Checks the guess of a model of `ndof` degrees of freedom against the harmonics of a solver.
+    /// Checks the guess of a model of `ndof` degrees of freedom.
     ///
     /// # Errors
     /// `Argument`, `NotFinite` or `Dimension`, naming its value and its range.
-    pub fn check_guess(&self, ndof: usize, solver: &SolverOptions) -> Result<()> {
+    pub fn check_guess(&self, ndof: usize) -> Result<()> {
         if let Some(guess) = self.guess {
             let rows = guess.len() / ndof.max(1);
             if rows == 0 || rows * ndof != guess.len() || rows > MAX_HARMONIC + 1 {
@@ -66,7 +65,6 @@ impl ForcedOptions<'_> {
             if let Some(i) = guess.iter().position(|z| !z.is_finite()) {
                 return fail!(NotFinite, "guess[{i}] is not finite");
             }
-            check_highest(Content::of(guess, ndof).1, solver)?;
         }
         Ok(())
     }

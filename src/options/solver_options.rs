@@ -23,8 +23,7 @@ pub struct SolverOptions {
     /// fundamental of the response degree of freedom; in a nonlinear mode to the frequency and to the damping
     /// ratio, the latter relative to the largest one so far. `0`: exactly [`Self::harmonics`], whatever the error.
     pub tolerance: f64,
-    /// Highest harmonic number H; where the tolerance chooses the harmonics, that of a given guess and of a second try
-    /// at the first point.
+    /// Highest harmonic number H; where the tolerance chooses the harmonics, that of a second try at the first point.
     pub harmonics: usize,
     /// Largest H that the tolerance may choose, at least the highest forced harmonic. Points that would need more
     /// are kept, and the status of the branch reports them.

@@ -264,6 +264,19 @@ impl Branch {
         )
     }
 
+    /// Tells the parts that were removed from the problem with the most harmonics.
+    pub(crate) fn complete_reduction(&mut self, model: &Model, options: &SolverOptions) {
+        let largest = self
+            .resolutions
+            .iter()
+            .max_by_key(|resolution| resolution.condensed.unknowns());
+        if let Some(largest) = largest {
+            let held = self.reduction.held_by_contacts;
+            let reduction = largest.condensed.reduction_with(model, options, held);
+            self.set_reduction(reduction);
+        }
+    }
+
     pub(crate) fn set_reduction(&mut self, reduction: Reduction) {
         self.reduction = Reduction {
             harmonics_asked: self.harmonics,

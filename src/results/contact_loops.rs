@@ -27,7 +27,7 @@ use crate::interrupt::Interrupt;
 use crate::results::contact_loops::one_motion::ScalarOrbit;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, extrema, range, time};
 use crate::results::contact_loops::two_motions::CoupledOrbit;
-use crate::results::time_history::check_time;
+use crate::results::signal_check::check_time;
 use std::f64::consts::PI;
 
 pub use period::{Account, Times};

@@ -7,6 +7,7 @@ use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::results::contact_loops::Orbit;
+use crate::results::signal_check::check_time;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -14,10 +15,6 @@ use std::sync::Arc;
 
 /// Largest number of times of a loop or a history.
 pub const MOST_TIMES: usize = 1 << 24;
-
-/// Times between two checks of a stop, and operations of a harmonic at one time.
-const BETWEEN_CHECKS: usize = 256;
-const OF_ONE_JET: usize = 10;
 
 /// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -285,17 +282,6 @@ impl Branch {
         }
         Ok((set, packed))
     }
-}
-
-/// Checks a stop now and then, before the j-th value of a signal.
-///
-/// # Errors
-/// `StoppedByCaller`.
-pub(super) fn check_time(interrupt: &Interrupt<'_>, j: usize, set: &HarmonicSet) -> Result<()> {
-    if j.is_multiple_of(BETWEEN_CHECKS) {
-        interrupt.check_before((BETWEEN_CHECKS * OF_ONE_JET * (set.numbers().len() + 1)) as u64)?;
-    }
-    Ok(())
 }
 
 fn check_times(n: usize) -> Result<()> {

@@ -125,9 +125,9 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 56");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 48");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 120");
+    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 136");
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
-    REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
+    REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 128");
     REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
     REFUSED("66", hbvib_mode_info_init(&info, 56), HBVIB_E_STRUCT_SIZE, 2, "needs 80");
     memset(&s, 0xAA, sizeof s);
@@ -247,7 +247,7 @@ static void ranges(void)
         status = with(NULL, &o, NULL);
         EXPECT("81", status == HBVIB_OK || status == HBVIB_E_NO_CONVERGENCE);
         o.guess_len = 39;
-        REFUSED("12", with(NULL, &o, NULL), HBVIB_E_DIMENSION, 3, "= 40");
+        REFUSED("12", with(NULL, &o, NULL), HBVIB_E_DIMENSION, 3, "guess_len = 39, needs (H + 1) * ndof, a multiple of 4");
     }
 }
 

@@ -163,6 +163,7 @@ static ending ends(hbvib_model *model, const hbvib_solver_options *s, const hbvi
 
 static void choices(void)
 {
+    hbvib_branch *none = NULL;
     hbvib_model *model = undamped();
     hbvib_solver_options s = three_harmonics();
     hbvib_mode_options o = amplitudes(1.5, 2.5);
@@ -195,8 +196,9 @@ static void choices(void)
     o.mode_index = 1;
     e = ends(model, &s, &o);
     EXPECT("mode_index", e.info.mode_index == 1 && fabs(e.info.omega / stuck[1] - 1) < 1e-12);
-    o.mode_index = 99; /* not looked at where another field chooses */
-    o.near_omega = 1.01 * stuck[2];
+    o.near_omega = 1.01 * stuck[2]; /* only one field may choose */
+    REFUSED("mode_index", hbvib_nonlinear_mode(model, &s, &o, NULL, &none), HBVIB_E_ARGUMENT, 3, "mode_index = 1 beside near_omega");
+    o.mode_index = 0;
     e = ends(model, &s, &o);
     EXPECT("near_omega", e.info.mode_index == 2 && fabs(e.point.omega / stuck[2] - 1) < 1e-12);
     o.near_omega = 0;

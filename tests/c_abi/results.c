@@ -61,6 +61,19 @@ static void special_points(hbvib_branch *branch, const double *at)
         /* Exact events have no sampling to check. */
         for (h = 0; i == HBVIB_SAMPLING_ERROR && h < points; h++) EXPECT("views", view.data[h] == 0);
     }
+    /* The same fields of all stored points: those on the curve first. */
+    for (i = 0; i < 2; i++) {
+        hbvib_view all;
+        int32_t which = i == 0 ? HBVIB_OMEGA : HBVIB_AMPLITUDE;
+        WORKS("stored", hbvib_view_init(&view, sizeof view));
+        WORKS("stored", hbvib_view_init(&all, sizeof all));
+        WORKS("stored", hbvib_branch_field(branch, which, &view));
+        WORKS("stored", hbvib_branch_stored_field(branch, which, &all));
+        EXPECT("stored", all.shape[0] == stored && memcmp(all.data, view.data, (size_t)points * sizeof *all.data) == 0);
+        WORKS("stored", hbvib_branch_at(branch, 0, 1, &amplitude, &point, &count));
+        EXPECT("stored", i == 0 ? all.data[point] > 0 : all.data[point] == amplitude);
+    }
+    REFUSED("stored", hbvib_branch_stored_field(branch, 99, &view), HBVIB_E_ARGUMENT, 2, "needs a value of enum hbvib_field");
 }
 
 /* The residual vanishes where the branch says that it is solved. */

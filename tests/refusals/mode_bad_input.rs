@@ -23,6 +23,7 @@ const RANGE: ModeOptions = ModeOptions {
     at: &[],
     damping_form: hbvib::options::DampingForm::Mass,
     reference_dof: None,
+    guess: None,
 };
 
 fn follow(model: &Model, range: &ModeOptions) -> Result<Branch> {

@@ -231,6 +231,7 @@ const SIX_DECADES: ModeOptions<'static> = ModeOptions {
     at: &[],
     damping_form: DampingForm::Mass,
     reference_dof: None,
+    guess: None,
 };
 
 #[test]

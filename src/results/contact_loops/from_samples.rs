@@ -8,7 +8,7 @@ use crate::error::{Result, try_vec};
 use crate::fourier::jet;
 use crate::interrupt::Interrupt;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, Times, sample, time};
-use crate::results::time_history::check_time;
+use crate::results::signal_check::check_time;
 
 /// Forces of a law without memory at the motions in `out`, in one call.
 ///

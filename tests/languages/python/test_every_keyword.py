@@ -148,8 +148,11 @@ ANALYSES = {
     "campbell": (*analysis(lambda **o: (lambda d: [d.omega, d.damping_ratio, d.direction, *d.crossings])(turning.campbell(**o)),
                            speeds=[0.0, 1.0, 2.0], count=3, engine_orders=(1, 2), diameter=1, contacts="stuck"), {
         "speeds": [(CHANGES, [0.0, 1.0, 2.5]), (refused("speeds"), [0.0, NAN])], "count": [(CHANGES, 2), (refused("count"), 99)],
-        "engine_orders": [(CHANGES, (1,)), (refused("engine_order"), (0.5,))], "diameter": [(CHANGES, 2), (refused("diameter"), 0.5)],
+        "engine_orders": [(CHANGES, (3, 2)), (refused("engine_order"), (0.5,))], "diameter": [(CHANGES, 2), (refused("diameter"), 0.5)],
         "contacts": [(CHANGES, "free"), (refused("stuck"), "loose")]}),
+    "interference": (*analysis(lambda **o: (lambda d: [d.diameters, d.omega, d.damping_ratio, d.direction])(turning.interference(**o)),
+                               count=3, contacts="stuck"), {
+        "count": [(CHANGES, 2), (refused("count"), 99)], "contacts": [(CHANGES, "free"), (refused("stuck"), "loose")]}),
     "forced_residual": (*analysis(still.forced_residual, omega=1.3, x=X, jacobian=False, d_omega=False, samples=0), {
         "omega": [(CHANGES, 1.4), (refused("omega"), -1.0), (refused("omega"), NAN)], "x": [(CHANGES, 1.1 * X), (refused("x"), X[:, :2])],
         "jacobian": [(CHANGES, True)],

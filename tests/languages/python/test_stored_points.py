@@ -55,7 +55,10 @@ raises("a point that is not there", IndexError, branch.point, branch.stored, wor
 raises("a negative one", IndexError, branch.point, -1)
 raises("no number", TypeError, branch.point, 0.5, words="point = 0.5")
 raises("a field that the branch does not have", ValueError, peak.field, "damping_ratio")
-raises("a field that is told of the curve alone", NotImplementedError, peak.field, "newton_iterations", words="newton_iterations")
+check("a peak has the residual of its solution", 0 <= peak.field("residual") < 1e-9, peak.field("residual"))
+loaded = pickle.loads(pickle.dumps(branch)).point(peak.number)
+raises("that a loaded branch has of the curve alone", NotImplementedError, loaded.field, "newton_iterations",
+       words="newton_iterations")
 raises("a forced response is no mode", NotImplementedError, lambda: peak.mode)
 
 # Modes, folds and parameters.
@@ -84,8 +87,11 @@ mild = hbvib.Model(mass=1, stiffness=1, damping=0.1)
 mild.add_contact("cubic", 0, cubic=0.01)
 mild.add_force(0, 0.1)
 moving = mild.parameter_response(hbvib.Parameter("force"), (0.5, 1.2), omega=1.0, follow="peak", at=[1.0], harmonics=7)
-check("one that moves is not guessed", np.isnan(moving.at(0).omega).all())
-raises("nor by its number", NotImplementedError, lambda: moving.point(moving.at(0).point[0]).omega)
+wanted, at = moving.at(0), moving.point(moving.at(0).point[0])
+slope = np.interp(1.0, moving.parameter_values, moving.d_amplitude)
+check("one that moves has its frequency", moving.omega.min() <= wanted.omega[0] <= moving.omega.max(), wanted.omega)
+check("by its number, too, with the parameter", (at.omega, at.field("parameter_value")) == (wanted.omega[0], 1.0))
+check("and its derivative by the parameter", abs(at.field("d_amplitude") / slope - 1) < 1e-2, at.field("d_amplitude"))
 
 # Loaded branches compute loops and summaries again, for every law, on curve and beside it.
 space = hbvib.Model(mass=np.eye(3), stiffness=np.diag([1.0, 1.2, 2.0]), rayleigh=(0.02, 0.02))

@@ -21,7 +21,7 @@ PACKAGE = os.path.dirname(os.path.abspath(hbvib.__file__))
 UNTYPED = {
     "Contact.constants",
     "Branch.plot", "Branch.plot_loop", "Branch.to_dataframe", "Branch.to_xarray", "Model.plot_campbell", "Model.plot_interference",
-    "Model.matrix", "io.Matrices.damping", "io.Matrices.mass", "io.Matrices.stiffness",
+    "Model.matrix", "io.Matrices.damping", "io.Matrices.mass", "io.Matrices.stiffness", "io.Matrices.structural",
 }
 UNTYPED |= {name.replace("Branch.", "SavedBranch.") for name in UNTYPED}
 
