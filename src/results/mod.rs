@@ -34,7 +34,7 @@ pub(crate) use parameter_branch::ParameterData;
 pub use parameter_branch::{HigherPeak, Optimum};
 pub use point_energy::Energy;
 pub(crate) use recovery::Recovery;
-pub use stored_fields::PointField;
+pub(crate) use stored_fields::PointField;
 pub use time_history::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
 pub(crate) use verdict::Verdict;
 pub use verdict::{Bifurcation, BifurcationKind, Stretch, UNIT};

@@ -42,7 +42,7 @@ pub enum PointField {
 impl Branch {
     /// A number of all stored points; `None` where the branch does not have it.
     #[must_use]
-    pub fn stored_field(&self, field: PointField) -> Option<&[f64]> {
+    pub(crate) fn stored_field(&self, field: PointField) -> Option<&[f64]> {
         let is_mode = self.mode.is_some();
         match field {
             PointField::Omega => Some(&self.omega),

@@ -23,6 +23,7 @@ pub trait UserForce: Send + Sync {
     fn evaluate(&self, call: &mut Call<'_>) -> i32;
 
     /// A number that tells this force from others; 0, which all have by default, tells nothing.
+    #[doc(hidden)]
     fn identity(&self) -> u64 {
         0
     }
