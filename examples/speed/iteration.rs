@@ -108,10 +108,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let mut evaluator = Evaluator::new(set, samples, core::iter::once(law))?;
     let mut out = Evaluation::new(set, 1)?;
     let u = &v[..n];
-    let turning_points = time(|| {
-        evaluator.prepare(set, black_box(u));
-        Ok(())
-    })?;
+    let turning_points = time(|| Ok(evaluator.prepare(set, black_box(u), &never)?))?;
     let law = time(|| Ok(evaluator.evaluate(law, set, black_box(u), omega, &mut out, &never)?))?;
     let mut at = Residual::new(n)?;
     let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
