@@ -16,9 +16,6 @@ use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
 
-/// Numbers of a Jacobian that are cleared between two checks.
-const NUMBERS_TOGETHER: usize = 1 << 22;
-
 /// Residual R_h = Z_h x_h + Wᴴ f_h − F_h of harmonic balance with harmonics 0 ..= H of all degrees
 /// of freedom, with its Jacobian and frequency derivative.
 ///
@@ -484,20 +481,18 @@ pub fn contact_evaluate_with(
         }
     }
     let evaluation = evaluate(contact, &set, (samples, omega), &packed, interrupt)?;
+    // From here on all of the arrays is written, or none.
+    interrupt.check_before(evaluation.jacobian.len() as u64)?;
     for (force, packed) in force.chunks_exact_mut(count).zip(evaluation.force.chunks_exact(m)) {
         for (i, f) in force.iter_mut().enumerate() {
             *f = set.get(packed, i);
         }
     }
     if let Some(jacobian) = jacobian {
-        for part in jacobian.chunks_mut(NUMBERS_TOGETHER) {
-            interrupt.check_before(part.len() as u64)?;
-            part.fill(0.0);
-        }
+        jacobian.fill(0.0);
         // Packed position p of (harmonic, part) is pair position p + 1, but 0 for the mean.
         let pair = |p: usize| 2 * count * (p / m) + if p.is_multiple_of(m) { 0 } else { p % m + 1 };
         for (column, j) in evaluation.jacobian.chunks_exact(m * directions).enumerate() {
-            interrupt.check_before(j.len() as u64)?;
             for (row, j) in j.iter().enumerate() {
                 jacobian[pair(column) * 2 * size + pair(row)] = *j;
             }
