@@ -31,7 +31,7 @@ const SUMS_UP_TO: usize = 100;
 /// tables would take too much memory.
 const INTERPOLATED: RangeInclusive<usize> = 8..=96;
 
-/// Most resonances that are divided out of them: the product of more would hide small tables beside large ones.
+/// Most resonances in their range: with more the panels are so many that they take more time than the sums.
 const MOST_RESONANCES: usize = 8;
 
 /// Relative error of a column of an interpolated sum that shows that it must not be used.

@@ -30,10 +30,10 @@ const NARROW: f64 = 0.1 / f32::EPSILON as f64;
 const NOISE: f64 = 1e-10;
 
 /// Most resonances that are divided out on one panel: each takes one more term of the series.
-const MOST_RESONANCES: usize = 12;
+const MOST_ON_A_PANEL: usize = 12;
 
 /// Distance from a panel, in its widths, up to which resonances are divided out.
-const NEAR: f64 = 0.5;
+const BESIDE_PANEL: f64 = 0.5;
 
 /// Deviation of a panel from H, over the tolerance, with which it is used.
 const AGREES: f64 = 10.0;
@@ -249,11 +249,11 @@ impl FrequencyInterpolation {
 
     /// The resonances that are divided out of a panel; `None` where it has too many.
     fn resonances_near(&self, (low, high): (f64, f64)) -> Result<Option<Vec<Complex64>>> {
-        let beside = NEAR * (high - low);
-        let mut found = try_room(MOST_RESONANCES, CONTEXT)?;
+        let beside = BESIDE_PANEL * (high - low);
+        let mut found = try_room(MOST_ON_A_PANEL, CONTEXT)?;
         for p in &self.resonances {
             if p.re >= low - beside && p.re <= high + beside {
-                if found.len() == MOST_RESONANCES {
+                if found.len() == MOST_ON_A_PANEL {
                     return Ok(None);
                 }
                 found.push(*p);
