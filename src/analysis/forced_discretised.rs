@@ -9,7 +9,6 @@ use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::forced_equations::Equations;
 use crate::analysis::point_error::observed;
-use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reduction, Reference, reduced_resonances};
 use crate::continuation::resolve::resolve;
@@ -27,7 +26,7 @@ use crate::problem::Problem;
 use crate::results::{Branch, Resolution, SpecialKind, Verdict};
 use num_complex::Complex64;
 
-/// Degrees of freedom up to which a linear response is not interpolated: its points are few.
+/// Degrees of freedom up to which the points of a linear response, which are few, are factorised where small structures are.
 const FACTORISE_UP_TO: usize = 1000;
 
 /// The equations of a linear response: those with the stuck structure as their reference, where the others have another
@@ -37,7 +36,7 @@ struct LinearResponse<'a> {
     equations: Option<(usize, Box<Equations<'a>>)>,
     /// Frequency of the point solved last.
     solved: Option<f64>,
-    /// Whether interpolation is not accurate enough.
+    /// Whether sums over modes are not accurate enough.
     accurate: bool,
 }
 
@@ -81,8 +80,6 @@ pub(super) struct ForcedDiscretised<'a> {
     resolutions: Resolutions<'a, Equations<'a>>,
     linear_response: LinearResponse<'a>,
     recorder: BranchRecorder<'a>,
-    /// Interpolated flexibilities of all resolutions.
-    tables: &'a SharedTables,
     estimator: Option<Box<ForcedEstimator<'a>>>,
     /// Whether the current problem may have been evaluated at another point than the current one.
     stale: bool,
@@ -123,13 +120,11 @@ impl<'a> ForcedDiscretised<'a> {
             branch.tell_stability();
         }
         let estimates = solver.estimate_error || levels.is_automatic();
-        let equations =
-            boxed(|| Equations::new(resolution, &settings, response, guess, (&extended.1.tables, interrupt)))?;
+        let equations = boxed(|| Equations::new(resolution, &settings, response, guess, interrupt))?;
         Ok(Self {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             linear_response: LinearResponse::new(stuck),
-            tables: &extended.1.tables,
             model,
             settings,
             interrupt,
@@ -239,9 +234,9 @@ impl Discretised for ForcedDiscretised<'_> {
     fn select(&mut self, resolution: usize) -> Result<()> {
         self.stale |= resolution != self.resolutions.index();
         let (settings, response) = (&self.settings, self.recorder.branch().response_dof());
-        let shared = (self.tables, self.interrupt);
+        let interrupt = self.interrupt;
         self.resolutions.select(resolution, |level| {
-            Equations::new(level, settings, response, None, shared)
+            Equations::new(level, settings, response, None, interrupt)
         })
     }
 
@@ -316,13 +311,7 @@ impl Discretised for ForcedDiscretised<'_> {
             && self.model.structure().is_damped();
         let factorised = self.linear_response.accurate || condensed.ndof() <= FACTORISE_UP_TO;
         let own = self.linear_response.equations(needed, index, |resolution| {
-            Equations::new(
-                resolution,
-                &self.settings,
-                response,
-                None,
-                (self.tables, self.interrupt),
-            )
+            Equations::new(resolution, &self.settings, response, None, self.interrupt)
         });
         let settings = &self.settings;
         let current = &mut *self.resolutions.current;
@@ -382,8 +371,8 @@ impl Recorder for ForcedDiscretised<'_> {
         self.stability.as_mut()?.take_last()
     }
 
-    /// The point is solved once more at its frequency with the flexibility factorised there: along the sweep it may
-    /// have been interpolated. At a fold the solution at a fixed frequency is not isolated.
+    /// The point is solved once more at its frequency with the flexibility factorised there: along the sweep it may be a
+    /// sum over modes. At a fold the solution at a fixed frequency is not isolated.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
         self.stale = false;
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;

@@ -1,6 +1,5 @@
 //! The equations of a forced response at one resolution, with what solves them.
 
-use crate::condense::shared_tables::SharedTables;
 use crate::continuation::corrector::Corrector;
 use crate::continuation::resolve::solve_linear;
 use crate::continuation::{Point, Settings};
@@ -36,18 +35,17 @@ impl<'a> Equations<'a> {
         Ok(found?.filter(|_| problem.forces().all_linear()))
     }
 
-    /// The equations over the range of the settings, with interpolated flexibilities that those of other resolutions share.
+    /// The equations over the range of the settings.
     pub fn new(
         resolution: &'a Resolution,
         settings: &Settings,
         response: usize,
         given: Option<Vec<f64>>,
-        (tables, interrupt): (&'a SharedTables, &'a Interrupt<'a>),
+        interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let (condensed, samples) = (&*resolution.condensed, resolution.samples);
         let range = (settings.start, settings.end);
-        let mut problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
-        problem.share_tables(tables);
+        let problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
         Ok(Self {
             corrector: Box::new(Corrector::new(
                 problem.unknowns(),

@@ -32,10 +32,6 @@ use num_complex::Complex64;
 /// Size of a first motion, over that under linear contacts, above which its bound is checked.
 const LARGE: f64 = 1e6;
 
-/// Factorisations that a harmonic is expected to take along a branch, and with estimates of errors.
-const SAMPLES: usize = 30;
-const WITH_ESTIMATES: usize = 100;
-
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to `range.omega_stop` by harmonic
 /// balance and arc-length continuation.
 ///
@@ -328,12 +324,7 @@ fn condensed(
     if sweep.0.to_bits() == sweep.1.to_bits() {
         return Ok(condensed);
     }
-    let factorisations = if options.tolerance > 0.0 {
-        WITH_ESTIMATES
-    } else {
-        SAMPLES
-    };
-    waves.attach(model, (condensed, factorisations), interrupt)
+    waves.attach(model, condensed, interrupt)
 }
 
 /// The error with its reason, as far as it is known: no bounded solution exists, or, with preloaded contacts, the

@@ -168,8 +168,7 @@ fn on_wave(
         let options = SolverOptions { harmonics, ..*solver };
         let form = (range.damping_form, linear.rest.is_loaded());
         let (condensed, _) = Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?;
-        // With many degrees of freedom sums over modes with their derivatives take no less time than factorisations.
-        waves.attach(model, (condensed, 0), interrupt)
+        waves.attach(model, condensed, interrupt)
     })?;
     let level = match &range.guess {
         Some(guess) if levels.is_automatic() => {

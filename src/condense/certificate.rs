@@ -59,8 +59,8 @@ impl Certificate {
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
 pub(super) fn certificate(
-    block: &HarmonicBlock,
-    view: &ReducedView,
+    (block, view): (&HarmonicBlock, &ReducedView),
+    loss_factor: f64,
     inputs: &[SparseVector],
     sweep: Sweep,
     interrupt: &Interrupt<'_>,
@@ -108,9 +108,9 @@ pub(super) fn certificate(
             if size == 0.0 {
                 continue;
             }
-            let share = residual(view, nu, &q[..order])? / size;
+            let share = residual(view, (nu, loss_factor), &q[..order])? / size;
             let basis = share + inverse * share * share;
-            let whole = share + solutions * images(view, nu, &q[..order])? / size;
+            let whole = share + solutions * images(view, (nu, loss_factor), &q[..order])? / size;
             let total = whole + inverse * whole * whole + (1.0 + inverse) * products;
             worst = worst.max(Certificate { basis, total });
         }
@@ -119,7 +119,7 @@ pub(super) fn certificate(
 }
 
 /// ρ of a motion of the coordinates at ν = hω.
-fn residual(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
+fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<f64> {
     let pencil = view.pencil();
     let (order, last) = (pencil.order(), pencil.remainder.last);
     let new = order - last;
@@ -131,14 +131,18 @@ fn residual(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
             *to += r * z;
         }
     }
-    // Z = (1 + iνβ) A − s M + …, s = ν² − iνα + (1 + iνβ) σ
+    // Z = (1 + iνβ + iη) A − s M + …, s = ν² − iνα + (1 + iνβ + iη) σ
+    let i_eta = Complex64::new(0.0, loss_factor);
     let (mass, damping) = match pencil.damping {
         WaveDamping::Proportional(alpha, beta) => {
             let i_nu = Complex64::new(0.0, nu);
-            (nu * nu - i_nu * alpha + (1.0 + i_nu * beta) * pencil.shift, None)
+            (
+                nu * nu - i_nu * alpha + (1.0 + i_nu * beta + i_eta) * pencil.shift,
+                None,
+            )
         }
         WaveDamping::General(_) => (
-            Complex64::from(nu * nu + pencil.shift),
+            nu * nu + (1.0 + i_eta) * pencil.shift,
             Some(turned(Complex64::new(0.0, -nu))),
         ),
     };
@@ -159,7 +163,7 @@ fn residual(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
 }
 
 /// Sum of the norms of the forces Z q and of the images of the basis in them, by which the rounding of solutions counts.
-fn images(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
+fn images(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<f64> {
     let pencil = view.pencil();
     let size = |x: &[Complex64]| x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
     let mut moved = Vec::new();
@@ -167,9 +171,10 @@ fn images(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
         try_push(&mut moved, z * value, CONTEXT)?;
     }
     let i_nu = Complex64::new(0.0, nu);
+    let i_eta = Complex64::new(0.0, loss_factor);
     let (stiffness, mass, damping) = match pencil.damping {
         WaveDamping::Proportional(alpha, beta) => {
-            let damped = 1.0 + i_nu * beta;
+            let damped = 1.0 + i_nu * beta + i_eta;
             (
                 damped.norm(),
                 (nu * nu - i_nu * alpha + damped * pencil.shift).norm(),
@@ -181,7 +186,8 @@ fn images(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
             for (i, to) in damped.iter_mut().enumerate() {
                 *to = q.iter().enumerate().map(|(j, z)| view.damping(i, j) * z).sum();
             }
-            (1.0, nu * nu + pencil.shift, nu * size(&damped))
+            let lost = 1.0 + i_eta;
+            (lost.norm(), (nu * nu + lost * pencil.shift).norm(), nu * size(&damped))
         }
     };
     // The forces are the difference of all of them.

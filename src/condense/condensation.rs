@@ -18,7 +18,7 @@ use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffnes
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
-use crate::condense::wave_cache::{ALL_UP_TO, WaveCache};
+use crate::condense::wave_cache::WaveCache;
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
@@ -33,9 +33,6 @@ use std::sync::Arc;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
-
-/// Factorisations of a full matrix that take twice the time of its modes.
-const MODES: usize = 48;
 
 impl Condensed {
     /// Condenses a model under its forces for a range of frequency, with the motion scaled for its start.
@@ -106,44 +103,19 @@ impl Condensed {
         Ok(condensed)
     }
 
-    /// Attaches the modes of its waves, where they take less time than so many factorisations for each harmonic: its flexibility
-    /// is then a sum over them, or is interpolated between such sums. Modes that are known are attached to any model.
+    /// Attaches the modes or poles of its waves, where they have such: its flexibility is then a sum over them.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn attach_modes(
-        &mut self,
-        model: &Model,
-        (waves, factorisations): (&mut WaveCache, usize),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
+    pub fn attach_modes(&mut self, model: &Model, waves: &mut WaveCache, interrupt: &Interrupt<'_>) -> Result<()> {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
-        let is_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
-        if self.is_reduced() || is_rigid {
+        if (0..self.coordinates()).any(|c| self.is_near_rigid(c)) {
             return Ok(());
         }
-        let wanted = self.order <= ALL_UP_TO || self.modes_pay(factorisations);
         for i in 0..self.blocks.len() {
-            self.blocks[i].modes = waves.find(model, self, (i, wanted), interrupt)?;
+            self.blocks[i].source = waves.of(model, self, i, interrupt)?;
         }
         Ok(())
-    }
-
-    /// Whether all modes of the waves take well less time than so many factorisations for each harmonic. Those of a sparse matrix
-    /// take less, modes do not.
-    fn modes_pay(&self, factorisations: usize) -> bool {
-        let vibrating = || self.blocks.iter().filter(|block| block.number > 0);
-        let is_first = |i: usize, next: Complex64| {
-            let mut before = vibrating().take(i);
-            before.all(|known| known.next != next && known.next.conj() != next)
-        };
-        let waves = vibrating()
-            .enumerate()
-            .filter(|&(i, block)| is_first(i, block.next))
-            .count();
-        let stored = self.blocks.first().map_or(0, |block| block.reference.values.len());
-        let share = stored as f64 / (self.order * self.order) as f64;
-        factorisations as f64 * vibrating().count() as f64 * share >= (MODES * waves) as f64
     }
 
     /// Condenses a model for its static state under constant forces and preload. The unit of lengths is near the

@@ -315,26 +315,6 @@ pub(super) fn multiply(block: &HarmonicBlock, entries: &[Complex64], x: &[Comple
     }
 }
 
-/// left·Z right at a complex frequency; nothing is conjugated.
-pub(super) fn product(
-    condensed: &Condensed,
-    i: usize,
-    omega: Complex64,
-    left: &[Complex64],
-    right: &[Complex64],
-) -> Complex64 {
-    let block = &condensed.blocks()[i];
-    let pattern = &block.reference;
-    let z = Combination::value(block, omega, 0.0);
-    let mut sum = Complex64::ZERO;
-    for (j, x) in right.iter().enumerate() {
-        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            sum += left[pattern.row_idx[at]] * z.at(block, at) * x;
-        }
-    }
-    sum
-}
-
 fn at_harmonic(e: Error, block: &HarmonicBlock, omega: f64) -> Error {
     e.at(format_args!("harmonic {} at angular frequency {omega}", block.number))
 }

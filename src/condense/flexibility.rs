@@ -4,9 +4,7 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use crate::condense::dynamic_stiffness::{
-    DynamicStiffness, Variable, add_slope_product, fill_slope, multiply, product,
-};
+use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -93,62 +91,6 @@ impl Workspace {
     /// Sets the damping ratio of a nonlinear mode.
     pub fn set_damping(&mut self, damping: f64) {
         self.damping = damping;
-    }
-
-    /// right ← Z⁻¹ Z′ right and left ← Z⁻ᵀ Z′ᵀ left at a complex frequency, each scaled to size 1.
-    pub(super) fn inverse_step(
-        &mut self,
-        condensed: &Condensed,
-        i: usize,
-        omega: Complex64,
-        left: &mut [Complex64],
-        right: &mut [Complex64],
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
-        let dynamic = made(&mut self.dynamic, condensed)?;
-        dynamic.factor(condensed, i, omega, 0.0, interrupt)?;
-        for (v, transposed) in [(right, false), (left, true)] {
-            self.product.fill(Complex64::ZERO);
-            add_slope_product(
-                condensed,
-                i,
-                (omega, 0.0),
-                Variable::Omega,
-                transposed,
-                v,
-                &mut self.product,
-            );
-            v.copy_from_slice(&self.product);
-            dynamic.solve(condensed, i, omega.re, v, transposed, interrupt)?;
-            let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
-            for z in v.iter_mut() {
-                *z /= size;
-            }
-        }
-        Ok(())
-    }
-
-    /// Newton step of a resonance: (left·Z right)/(left·Z′ right).
-    pub(super) fn resonance_step(
-        &mut self,
-        condensed: &Condensed,
-        i: usize,
-        omega: Complex64,
-        left: &[Complex64],
-        right: &[Complex64],
-    ) -> Complex64 {
-        self.product.fill(Complex64::ZERO);
-        add_slope_product(
-            condensed,
-            i,
-            (omega, 0.0),
-            Variable::Omega,
-            false,
-            right,
-            &mut self.product,
-        );
-        let slope: Complex64 = left.iter().zip(&self.product).map(|(a, b)| a * b).sum();
-        product(condensed, i, omega, left, right) / slope
     }
 
     /// Fills the columns Z⁻¹ B.

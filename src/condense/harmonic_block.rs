@@ -1,7 +1,7 @@
 //! One harmonic of the condensed model: the matrices on one pattern, and the rows of the contacts.
 
 use crate::condense::contact_classes::ContactClasses;
-use crate::condense::wave_modes::WaveModes;
+use crate::condense::sum_terms::Source;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
@@ -47,8 +47,8 @@ pub struct HarmonicBlock {
     pub mass: Values,
     /// The artificial damping.
     pub artificial: Artificial,
-    /// Modes of the wave along a sweep of a small structure, where the flexibility is a sum over them.
-    pub modes: Option<Arc<WaveModes>>,
+    /// Modes or poles of the wave along a sweep, where the flexibility is a sum over them.
+    pub source: Option<Source>,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Amplitudes of the forces that grow with ω², over ω², likewise; `None` without such forces.
@@ -264,7 +264,7 @@ impl Matrices {
             damping: self.damping,
             mass: self.mass,
             artificial: Artificial::None,
-            modes: None,
+            source: None,
             force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
             unbalance: None,
             tied: self.tied,

@@ -40,6 +40,9 @@ const ATTEMPTS: usize = 5;
 const MOST_COLUMNS: usize = 600;
 const MOST_BLOCKS: usize = 12;
 
+/// Columns of a basis over those that are added before its next certificate, which costs as much as some of its factorisations.
+const GROWTH: usize = 5;
+
 /// Blocks that memory is counted and reserved for.
 const USUAL_BLOCKS: usize = 7;
 
@@ -123,7 +126,7 @@ fn build<T: Entry>(
         krylov.give_basis(back(wave.basis));
         let complete = found.basis <= limit || full;
         // Where images and basis are the same space there is nothing to add.
-        if complete || !krylov.grow(interrupt)? {
+        if complete || !grown(&mut krylov, most, interrupt)? {
             wave.exhausted = found.basis > limit;
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
             let mut columns = krylov.take_basis();
@@ -136,6 +139,20 @@ fn build<T: Entry>(
         wave.pencil = pencil(&krylov, &prepared, interrupt)?;
         wave.basis = basis(krylov.take_basis());
     }
+}
+
+/// Adds blocks until the basis is so much larger that a certificate is worth its cost; `false` where there is nothing to add.
+fn grown<T: Entry>(krylov: &mut BlockKrylov<T>, most: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+    let enough = krylov.order() + krylov.order() / GROWTH;
+    let mut has_grown = false;
+    while krylov.grow(interrupt)? {
+        has_grown = true;
+        let next = krylov.next_columns();
+        if krylov.order() >= enough || next == 0 || krylov.order() + next > most {
+            break;
+        }
+    }
+    Ok(has_grown)
 }
 
 /// The data that a basis keeps of its matrices.

@@ -1,14 +1,12 @@
 //! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
 
 mod certificate;
-mod chebyshev_series;
 mod condensation;
 mod condensed;
 pub mod contact_classes;
 pub mod dynamic_stiffness;
 pub mod flexibility;
 pub mod frequency_cache;
-pub mod frequency_interpolation;
 pub mod harmonic_block;
 mod krylov_wave;
 mod low_rank;
@@ -21,25 +19,25 @@ pub mod modal_table;
 mod model_cache;
 mod more_harmonics;
 pub mod near_rigid_motion;
+mod quadratic_poles;
 mod reduced_block;
 mod reduced_resonances;
 mod reduction;
 mod reference_stiffness;
+mod refined_modes;
 mod relative_coordinates;
 mod resolution;
-pub mod resonance_poles;
-mod series_decay;
-pub mod shared_tables;
 mod single_contact;
 mod single_contact_lanes;
 mod single_motion;
+mod sum_terms;
 mod sweep;
-mod table_layout;
 mod tied_load;
 mod under_force;
 pub mod wave_cache;
 mod wave_matrices;
 pub mod wave_modes;
+mod wave_poles;
 mod wave_reduction;
 
 pub use condensed::{Condensed, Reference};

@@ -262,9 +262,9 @@ mod tests {
                 let form = (form, false);
                 let (direct, _) = Condensed::for_mode(&model, &options, form, &shape, &Interrupt::none()).unwrap();
                 let quick = SharedWaves::default()
-                    .attach(&model, (direct.clone(), 0), &Interrupt::none())
+                    .attach(&model, direct.clone(), &Interrupt::none())
                     .unwrap();
-                assert!(quick.blocks().iter().all(|b| b.modes.is_some()));
+                assert!(quick.blocks().iter().all(|b| b.source.is_some()));
                 let [mut by_modes, mut exact] = [&quick, &direct].map(|c| Modal::new(c).unwrap());
                 let w: Vec<Complex64> = (0..direct.coordinates())
                     .map(|c| Complex64::new(1.0 - c as f64, 0.4))

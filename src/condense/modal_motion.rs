@@ -14,6 +14,7 @@
 use crate::condense::low_rank::Coefficients;
 use crate::condense::modal_solution::{Pair, Solution};
 use crate::condense::single_motion::{Coefficient, SingleMotion};
+use crate::condense::sum_terms::Source;
 use crate::condense::wave_modes::WaveModes;
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
@@ -59,7 +60,7 @@ impl ModalMotion {
     /// `OutOfMemory`.
     pub fn new(condensed: &Condensed, i: usize) -> Result<Option<Self>> {
         let block = &condensed.blocks()[i];
-        let Some(modes) = &block.modes else {
+        let Some(Source::Modes(modes)) = &block.source else {
             return Ok(None);
         };
         let is_mass_type = matches!(block.artificial, Artificial::Mass);

@@ -56,6 +56,17 @@ pub(super) fn reduced_block(
         add(&mut full, &view.row(force)?, &view.row(motion)?, (*k).into());
     }
     let stiffness = try_copy(&full.values, CONTEXT)?;
+    // The loss factor is of the structure itself, and dissipates nothing at rest.
+    let structural = if structure.loss_factor() == 0.0 || number == 0 {
+        None
+    } else {
+        let mut structural = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+        for j in 0..basis {
+            structural[j * n + j] = (structure.loss_factor() * view.pencil().stiffness(j)).into();
+            full.values[j * n + j] += Complex64::I * structural[j * n + j];
+        }
+        Some(Arc::new(structural))
+    };
     let rows_of = |contacts: &[(usize, usize)]| -> Result<(Vec<Row>, Vec<MotionRow>)> {
         let (mut structural, mut reduced) = (Vec::new(), Vec::new());
         for &(i, k) in contacts {
@@ -74,11 +85,11 @@ pub(super) fn reduced_block(
         next: structure.phase(number, 1),
         reference: Arc::new(full),
         stiffness: Arc::new(stiffness),
-        structural: None,
+        structural,
         damping: Arc::new(damping),
         mass: Arc::new(mass),
         artificial: Artificial::None,
-        modes: None,
+        source: None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         unbalance: None,
         tied: None,

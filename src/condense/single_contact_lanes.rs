@@ -379,11 +379,11 @@ mod tests {
         };
         let condensed = Condensed::with_reference(&model, &options, (0.3, 2.0), None, &Interrupt::none()).unwrap();
         let condensed = SharedWaves::default()
-            .attach(&model, (condensed, 0), &Interrupt::none())
+            .attach(&model, condensed, &Interrupt::none())
             .unwrap();
         let table = |i: usize| {
-            let modes = condensed.blocks()[i].modes.as_ref()?;
-            let rows = ModalRows::new((&condensed, i, 8), Arc::clone(modes)).ok()?;
+            let source = condensed.blocks()[i].source.clone()?;
+            let rows = ModalRows::new((&condensed, i, 8), source).ok()?;
             ModalTable::new((&condensed, i), Arc::new(rows), 0.0).ok()
         };
         (0..condensed.blocks().len()).map(table).collect()

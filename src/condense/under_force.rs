@@ -69,7 +69,7 @@ impl HarmonicBlock {
             damping: Arc::new(damping),
             mass: Arc::new(mass),
             artificial: Artificial::None,
-            modes: None,
+            source: None,
             force: try_copy(&self.force, CONTEXT)?,
             rows: self.rows.clone(),
             structural_rows: try_copy(&self.structural_rows, CONTEXT)?,

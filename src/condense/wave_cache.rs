@@ -1,18 +1,20 @@
 //! Computes the modes of waves, each once; see [`crate::condense::wave_modes`].
 
 use crate::condense::harmonic_block::Values;
-use crate::condense::shared_tables::SharedTables;
+use crate::condense::modal_rows::ModalRows;
+use crate::condense::quadratic_poles;
+use crate::condense::refined_modes;
+use crate::condense::sum_terms::Source;
 use crate::condense::wave_modes::{WaveModes, proportional};
+use crate::condense::wave_poles::WavePoles;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::MotionRow;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -22,14 +24,19 @@ pub(super) const ALL_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the modes of the structure";
 
-/// The waves met so far; `None` for one whose flexibility is no such sum.
+/// Degrees of freedom from which sums over poles take less time than factorisations.
+const POLES_FROM: usize = 12;
+
+/// The waves met so far.
 #[derive(Default)]
 pub struct WaveCache {
     waves: Vec<Arc<WaveModes>>,
     /// Matrices of blocks whose modes were asked for, which other blocks share.
     blocks: Vec<KnownBlock>,
-    /// Whether a wave without such modes was met: there are no others then.
-    refused: bool,
+    poles: Vec<Arc<WavePoles>>,
+    /// Whether a wave without modes, and one without poles, was met: there are no others then.
+    has_no_modes: bool,
+    has_no_poles: bool,
 }
 
 /// Z_κ at rest and M of blocks, with the modes of their wave.
@@ -39,14 +46,11 @@ struct KnownBlock {
     modes: Arc<WaveModes>,
 }
 
-/// The waves of one model and their flexibilities over one range, for condensed models with different harmonics.
+/// The waves of one model and the rows of its contacts in them, for condensed models with different harmonics.
 #[derive(Default)]
 pub struct SharedWaves {
     waves: Cell<WaveCache>,
-    /// Interpolated tables of solutions.
-    pub tables: SharedTables,
-    /// Those of estimates of errors, which are less exact.
-    pub estimated: SharedTables,
+    rows: Cell<Vec<Arc<ModalRows>>>,
 }
 
 impl SharedWaves {
@@ -54,16 +58,11 @@ impl SharedWaves {
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn attach(
-        &self,
-        model: &Model,
-        (mut condensed, factorisations): (Condensed, usize),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Condensed> {
+    pub fn attach(&self, model: &Model, mut condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Condensed> {
         let mut waves = self.waves.take();
-        condensed.attach_modes(model, (&mut waves, factorisations), interrupt)?;
+        let attached = condensed.attach_modes(model, &mut waves, interrupt);
         self.waves.set(waves);
-        Ok(condensed)
+        attached.map(|()| condensed)
     }
 
     /// The modes of the i-th carried harmonic, as [`WaveCache::of`].
@@ -76,19 +75,31 @@ impl SharedWaves {
         condensed: &Condensed,
         i: usize,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Arc<WaveModes>>> {
+    ) -> Result<Option<Source>> {
         let mut waves = self.waves.take();
         let found = waves.of(model, condensed, i, interrupt);
         self.waves.set(waves);
         found
     }
 
+    /// The rows of the contacts in the modes of a wave, as [`ModalRows::shared`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn rows(&self, at: (&Condensed, usize, usize), source: Source) -> Result<Arc<ModalRows>> {
+        let mut known = self.rows.take();
+        let rows = ModalRows::shared(at, source, &mut known);
+        self.rows.set(known);
+        rows
+    }
+
     /// Whether some wave has modes; `None` as long as none was asked for.
     pub fn some_have_modes(&self) -> Option<bool> {
         let waves = self.waves.take();
-        let (refused, known) = (waves.refused, !waves.waves.is_empty());
+        let known = !waves.waves.is_empty() || !waves.poles.is_empty();
+        let refused = waves.is_refused();
         self.waves.set(waves);
-        (refused || known).then_some(!refused)
+        (refused || known).then_some(known)
     }
 }
 
@@ -99,15 +110,14 @@ impl WaveCache {
         self.waves.len()
     }
 
-    /// Whether no wave has such modes.
+    /// Whether no wave has modes or poles.
     #[must_use]
     pub fn is_refused(&self) -> bool {
-        self.refused
+        self.has_no_modes && self.has_no_poles
     }
 
-    /// The modes of the i-th carried harmonic; `None` where the damping is not proportional, a
-    /// structural matrix is given, the structure rotates or has an unbalance, it can move without the reference
-    /// stiffness, or has too many degrees of freedom.
+    /// The modes of the i-th carried harmonic, or where damping couples them its poles; `None` for the mean, and where the wave
+    /// can move without the reference stiffness or has too many degrees of freedom.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -117,29 +127,48 @@ impl WaveCache {
         condensed: &Condensed,
         i: usize,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Arc<WaveModes>>> {
-        self.find(model, condensed, (i, true), interrupt)
+    ) -> Result<Option<Source>> {
+        let block = &condensed.blocks()[i];
+        if block.number == 0 {
+            return Ok(None);
+        }
+        if !self.has_no_modes
+            && let Some(modes) = self.modes(model, condensed, i, interrupt)?
+        {
+            return Ok(Some(Source::Modes(modes)));
+        }
+        if self.has_no_poles || condensed.ndof() < POLES_FROM {
+            self.has_no_poles = true;
+            return Ok(None);
+        }
+        if let Some(poles) = self.poles.iter().find(|poles| quadratic_poles::are_of(poles, block)) {
+            return Ok(Some(Source::Poles(Arc::clone(poles))));
+        }
+        let Some(poles) = quadratic_poles::poles(condensed, i, interrupt)? else {
+            self.has_no_poles = true;
+            return Ok(None);
+        };
+        let poles = Arc::new(poles);
+        try_push(&mut self.poles, Arc::clone(&poles), CONTEXT)?;
+        Ok(Some(Source::Poles(poles)))
     }
 
-    /// The same, without new ones unless they are `wanted`.
-    pub(super) fn find(
+    /// The modes of a harmonic; `None` where the damping is not proportional.
+    fn modes(
         &mut self,
         model: &Model,
         condensed: &Condensed,
-        (i, wanted): (usize, bool),
+        i: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
-        if self.refused || block.number == 0 || (!wanted && self.waves.is_empty()) {
-            return Ok(None);
-        }
         let is_same = |known: &&KnownBlock| {
             Arc::ptr_eq(&known.reference, &block.reference) && Arc::ptr_eq(&known.mass, &block.mass)
         };
         if let Some(known) = self.blocks.iter().find(is_same) {
             return Ok(Some(Arc::clone(&known.modes)));
         }
-        let found = self.find_by_values(model, condensed, (i, wanted), interrupt)?;
+        let found = self.find_by_values(model, condensed, i, interrupt)?;
         if let Some(modes) = &found {
             let known = KnownBlock {
                 reference: Arc::clone(&block.reference),
@@ -156,7 +185,7 @@ impl WaveCache {
         &mut self,
         model: &Model,
         condensed: &Condensed,
-        (i, wanted): (usize, bool),
+        i: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
@@ -169,11 +198,8 @@ impl WaveCache {
             .waves
             .iter()
             .find(|known| known.is_conjugate_of(&reference, &block.mass));
-        if other.is_none() && !wanted {
-            return Ok(None);
-        }
         let Some(found) = modes_of(model, condensed, (i, reference), other, interrupt)? else {
-            self.refused = true;
+            self.has_no_modes = true;
             return Ok(None);
         };
         let found = Arc::new(found);
@@ -220,7 +246,7 @@ fn modes_of(
 ) -> Result<Option<WaveModes>> {
     let block = &condensed.blocks()[i];
     let n = condensed.ndof();
-    if n > ALL_UP_TO || has_other_terms(model) || block.unbalance.is_some() {
+    if n > ALL_UP_TO || has_other_terms(model) {
         return Ok(None);
     }
     let Some(springs) = springs(model, condensed, block)? else {
@@ -244,7 +270,7 @@ fn modes_of(
         }
         (try_copy(&other.values, CONTEXT)?, vectors)
     } else {
-        match eigenpairs(&reference, &mass, interrupt) {
+        match refined_modes::modes(&reference, &mass, interrupt) {
             Ok(pairs) if pairs.values.len() == n => (pairs.values, pairs.vectors.data.into()),
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
             _ => return Ok(None),
@@ -259,23 +285,6 @@ fn modes_of(
         loss_factor: model.structure().loss_factor(),
         springs,
     }))
-}
-
-/// μ and φ of M φ = μ K φ, with the masses on the pattern of K. The pencil turned round: the lowest modes, which matter most, are
-/// the most accurate.
-fn eigenpairs(reference: &Csc, mass: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Pairs> {
-    interrupt.check()?;
-    let n = reference.rows;
-    let dense = |values: &[Complex64]| {
-        let mut a = DMatrix::<Complex64>::zeros(n, n);
-        for j in 0..n {
-            for at in reference.col_ptr[j]..reference.col_ptr[j + 1] {
-                a[(reference.row_idx[at], j)] = values[at];
-            }
-        }
-        a
-    };
-    eigen::generalised(&dense(mass), &dense(&reference.values), interrupt)
 }
 
 /// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.

@@ -34,7 +34,7 @@ pub struct WaveModes {
 }
 
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
-pub(super) const NEAR_RESONANCE: f64 = 1e-4;
+pub(super) const NEAR_RESONANCE: f64 = 1e-6;
 
 impl WaveModes {
     /// 1/(1 + c − s μ) of all modes at ν, s being ν² and what damping adds to it; `false` where a denominator is small.
@@ -47,13 +47,6 @@ impl WaveModes {
             *inverse = d.inv();
         }
         least > NEAR_RESONANCE * NEAR_RESONANCE
-    }
-
-    /// Natural frequencies with their shapes.
-    pub(super) fn frequencies(&self) -> impl Iterator<Item = (f64, &[Complex64])> {
-        let shapes = self.vectors.chunks_exact(self.values.len().max(1));
-        let modes = self.values.iter().zip(shapes).filter(|(mu, _)| **mu > 0.0);
-        modes.map(|(mu, shape)| (mu.sqrt().recip(), shape))
     }
 
     /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.

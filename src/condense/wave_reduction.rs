@@ -14,10 +14,13 @@ use crate::condense::wave_matrices::WaveMatrices;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
+use crate::linalg::cholesky::entries_by_degrees;
+use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::{ReducedView, ReducedWave, WaveKey};
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
+use crate::model::structure::MatrixKind;
 use crate::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -26,6 +29,9 @@ const CONTEXT: &str = "the reduced structure";
 
 /// Degrees of freedom from which a basis is quicker than all modes, or factors at each frequency.
 const FROM: usize = 600;
+
+/// Entries of a factor over degrees of freedom of a chain.
+const CHAIN: usize = 6;
 
 /// Degrees of freedom over columns of the first block, below which a basis is no reduction.
 const SHARE: usize = 20;
@@ -70,8 +76,11 @@ pub(super) fn reduced_blocks(
     }
     let forced = options.flexibility == Flexibility::Krylov;
     let structure = model.structure();
-    // A basis knows mass, viscous damping and stiffness, and forces of one size.
-    if structure.has_structural_damping()
+    if !forced && is_chain(request)? {
+        return Ok(None);
+    }
+    // A basis knows mass, viscous damping, stiffness and its loss factor, and forces of one size.
+    if structure.has_structural_matrix()
         || structure.is_rotating()
         || structure.has_modal_damping()
         || structure.has_aero()
@@ -115,6 +124,26 @@ pub(super) fn reduced_blocks(
     Ok(Some((blocks, worst.total)))
 }
 
+/// Whether the factors of the first wave with mass are those of a chain: a factorisation at each frequency then takes no longer than
+/// a sum over the modes of a basis, of which a chain needs as many as it has in the range.
+fn is_chain(request: &Request<'_>) -> Result<bool> {
+    let Some(&number) = request.numbers.iter().find(|&&h| h > 0) else {
+        return Ok(false);
+    };
+    let structure = request.model.structure();
+    let stiffness = structure.wave_matrix(MatrixKind::Stiffness, number)?;
+    let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
+    let one = Complex64::ONE;
+    let pattern = Csc::sum(
+        stiffness.rows,
+        &[(one, &stiffness, Form::Plain), (one, &mass, Form::Plain)],
+    )?;
+    if pattern.values.len() > CHAIN * pattern.rows {
+        return Ok(false);
+    }
+    Ok(entries_by_degrees(&pattern)? <= CHAIN * pattern.rows)
+}
+
 fn declined<T>(forced: bool) -> Result<Option<T>> {
     if !forced {
         return Ok(None);
@@ -122,7 +151,7 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     fail!(
         Unsupported,
         "flexibility = krylov needs Hermitian stiffness and mass, a mass by which K + shift M is positive definite, and neither \
-         structural or modal damping nor aerodynamic influence, a speed of rotation or unbalance"
+         structural matrix, modal damping, aerodynamic influence, a speed of rotation or unbalance"
     )
 }
 
@@ -209,9 +238,24 @@ fn certificate_of(
         let number = request.numbers[i];
         let at = (view.clone(), 0);
         let block = reduced_block(request.model, number, request.contacts, |c| kappa(c, number), at)?;
-        worst = worst.max(certificate(&block, &view, &group.inputs, request.sweep, interrupt)?);
+        worst = worst.max(certificate(
+            (&block, &view),
+            loss_factor(request, number),
+            &group.inputs,
+            request.sweep,
+            interrupt,
+        )?);
     }
     Ok(worst)
+}
+
+/// η in a harmonic: there is none at rest.
+fn loss_factor(request: &Request<'_>, number: usize) -> f64 {
+    if number == 0 {
+        0.0
+    } else {
+        request.model.structure().loss_factor()
+    }
 }
 
 /// The waves of the carried harmonics, with the vectors whose flexibility each must hold; `None` where they are more than

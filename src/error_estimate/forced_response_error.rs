@@ -1,6 +1,5 @@
 //! The error of a point of a forced response.
 
-use crate::condense::frequency_cache::EstimateTables;
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
@@ -36,7 +35,7 @@ const SMALL: usize = 32;
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 const SHARED: f64 = 0.5;
 
-/// Relative error of interpolated tables over the tolerance, and its range.
+/// Relative error of tables over the tolerance, and its range.
 const OF_TABLES: f64 = 1e-3;
 const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 
@@ -62,7 +61,7 @@ pub struct ForcedEstimator<'a> {
     /// Operations that the last estimate might take, and the most that the next one may.
     allowed: f64,
     most: f64,
-    /// Modes of the waves, and the flexibility tables made so far.
+    /// Modes of the waves, and how many flexibility tables were made so far.
     waves: &'a SharedWaves,
     rows: Vec<Arc<ModalRows>>,
     tables: usize,
@@ -294,7 +293,7 @@ impl<'a> ForcedEstimator<'a> {
                 None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
                 None => match self.waves.of(self.model, condensed, i, self.interrupt)? {
                     Some(modes) => {
-                        let rows = self.waves.tables.rows((condensed, i, self.response), &modes)?;
+                        let rows = self.waves.rows((condensed, i, self.response), modes)?;
                         if !self.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
                             try_push(&mut self.rows, Arc::clone(&rows), CONTEXT)?;
                         }
@@ -385,13 +384,7 @@ impl<'a> ForcedEstimator<'a> {
         if by_modes && !system.problem.has_modes() {
             let tolerance = (OF_TABLES * self.options.tolerance).clamp(EXACTEST.0, EXACTEST.1);
             let modal = self.modal_tables(condensed, tolerance)?;
-            let shared = self.range.map(|range| EstimateTables {
-                range,
-                solved: &self.waves.tables,
-                estimated: &self.waves.estimated,
-                tolerance,
-            });
-            system.problem.set_modes(modal, shared)?;
+            system.problem.set_modes(modal);
         }
         let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
         let run = |system: &mut _, changes: &mut _| {

@@ -9,6 +9,7 @@ pub mod complex_columns;
 pub mod definite;
 pub mod eigen;
 pub mod factor;
+pub mod general_eigen;
 pub mod gmres;
 mod graph;
 pub mod held_rows;

@@ -4,9 +4,8 @@
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
 
 use crate::condense::Condensed;
-use crate::condense::frequency_cache::{EstimateTables, FrequencyCache};
+use crate::condense::frequency_cache::FrequencyCache;
 use crate::condense::modal_table::ModalTable;
-use crate::condense::shared_tables::SharedTables;
 use crate::error::{Result, Status, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -29,7 +28,7 @@ pub struct HarmonicBalance<'a> {
     pub(super) condensed: &'a Condensed,
     /// In a box, as other parts of problems: values that calls pass on take little of a small stack.
     pub(super) forces: Box<ContactForces<'a>>,
-    pub(super) tables: FrequencyCache<'a>,
+    pub(super) tables: FrequencyCache,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
@@ -96,22 +95,9 @@ impl<'a> HarmonicBalance<'a> {
         })
     }
 
-    /// Shares interpolated flexibilities with other problems of the run, whose range and response are the same.
-    pub fn share_tables(&mut self, tables: &'a SharedTables) {
-        self.tables.share_tables(tables);
-    }
-
-    /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only, or with tables
-    /// interpolated over a range.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn set_modes(
-        &mut self,
-        modal: Vec<Option<ModalTable>>,
-        interpolated: Option<EstimateTables<'a>>,
-    ) -> Result<()> {
-        self.tables.set_modes(self.condensed, modal, interpolated)
+    /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only.
+    pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
+        self.tables.set_modes(modal);
     }
 
     /// Whether the flexibility is made from modes.

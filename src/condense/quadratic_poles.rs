@@ -1,0 +1,569 @@
+//! Poles of one wave of the structure under any damping, by which the flexibility at any frequency is a sum.
+//!
+//! The undamped modes of the Hermitian part A of K_κ, M φ = μ A φ, φᴴ M φ = 1, Ω = μ^(−1/2), make
+//!
+//! > Z_κ = s² + s C̃ + Ω² + Ẽ,  C̃ = Φᴴ C Φ,  Ẽ = Φᴴ (K_κ − A) Φ,  s = ihω,
+//!
+//! with Ẽ of structural damping and of what is not Hermitian. In energy coordinates z = (Ω p, s p) this is linear,
+//!
+//! > (s − A) z = (0, Φᴴ F),  A = [[0, Ω], [−Ω − Ẽ Ω⁻¹, −C̃]],
+//!
+//! skew but for damping, so that its poles are well conditioned (Tisseur & Meerbergen, SIAM Review 43, 2001,
+//! doi:10.1137/S0036144500381988, §3). With A = X Λ X⁻¹ the flexibility is Σ x_j l_j/(s − λ_j). A Newton step on Z_κ makes each λ as
+//! exact as its own size, where the QR iteration leaves an error of the size of the stiffest. Motions without mass follow
+//! statically. A real κ is that of the reference stiffness; its imaginary part is of low rank, see [`crate::condense::low_rank`].
+//!
+//! With a speed Ω = pω the matrices of ω² join M: M − p²K₁/h² − ipG/h.
+
+use crate::condense::Condensed;
+use crate::condense::harmonic_block::{Artificial, HarmonicBlock};
+use crate::condense::refined_modes::{self, dense};
+use crate::condense::wave_poles::{Key, WavePoles};
+use crate::error::{Result, Status, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::general_eigen;
+use crate::linalg::lu::Lu;
+use crate::linalg::sparse::Csc;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the poles of the structure";
+
+/// Work, as order³ of a real matrix, up to which poles are computed: the QR iteration takes less than a second, in which nothing
+/// can stop it.
+const MOST_WORK: f64 = 900.0 * 900.0 * 900.0;
+
+/// Work of a complex matrix over that of a real one.
+const COMPLEX: f64 = 3.0;
+
+/// μ over the largest below which a motion has no mass.
+const MASSLESS: f64 = 1e-14;
+
+/// Force of damping on a motion, over the sum of its terms, that is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Largest condition of a pole: sums lose as many digits.
+const MOST_CONDITION: f64 = 1e4;
+
+/// Largest relative change of a pole by its Newton step.
+const MOST_CHANGE: f64 = 1e-6;
+
+/// The poles of the i-th carried harmonic; `None` where they are too many or badly conditioned, or the structure can move without
+/// the reference stiffness.
+///
+/// # Errors
+/// `OutOfMemory`; `StoppedByCaller`.
+pub(super) fn poles(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
+    let block = &condensed.blocks()[i];
+    let is_forced = matches!(block.artificial, Artificial::None);
+    if block.number == 0 || !is_forced || !is_small(condensed.ndof(), block) {
+        return Ok(None);
+    }
+    let Some(wave) = Undamped::new(condensed, i, interrupt)? else {
+        return Ok(None);
+    };
+    let key = Key {
+        matrices: (
+            Arc::clone(&block.reference),
+            Arc::clone(&block.mass),
+            Arc::clone(&block.damping),
+        ),
+        tied: block.tied.as_ref().map(|_| block.number),
+    };
+    wave.poles(key, interrupt)
+}
+
+/// Whether these are the poles of a block.
+pub(super) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
+    let (reference, mass, damping) = &poles.key.matrices;
+    let is_same = |a: &Arc<Vec<Complex64>>, b: &Arc<Vec<Complex64>>| Arc::ptr_eq(a, b) || a == b;
+    let has_stiffness = Arc::ptr_eq(reference, &block.reference)
+        || (reference.col_ptr == block.reference.col_ptr
+            && reference.row_idx == block.reference.row_idx
+            && reference.values == block.reference.values);
+    poles.key.tied == block.tied.as_ref().map(|_| block.number)
+        && has_stiffness
+        && is_same(mass, &block.mass)
+        && is_same(damping, &block.damping)
+}
+
+/// Whether the poles of a wave of so many degrees of freedom take no second.
+fn is_small(n: usize, block: &HarmonicBlock) -> bool {
+    let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
+    let is_real = block.structural.is_none()
+        && block.tied.is_none()
+        && real(&block.stiffness)
+        && real(&block.damping)
+        && real(&block.mass);
+    let order = 2.0 * n as f64;
+    order.powi(3) * if is_real { 1.0 } else { COMPLEX } <= MOST_WORK
+}
+
+/// A wave in its undamped modes.
+struct Undamped {
+    n: usize,
+    /// μ of the motions with mass, and φ of all, those without mass first.
+    masses: Vec<f64>,
+    shapes: Vec<Complex64>,
+    /// C̃ and Ẽ of the motions with mass.
+    damping: Vec<Complex64>,
+    rest: Vec<Complex64>,
+}
+
+impl Undamped {
+    fn new(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
+        let (n, block) = (condensed.ndof(), &condensed.blocks()[i]);
+        let pattern = &block.reference;
+        let stiffness = stiffness_with_real_kappa(condensed, i)?;
+        let mass = inertia(block)?;
+        let mut hermitian = stiffness.try_clone()?;
+        for j in 0..n {
+            for at in hermitian.col_ptr[j]..hermitian.col_ptr[j + 1] {
+                let other = stiffness.get(j, hermitian.row_idx[at]).conj();
+                hermitian.values[at] = 0.5 * (hermitian.values[at] + other);
+            }
+        }
+        let mut rest = stiffness;
+        for (rest, own) in rest.values.iter_mut().zip(&hermitian.values) {
+            *rest -= own;
+        }
+        let rest = dense(pattern, &rest.values)?;
+        let pairs = match refined_modes::modes(&hermitian, &mass, interrupt) {
+            Ok(pairs) if pairs.values.len() == n => pairs,
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+            _ => return Ok(None),
+        };
+        let largest = pairs.values.last().copied().unwrap_or(0.0);
+        if largest <= 0.0 || pairs.values[0] < -MASSLESS * largest {
+            return Ok(None);
+        }
+        let massless = pairs.values.partition_point(|&mu| mu <= MASSLESS * largest);
+        let masses = pairs.values[massless..].to_vec();
+        let mut shapes: Vec<Complex64> = pairs.vectors.data.into();
+        for (shape, mu) in shapes[massless * n..].chunks_exact_mut(n).zip(&masses) {
+            let scale = mu.sqrt().recip();
+            for z in shape {
+                *z *= scale;
+            }
+        }
+        let damping = dense(pattern, &block.damping)?;
+        let heavy = &shapes[massless * n..];
+        for matrix in [&damping, &rest] {
+            // A motion without mass that is damped would have a pole of first order.
+            if massless > 0 && is_damped(matrix, &shapes[..massless * n]) {
+                return Ok(None);
+            }
+        }
+        let reduced = |matrix: &DMatrix<Complex64>| -> Result<Vec<Complex64>> {
+            if matrix.iter().all(|z| *z == Complex64::ZERO) {
+                return try_vec(masses.len() * masses.len(), Complex64::ZERO, CONTEXT);
+            }
+            projected(heavy, &product(matrix, heavy, n, interrupt)?, n)
+        };
+        Ok(Some(Self {
+            n,
+            damping: reduced(&damping)?,
+            rest: reduced(&rest)?,
+            masses,
+            shapes,
+        }))
+    }
+
+    /// The poles with their vectors.
+    fn poles(&self, key: Key, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
+        let m = self.masses.len();
+        let order = 2 * m;
+        let frequencies: Vec<f64> = self.masses.iter().map(|mu| mu.sqrt().recip()).collect();
+        let mut a = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+        for (j, omega) in frequencies.iter().enumerate() {
+            let (left, right) = (j * order, (m + j) * order);
+            a[left + m + j] = (-omega).into();
+            a[right + j] = (*omega).into();
+            for i in 0..m {
+                a[left + m + i] -= self.rest[j * m + i] / omega;
+                a[right + m + i] = -self.damping[j * m + i];
+            }
+        }
+        let found = match general_eigen::eigen(&a, order, interrupt) {
+            Err(e) if e.status == Status::NoConvergence => return Ok(None),
+            found => found?,
+        };
+        let Some(adjoints) = self.adjoints(&found.vectors, interrupt)? else {
+            return Ok(None);
+        };
+        // p from the half of z in which it has more digits.
+        let mut motions = try_vec(order * m, Complex64::ZERO, CONTEXT)?;
+        for (to, (z, value)) in motions
+            .chunks_exact_mut(m)
+            .zip(found.vectors.chunks_exact(order).zip(&found.values))
+        {
+            for (k, to) in to.iter_mut().enumerate() {
+                *to = if value.norm() > frequencies[k] {
+                    z[m + k] / value
+                } else {
+                    z[k] / frequencies[k]
+                };
+            }
+        }
+        let Some(values) = self.refined((&found.values, &frequencies), &motions, &adjoints)? else {
+            return Ok(None);
+        };
+        self.on_the_structure(key, (&values, &motions, &adjoints)).map(Some)
+    }
+
+    /// The second half of each row of X⁻¹, so that the sum over all is exact where poles are equal, too; `None` where one is badly
+    /// conditioned.
+    fn adjoints(&self, vectors: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Option<Vec<Complex64>>> {
+        let m = self.masses.len();
+        let order = 2 * m;
+        let mut lu = Lu::new(order, order)?;
+        lu.matrix().copy_from_slice(vectors);
+        match lu.factor(interrupt) {
+            Err(e) if e.status == Status::Singular => return Ok(None),
+            factored => factored?,
+        }
+        let mut inverse = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+        for k in 0..order {
+            inverse[k * order + k] = Complex64::ONE;
+        }
+        lu.solve_columns(&mut inverse, false, interrupt)?;
+        let mut adjoints = try_vec(order * m, Complex64::ZERO, CONTEXT)?;
+        for j in 0..order {
+            let row = || (0..order).map(|k| inverse[k * order + j]);
+            // The columns of X have size 1.
+            let condition = row().map(|z| z.norm_sqr()).sum::<f64>();
+            if !(condition <= MOST_CONDITION * MOST_CONDITION) {
+                return Ok(None);
+            }
+            for (to, z) in adjoints[j * m..].iter_mut().zip(row().skip(m)) {
+                *to = z;
+            }
+        }
+        Ok(Some(adjoints))
+    }
+
+    /// λ − l Z(λ) p/(l Z′(λ) p); `None` where that is no small step.
+    fn refined(
+        &self,
+        (values, frequencies): (&[Complex64], &[f64]),
+        motions: &[Complex64],
+        adjoints: &[Complex64],
+    ) -> Result<Option<Vec<Complex64>>> {
+        let m = frequencies.len();
+        let damped = times(&self.damping, motions, m)?;
+        let rest = times(&self.rest, motions, m)?;
+        let mut refined = try_vec(values.len(), Complex64::ZERO, CONTEXT)?;
+        for (j, (to, value)) in refined.iter_mut().zip(values).enumerate() {
+            let at = j * m..(j + 1) * m;
+            let (mut residual, mut slope) = (Complex64::ZERO, Complex64::ZERO);
+            for (k, omega) in at.zip(frequencies) {
+                let (p, c) = (motions[k], damped[k]);
+                // λ² + Ω² as a product keeps its digits near ±iΩ.
+                let i_omega = Complex64::new(0.0, *omega);
+                let inertia = (value - i_omega) * (value + i_omega) * p;
+                residual += adjoints[k] * (inertia + value * c + rest[k]);
+                slope += adjoints[k] * (2.0 * value * p + c);
+            }
+            let change = residual / slope;
+            if !(change.norm() <= MOST_CHANGE * value.norm()) {
+                return Ok(None);
+            }
+            *to = value - change;
+        }
+        Ok(Some(refined))
+    }
+
+    /// The poles with vectors over the degrees of freedom, in the order of 1/|λ|.
+    fn on_the_structure(
+        &self,
+        key: Key,
+        (values, motions, adjoints): (&[Complex64], &[Complex64], &[Complex64]),
+    ) -> Result<WavePoles> {
+        let (n, m) = (self.n, self.masses.len());
+        let massless = n - m;
+        let count = massless + values.len();
+        let mut ranked: Vec<usize> = (0..values.len()).collect();
+        ranked.sort_by(|&a, &b| values[b].norm().total_cmp(&values[a].norm()));
+        let mut sorted = [
+            try_vec(values.len() * m, Complex64::ZERO, CONTEXT)?,
+            try_vec(values.len() * m, Complex64::ZERO, CONTEXT)?,
+        ];
+        let mut inverse = try_vec(count, Complex64::ZERO, CONTEXT)?;
+        for (to, &j) in ranked.iter().enumerate() {
+            let mu = values[j].inv();
+            inverse[massless + to] = mu;
+            for k in 0..m {
+                sorted[0][to * m + k] = -mu * motions[j * m + k];
+                sorted[1][to * m + k] = adjoints[j * m + k].conj();
+            }
+        }
+        // With l over the modes, l Φᴴ F = (Φ l̄)ᴴ F.
+        let heavy = &self.shapes[massless * n..];
+        let [shapes, adjoints] = sorted.each_ref().map(|of| -> Result<Vec<Complex64>> {
+            let mut all = try_vec(count * n, Complex64::ZERO, CONTEXT)?;
+            all[..massless * n].copy_from_slice(&self.shapes[..massless * n]);
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut all[massless * n..], n, values.len()),
+                Accum::Replace,
+                MatRef::from_column_major_slice(heavy, n, m),
+                MatRef::from_column_major_slice(of, m, values.len()),
+                Complex64::ONE,
+                Par::Seq,
+            );
+            Ok(all)
+        });
+        Ok(WavePoles {
+            key,
+            values: inverse,
+            shapes: shapes?,
+            adjoints: adjoints?,
+        })
+    }
+}
+
+/// Whether a matrix acts on some motions, beyond rounding.
+fn is_damped(matrix: &DMatrix<Complex64>, motions: &[Complex64]) -> bool {
+    let n = matrix.nrows();
+    motions.chunks_exact(n).any(|x| {
+        let (mut force, mut terms) = (0.0_f64, 0.0_f64);
+        for row in matrix.row_iter() {
+            let products = || row.iter().zip(x).map(|(a, x)| a * x);
+            force = force.max(products().sum::<Complex64>().norm());
+            terms = terms.max(products().map(|z| z.norm()).sum());
+        }
+        force > ROUNDING * terms
+    })
+}
+
+/// K_κ with the real part of κ at the entries of the pattern.
+fn stiffness_with_real_kappa(condensed: &Condensed, i: usize) -> Result<Csc> {
+    let block = &condensed.blocks()[i];
+    let mut reference = block.reference.try_clone()?;
+    reference.values.copy_from_slice(&block.stiffness);
+    for (v, d) in reference
+        .values
+        .iter_mut()
+        .zip(block.structural.iter().flat_map(|values| values.iter()))
+    {
+        *v += Complex64::I * d;
+    }
+    for (c, row) in block.rows.iter().enumerate() {
+        let kappa = condensed.kappa(c, i).re;
+        for &(q, b) in row.terms() {
+            for &(p, a) in row.terms() {
+                reference.add_stored(p, q, a.conj() * kappa * b);
+            }
+        }
+    }
+    Ok(reference)
+}
+
+/// M, with the matrices of a tied speed that grow with ω².
+fn inertia(block: &HarmonicBlock) -> Result<Vec<Complex64>> {
+    let mut mass = crate::error::try_copy(&block.mass, CONTEXT)?;
+    if let Some(tied) = &block.tied {
+        let h = block.number as f64;
+        for ((m, k), g) in mass.iter_mut().zip(&tied.stiffness).zip(&tied.gyroscopic) {
+            *m -= k / (h * h) + Complex64::I * g / h;
+        }
+    }
+    Ok(mass)
+}
+
+/// A X
+fn product(a: &DMatrix<Complex64>, x: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
+    interrupt.check()?;
+    times(a.as_slice(), x, n)
+}
+
+/// A X for a square matrix of order n.
+fn times(a: &[Complex64], x: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
+    let mut product = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
+    let columns = x.len() / n.max(1);
+    matmul(
+        MatMut::from_column_major_slice_mut(&mut product, n, columns),
+        Accum::Replace,
+        MatRef::from_column_major_slice(a, n, n),
+        MatRef::from_column_major_slice(x, n, columns),
+        Complex64::ONE,
+        Par::Seq,
+    );
+    Ok(product)
+}
+
+/// Φᴴ Y
+fn projected(shapes: &[Complex64], y: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
+    let (rows, columns) = (shapes.len() / n.max(1), y.len() / n.max(1));
+    let mut found = try_vec(rows * columns, Complex64::ZERO, CONTEXT)?;
+    matmul(
+        MatMut::from_column_major_slice_mut(&mut found, rows, columns),
+        Accum::Replace,
+        MatRef::from_column_major_slice(shapes, n, rows).adjoint(),
+        MatRef::from_column_major_slice(y, n, columns),
+        Complex64::ONE,
+        Par::Seq,
+    );
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::condense::Reference;
+    use crate::condense::flexibility::{Table, Workspace};
+    use crate::condense::modal_rows::ModalRows;
+    use crate::condense::modal_table::{ModalTable, ModalWork};
+    use crate::condense::sum_terms::Source;
+    use crate::condense::test_chains::{N, chain};
+    use crate::linalg::matrix_view::MatrixView;
+    use crate::model::Model;
+    use crate::model::speed::Speed;
+    use crate::model::structure::MatrixKind;
+    use crate::options::SolverOptions;
+
+    const RESPONSE: usize = 4;
+
+    fn condensed(model: &Model, reference: Reference) -> Condensed {
+        let options = SolverOptions {
+            harmonics: 7,
+            ..SolverOptions::default()
+        };
+        Condensed::with_reference(model, &options, 1.3, Some(reference), &Interrupt::none()).unwrap()
+    }
+
+    fn set(model: &mut Model, kind: MatrixKind, entry: impl Fn(usize, usize) -> f64) {
+        let values: Vec<f64> = (0..N * N).map(|k| entry(k % N, k / N)).collect();
+        model.set_matrix(kind, &MatrixView::dense(N, &values)).unwrap();
+    }
+
+    /// Dashpots, structural damping, gyroscopic forces at a fixed and a tied speed, and an unbalance.
+    fn structures(sectors: usize) -> Vec<Model> {
+        let dashpot = |i: usize, j: usize| if i == 2 && j == 2 { 0.3 } else { 0.0 };
+        let gyroscopic = |i: usize, j: usize| match (i, j) {
+            (3, 4) | (7, 6) => 0.4,
+            (4, 3) | (6, 7) => -0.4,
+            _ => 0.0,
+        };
+        let mut made = Vec::new();
+        let mut viscous = chain(sectors, (0.0, 0.0));
+        set(&mut viscous, MatrixKind::Damping, dashpot);
+        made.push(viscous);
+        let mut structural = chain(sectors, (0.01, 1e-3));
+        set(&mut structural, MatrixKind::Structural, dashpot);
+        made.push(structural);
+        let mut fixed = chain(sectors, (0.01, 1e-3));
+        set(&mut fixed, MatrixKind::Gyroscopic, gyroscopic);
+        fixed.set_speed(Speed::Fixed(1.5)).unwrap();
+        made.push(fixed);
+        let mut tied = chain(sectors, (0.01, 1e-3));
+        set(&mut tied, MatrixKind::Gyroscopic, gyroscopic);
+        tied.set_speed(Speed::PerOmega(0.5)).unwrap();
+        made.push(tied);
+        made
+    }
+
+    fn size(z: impl Iterator<Item = Complex64>) -> f64 {
+        z.map(|z| z.norm_sqr()).sum::<f64>().sqrt()
+    }
+
+    /// Checks the sums over poles of all harmonics against factorisations; returns how many there were.
+    fn check(model: &Model, reference: Reference) -> usize {
+        let (condensed, interrupt) = (condensed(model, reference), Interrupt::none());
+        let mut direct = Workspace::new(&condensed, Some(RESPONSE)).unwrap();
+        let mut count = 0;
+        for i in (0..condensed.blocks().len()).filter(|&i| condensed.blocks()[i].number > 0) {
+            let found = poles(&condensed, i, &interrupt).unwrap().unwrap();
+            assert!(are_of(&found, &condensed.blocks()[i]));
+            let rows = ModalRows::new((&condensed, i, RESPONSE), Source::Poles(Arc::new(found))).unwrap();
+            let by_poles = ModalTable::new((&condensed, i), Arc::new(rows), 0.0).unwrap();
+            let (mut work, mut table) = (ModalWork::default(), Table::new(condensed.coordinates()).unwrap());
+            for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
+                assert!(
+                    by_poles
+                        .evaluate((omega, true), &mut work, &mut table, &interrupt)
+                        .unwrap()
+                );
+                let exact = direct.evaluate(&condensed, i, omega, true, &interrupt).unwrap();
+                for (found, exact) in [(&table.value, &exact.value), (&table.slope, &exact.slope)] {
+                    let off = size(found.iter().zip(exact).map(|(a, b)| a - b)) / size(exact.iter().copied());
+                    assert!(off <= 1e-11, "block {i} at {omega}: {off:e}");
+                }
+                count += 1;
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn sums_over_poles_are_tables_by_factorisation() {
+        for (sectors, reference) in [
+            (1, Reference::Stuck),
+            (1, Reference::Complex),
+            (24, Reference::Stuck),
+            (8, Reference::Complex),
+        ] {
+            for model in structures(sectors) {
+                assert!(check(&model, reference) >= 12);
+            }
+        }
+    }
+
+    #[test]
+    fn equal_poles_are_summed_as_well_as_others() {
+        // Two alike halves without a connection but contacts: each pole twice.
+        let mut model = Model::new(N - 1).unwrap();
+        let half = (N - 1) / 2;
+        let of = |entry: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            (0..(N - 1) * (N - 1))
+                .map(|k| (k % (N - 1), k / (N - 1)))
+                .map(|(i, j)| {
+                    if i / half == j / half {
+                        entry(i % half, j % half)
+                    } else {
+                        0.0
+                    }
+                })
+                .collect()
+        };
+        let chain = |i: usize, j: usize| [2.5, -1.0].get(i.abs_diff(j)).copied().unwrap_or(0.0);
+        let mass = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let dashpot = |i: usize, j: usize| if i == 1 && j == 1 { 0.2 } else { 0.0 };
+        for (kind, values) in [
+            (MatrixKind::Stiffness, of(&chain)),
+            (MatrixKind::Mass, of(&mass)),
+            (MatrixKind::Damping, of(&dashpot)),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(N - 1, &values)).unwrap();
+        }
+        for dof in [0, half] {
+            let contact = crate::contact::Contact::jenkins(dof, None, 0.7, 0.3, 1.0);
+            model.add_contact(&contact).unwrap();
+        }
+        model.add_force(2, 1, Complex64::new(0.7, -0.2)).unwrap();
+        assert!(check(&model, Reference::Stuck) >= 12);
+    }
+
+    #[test]
+    fn a_badly_conditioned_pole_is_refused() {
+        // Critical damping: one double pole with one vector.
+        let mut model = Model::new(1).unwrap();
+        for (kind, value) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Stiffness, 1.0),
+            (MatrixKind::Damping, 4.0),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+        }
+        // K + kt = 4 = (C/2)²/M
+        model
+            .add_contact(&crate::contact::Contact::jenkins(0, None, 3.0, 0.3, 1.0))
+            .unwrap();
+        model.add_force(0, 1, Complex64::ONE).unwrap();
+        let condensed = condensed(&model, Reference::Stuck);
+        let i = condensed.blocks().iter().position(|block| block.number == 1).unwrap();
+        assert!(poles(&condensed, i, &Interrupt::none()).unwrap().is_none());
+    }
+}
