@@ -744,7 +744,7 @@ typedef enum {
 ///               The mean has the real part. Imaginary parts mean nothing in time: time
 ///               integration, verification and stability refuse them.
 /// offsets       sector of the motion counted from that of the force, 0 the same sector, each
-///               sector once; n_offsets numbers.
+///               sector once, -(N - 1) .. N - 1; n_offsets numbers.
 /// form          HBVIB_AERO_DISPLACEMENT or HBVIB_AERO_VELOCITY.
 /// Errors: HBVIB_E_UNSUPPORTED for a plain structure; HBVIB_E_INDEX (dofs), HBVIB_E_ARGUMENT (dofs
 /// or offsets twice, form), HBVIB_E_NOT_FINITE (coefficients), HBVIB_E_DIMENSION (n_dofs,
@@ -914,7 +914,7 @@ typedef struct {
   int64_t dof_a[3];
   /// Side b, likewise.
   int64_t dof_b[3];
-  /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
+  /// Cyclic models: side b lies in sector s + sector_offset, -(N - 1) .. N - 1. 0 in plain ones.
   int64_t sector_offset;
   /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
   /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and

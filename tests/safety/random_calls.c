@@ -149,6 +149,8 @@ static void save_model(void)
     if (bytes != NULL && file != NULL && hbvib_model_save(solved_model, size, bytes, &size) == HBVIB_OK) fwrite(bytes, 1, (size_t)size, file);
     if (file != NULL) fclose(file);
     free(bytes);
+    fprintf(stderr, "saved the model of %lld degrees of freedom and %lld contacts\n", (long long)hbvib_model_dofs(solved_model),
+            (long long)hbvib_model_contacts(solved_model));
 }
 
 static beginning begin_call(void)
@@ -710,9 +712,12 @@ static void ask_of(hbvib_branch *branch, int what)
     case 12: ask_for_many_times(branch, at, result, &of, &h); break;
     case 13: ask_for_sensitivity(model, branch, at, result + need_of_a_branch_point(&of.model, of.harmonics, of.samples) + 8 * (double)m.saved); break;
     case 14: CALL_WITHIN(result, hbvib_branch_slip_fraction, branch, at, y, one_in(20) ? count(1) : hbvib_model_contacts(model) & 255); break;
-    default: CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model,
+    default:
+        solved_model = model;
+        CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model,
                          m.wheel == m.dofs && !one_in(9) ? 0 : count((int64_t)(next() % 9) - 4), (int32_t)(next() % (one_in(5) ? 4 : 3)), count(1),
                          y, NULL, &h);
+        solved_model = NULL;
     }
 }
 
