@@ -5,7 +5,7 @@ use crate::contact::law::{Form, Law};
 use crate::error::{Result, try_room};
 use crate::fourier::jet;
 use crate::interrupt::Interrupt;
-use crate::results::contact_loops::from_samples::{Marched, Pointwise};
+use crate::results::contact_loops::from_samples::{CalledForces, MarchedForces};
 use crate::results::contact_loops::one_motion::ScalarOrbit;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, Times, time};
 use crate::results::contact_loops::plane_motion::PlaneOrbit;
@@ -29,8 +29,8 @@ enum Way<'a> {
     Scalar(ScalarOrbit<'a>),
     Coupled(CoupledOrbit<'a>),
     Plane(PlaneOrbit<'a>),
-    Pointwise(Pointwise<'a>),
-    Marched(Marched),
+    CalledForces(CalledForces<'a>),
+    MarchedForces(MarchedForces),
 }
 
 impl<'a> Follower<'a> {
@@ -55,8 +55,8 @@ impl<'a> Follower<'a> {
             Form::PiecewiseLinear(_) | Form::Spectral(_) => Way::Scalar(ScalarOrbit::new(set, packed, law, interrupt)?),
             Form::VaryingNormalLoad(law) => Way::Coupled(CoupledOrbit::new(set, packed, law, interrupt)?),
             Form::PlaneFriction(law) => Way::Plane(PlaneOrbit::new(&motion, law, interrupt)?),
-            Form::Hysteretic(law) => Way::Marched(Marched::new(&motion, n, (law, samples), interrupt)?),
-            Form::Memoryless(law) => Way::Pointwise(Pointwise::new(law, SLICE.min(n))?),
+            Form::Hysteretic(law) => Way::MarchedForces(MarchedForces::new(&motion, n, (law, samples), interrupt)?),
+            Form::Memoryless(law) => Way::CalledForces(CalledForces::new(law, SLICE.min(n))?),
         };
         Ok(Self { motion, n, way })
     }
@@ -125,8 +125,8 @@ impl<'a> Follower<'a> {
                     *state = orbit.at(time(set, j, n), x, force);
                 }
             }
-            Way::Marched(orbit) => orbit.copy(&self.motion, (first, n), out),
-            Way::Pointwise(law) => law.fill(&self.motion, (first, n), out, interrupt)?,
+            Way::MarchedForces(orbit) => orbit.copy(&self.motion, (first, n), out),
+            Way::CalledForces(law) => law.fill(&self.motion, (first, n), out, interrupt)?,
         }
         Ok(())
     }

@@ -15,7 +15,7 @@ use crate::results::signal_check::check_time;
 const MOST_OF_A_MARCH: usize = 500 << 20;
 
 /// A law without memory, called with some times at once.
-pub(super) struct Pointwise<'a> {
+pub(super) struct CalledForces<'a> {
     law: &'a dyn Memoryless,
     v: Vec<f64>,
     df_du: Vec<f64>,
@@ -23,7 +23,7 @@ pub(super) struct Pointwise<'a> {
     scratch: Vec<f64>,
 }
 
-impl<'a> Pointwise<'a> {
+impl<'a> CalledForces<'a> {
     /// Memory for so many times.
     ///
     /// # Errors
@@ -81,13 +81,13 @@ impl<'a> Pointwise<'a> {
 
 /// Forces of a law with states, marched over a multiple of the n times that is no less than the samples which the law takes
 /// in the solution.
-pub(super) struct Marched {
+pub(super) struct MarchedForces {
     /// Forces at the samples, d a sample.
     forces: Vec<f64>,
     stride: usize,
 }
 
-impl Marched {
+impl MarchedForces {
     /// Marches; `requested` are the samples of the solution.
     ///
     /// # Errors
