@@ -155,27 +155,36 @@ impl Evaluator {
                 Form::VaryingNormalLoad(_) | Form::Spectral(_) => {}
                 Form::PlaneFriction(law) => {
                     if !plane.iter().any(|e: &PlaneFrictionEvaluator| e.suits(law)) {
-                        added(&mut plane, || match force_alone {
-                            true => PlaneFrictionEvaluator::force_alone(set, law),
-                            false => PlaneFrictionEvaluator::new(set, law),
+                        added(&mut plane, || {
+                            if force_alone {
+                                PlaneFrictionEvaluator::force_alone(set, law)
+                            } else {
+                                PlaneFrictionEvaluator::new(set, law)
+                            }
                         })?;
                     }
                 }
                 Form::Hysteretic(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !hysteretic.iter().any(|e| e.suits(law, requested)) {
-                        added(&mut hysteretic, || match force_alone {
-                            true => HystereticEvaluator::force_alone(set, law, requested),
-                            false => HystereticEvaluator::new(set, law, requested),
+                        added(&mut hysteretic, || {
+                            if force_alone {
+                                HystereticEvaluator::force_alone(set, law, requested)
+                            } else {
+                                HystereticEvaluator::new(set, law, requested)
+                            }
                         })?;
                     }
                 }
                 Form::Memoryless(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !memoryless.iter().any(|e| e.suits(law, requested)) {
-                        added(&mut memoryless, || match force_alone {
-                            true => MemorylessEvaluator::force_alone(set, law, requested),
-                            false => MemorylessEvaluator::new(set, law, requested),
+                        added(&mut memoryless, || {
+                            if force_alone {
+                                MemorylessEvaluator::force_alone(set, law, requested)
+                            } else {
+                                MemorylessEvaluator::new(set, law, requested)
+                            }
                         })?;
                     }
                 }

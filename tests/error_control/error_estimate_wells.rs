@@ -27,7 +27,7 @@ fn well(k: f64, mean: f64) -> Model {
     ] {
         model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
     }
-    let law = if k == -1.0 {
+    let law = if k <= -1.0 {
         Contact::cubic(0, None, 0.0, 1.0)
     } else {
         Contact {

@@ -103,6 +103,9 @@ static double need_of_linear_modes(const sizes *s)
     return 400 * (double)s->dofs * (double)s->dofs + 512 * KIB + 800 * s->squares;
 }
 
+/* Of the static state, about which modes may be asked for. */
+static double need_at_rest(const sizes *s) { return 6 * KIB * s->motions; }
+
 /* Of building, changing, copying, saving and loading a model. */
 static double need_of_a_change(const sizes *s) { return 16 * KIB + 8 * (double)s->saved; }
 

@@ -595,7 +595,7 @@ static void ask_for_waves(void)
     const int64_t d = count((int64_t)(next() % 9) - 4), order = count(1 + (int64_t)(next() % 9));
     const int32_t contacts = (int32_t)(next() % 4);
     /* Of all waves and speeds at a time. */
-    const double need = 4 * need_of_linear_modes(&m) + 2000 * (double)(m.wheel + 64) + 100 * (double)(m.saved);
+    const double need = need_at_rest(&m) + 4 * need_of_linear_modes(&m) + 2000 * (double)(m.wheel + 64) + 100 * (double)(m.saved);
     int64_t found = 0;
     if (n > 3) return;
     switch (next() % 4) {
@@ -714,7 +714,7 @@ static void ask_of(hbvib_branch *branch, int what)
     case 14: CALL_WITHIN(result, hbvib_branch_slip_fraction, branch, at, y, one_in(20) ? count(1) : hbvib_model_contacts(model) & 255); break;
     default:
         solved_model = model;
-        CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model,
+        CALL_WITHIN(need_of_linear_modes(&m) + need_at_rest(&m), hbvib_linear_modes_with_hooks, model,
                          m.wheel == m.dofs && !one_in(9) ? 0 : count((int64_t)(next() % 9) - 4), (int32_t)(next() % (one_in(5) ? 4 : 3)), count(1),
                          y, NULL, &h);
         solved_model = NULL;

@@ -2,7 +2,7 @@
 
 use crate::contact::contact_state::State;
 use crate::contact::law::{Form, Law};
-use crate::error::{Result, try_room};
+use crate::error::{Result, boxed, try_room};
 use crate::fourier::jet;
 use crate::interrupt::Interrupt;
 use crate::results::contact_loops::from_samples::{CalledForces, MarchedForces};
@@ -28,7 +28,7 @@ enum Way<'a> {
     Spring(f64),
     Scalar(ScalarOrbit<'a>),
     Coupled(CoupledOrbit<'a>),
-    Plane(PlaneOrbit<'a>),
+    Plane(Box<PlaneOrbit<'a>>),
     CalledForces(CalledForces<'a>),
     MarchedForces(MarchedForces),
 }
@@ -54,7 +54,7 @@ impl<'a> Follower<'a> {
         let way = match law.form() {
             Form::PiecewiseLinear(_) | Form::Spectral(_) => Way::Scalar(ScalarOrbit::new(set, packed, law, interrupt)?),
             Form::VaryingNormalLoad(law) => Way::Coupled(CoupledOrbit::new(set, packed, law, interrupt)?),
-            Form::PlaneFriction(law) => Way::Plane(PlaneOrbit::new(&motion, law, interrupt)?),
+            Form::PlaneFriction(law) => Way::Plane(boxed(|| PlaneOrbit::new(&motion, law, interrupt))?),
             Form::Hysteretic(law) => Way::MarchedForces(MarchedForces::new(&motion, n, (law, samples), interrupt)?),
             Form::Memoryless(law) => Way::CalledForces(CalledForces::new(law, SLICE.min(n))?),
         };
