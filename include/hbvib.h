@@ -744,7 +744,7 @@ typedef enum {
 ///               The mean has the real part. Imaginary parts mean nothing in time: time
 ///               integration, verification and stability refuse them.
 /// offsets       sector of the motion counted from that of the force, 0 the same sector, each
-///               sector once; n_offsets numbers.
+///               sector once, -(N - 1) .. N - 1; n_offsets numbers.
 /// form          HBVIB_AERO_DISPLACEMENT or HBVIB_AERO_VELOCITY.
 /// Errors: HBVIB_E_UNSUPPORTED for a plain structure; HBVIB_E_INDEX (dofs), HBVIB_E_ARGUMENT (dofs
 /// or offsets twice, form), HBVIB_E_NOT_FINITE (coefficients), HBVIB_E_DIMENSION (n_dofs,
@@ -914,7 +914,7 @@ typedef struct {
   int64_t dof_a[3];
   /// Side b, likewise.
   int64_t dof_b[3];
-  /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
+  /// Cyclic models: side b lies in sector s + sector_offset, -(N - 1) .. N - 1. 0 in plain ones.
   int64_t sector_offset;
   /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
   /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and
@@ -2090,9 +2090,10 @@ typedef enum {
 /// stored point: entry j at omega t = 2 pi j / n. The force is that of this contact alone and not
 /// truncated at harmonic H: the law at the motion of the point. Events of HBVIB_JENKINS and
 /// HBVIB_UNILATERAL are located exactly, also where the branch was solved with samples; friction in
-/// a plane is integrated over a multiple of n samples, and a law of the caller is called with the n
-/// times. In a cyclic model the contact is that of sector 0. A contact that is linear at any motion
-/// has its linear force and sticks; the motion of the whole structure is recovered for it.
+/// a plane is followed exactly, and a law of the caller is called with the n times, up to 16384 at
+/// once; with states it is marched over them. In a cyclic model the contact is that of sector 0. A
+/// contact that is linear at any motion has its linear force and sticks; the motion of the whole
+/// structure is recovered for it.
 ///
 /// point      number of a point of the curve, or of a peak, fold or requested solution.
 /// contact    number from hbvib_model_add_contact.
@@ -2107,6 +2108,8 @@ typedef enum {
 /// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact, direction), HBVIB_E_DIMENSION
 /// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
 /// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
+/// Memory: 16 n bytes and n, and a law of the caller with states some hundred n: a march above
+/// 500 MB is refused with the n that it needs (HBVIB_E_OUT_OF_MEMORY).
 /// Threads: any number on one branch.
 HBVIB_NODISCARD
 hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
@@ -3571,9 +3574,12 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 /// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
-/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or of
-/// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
-/// jac. Above 16 GiB, without jac above 500 MB, nothing is requested, and the error is
+/// Memory with jac: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or
+/// of 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1) or
+/// 256 MiB + 64 KiB (H + 1), whichever are fewer. Without jac no Jacobian is formed:
+/// 2.5 KiB d (H + 1), 250 bytes for each of the samples, of which HBVIB_REGULARISED takes
+/// 128 (H + 1) by itself, and 1 MiB, for HBVIB_FRICTION_3D another term as above. Where the latter
+/// is more than 500 MiB, or the former more than 16 GiB, nothing is requested, and the error is
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,

@@ -169,7 +169,8 @@ class SynthesisOptions(TypedDict, total=False):
 class ContactConstants(TypedDict, total=False):
     """A contact between two degrees of freedom, or between one and the ground.
 
-    sector_offset   Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones. Default: 0.
+    sector_offset   Cyclic models: side b lies in sector s + sector_offset, -(N - 1) .. N - 1. 0 in plain ones. Default:
+        0.
     kt   Tangential stiffness of ContactKind.JENKINS, ContactKind.FRICTION_2D and ContactKind.FRICTION_3D, stiffness of
         ContactKind.CUBIC at small motion, force per length, >= 0; 0 for ContactKind.UNILATERAL and
         ContactKind.REGULARISED. Default: 0.0.

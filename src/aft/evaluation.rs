@@ -12,11 +12,11 @@ pub struct Evaluation {
     pub directions: usize,
     /// F, d·m numbers.
     pub force: Vec<f64>,
-    /// ∂F/∂X, (d·m)², column-major.
+    /// ∂F/∂X, (d·m)², column-major; empty where only the force is asked for.
     pub jacobian: Vec<f64>,
-    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law at a motion s times smaller.
+    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law at a motion s times smaller; work space without a Jacobian.
     pub offset: Vec<f64>,
-    /// ∂F/∂ω at fixed X; zero unless the law depends on velocities.
+    /// ∂F/∂ω at fixed X; zero unless the law depends on velocities, and without a Jacobian.
     pub by_omega: Vec<f64>,
     /// Share of the period in slip, 0 for a stuck contact.
     pub slip_fraction: f64,
@@ -42,6 +42,19 @@ impl Evaluation {
             jacobian,
             ..Self::without_jacobian(m, directions)?
         })
+    }
+
+    /// Memory for the force alone: its evaluation forms no Jacobian.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn force_alone(set: &HarmonicSet, directions: usize) -> Result<Self> {
+        Self::without_jacobian(set.packed_len().saturating_mul(directions), directions)
+    }
+
+    /// Whether the force alone is evaluated.
+    pub(super) fn is_force_alone(&self) -> bool {
+        self.jacobian.len() < self.force.len()
     }
 
     fn without_jacobian(m: usize, directions: usize) -> Result<Self> {

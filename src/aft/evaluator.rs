@@ -75,6 +75,19 @@ impl Evaluator {
         Self::refined(set, (samples, 1), laws)
     }
 
+    /// The same for forces alone, into an [`Evaluation::force_alone`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn force_alone<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        let sampling = Sampling {
+            requested: samples,
+            refinement: 1,
+            other: false,
+        };
+        Self::with(set, (sampling, true), laws)
+    }
+
     /// The same with a multiple of the samples of laws without exact events, where `samples` = 0.
     ///
     /// # Errors
@@ -86,11 +99,14 @@ impl Evaluator {
     ) -> Result<Self> {
         Self::with(
             set,
-            Sampling {
-                requested: samples,
-                refinement,
-                other: false,
-            },
+            (
+                Sampling {
+                    requested: samples,
+                    refinement,
+                    other: false,
+                },
+                false,
+            ),
             laws,
         )
     }
@@ -107,16 +123,23 @@ impl Evaluator {
     ) -> Result<Self> {
         Self::with(
             set,
-            Sampling {
-                requested: samples,
-                refinement,
-                other: true,
-            },
+            (
+                Sampling {
+                    requested: samples,
+                    refinement,
+                    other: true,
+                },
+                false,
+            ),
             laws,
         )
     }
 
-    fn with<'l>(set: &HarmonicSet, sampling: Sampling, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+    fn with<'l>(
+        set: &HarmonicSet,
+        (sampling, force_alone): (Sampling, bool),
+        laws: impl Iterator<Item = &'l dyn Law>,
+    ) -> Result<Self> {
         let highest = set.highest_reduced();
         let mut memoryless: Vec<MemorylessEvaluator> = Vec::new();
         let mut most_pieces = 0;
@@ -132,19 +155,37 @@ impl Evaluator {
                 Form::VaryingNormalLoad(_) | Form::Spectral(_) => {}
                 Form::PlaneFriction(law) => {
                     if !plane.iter().any(|e: &PlaneFrictionEvaluator| e.suits(law)) {
-                        added(&mut plane, || PlaneFrictionEvaluator::new(set, law))?;
+                        added(&mut plane, || {
+                            if force_alone {
+                                PlaneFrictionEvaluator::force_alone(set, law)
+                            } else {
+                                PlaneFrictionEvaluator::new(set, law)
+                            }
+                        })?;
                     }
                 }
                 Form::Hysteretic(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !hysteretic.iter().any(|e| e.suits(law, requested)) {
-                        added(&mut hysteretic, || HystereticEvaluator::new(set, law, requested))?;
+                        added(&mut hysteretic, || {
+                            if force_alone {
+                                HystereticEvaluator::force_alone(set, law, requested)
+                            } else {
+                                HystereticEvaluator::new(set, law, requested)
+                            }
+                        })?;
                     }
                 }
                 Form::Memoryless(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !memoryless.iter().any(|e| e.suits(law, requested)) {
-                        added(&mut memoryless, || MemorylessEvaluator::new(set, law, requested))?;
+                        added(&mut memoryless, || {
+                            if force_alone {
+                                MemorylessEvaluator::force_alone(set, law, requested)
+                            } else {
+                                MemorylessEvaluator::new(set, law, requested)
+                            }
+                        })?;
                     }
                 }
             }
@@ -193,7 +234,8 @@ impl Evaluator {
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
             (Form::Spectral(law), _) => {
-                interrupt.check_before((set.packed_len() * set.packed_len()) as u64)?;
+                let columns = if out.is_force_alone() { 1 } else { set.packed_len() };
+                interrupt.check_before((set.packed_len() * columns) as u64)?;
                 self.smooth.spectral(law, set, motion, out, interrupt)?;
             }
             (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {

@@ -38,7 +38,8 @@ pub struct HystereticEvaluator {
     load_v: Vec<f64>,
     march: March,
     map: ReturnMap,
-    sensitivity: Sensitivity,
+    /// None where the force alone is evaluated.
+    sensitivity: Option<Sensitivity>,
     /// Initial states of each march.
     starts: Vec<f64>,
     /// Whether the start after each march is from Newton's method.
@@ -53,6 +54,18 @@ impl HystereticEvaluator {
     /// # Errors
     /// `Argument` for too few samples; `OutOfMemory`.
     pub fn new(set: &HarmonicSet, law: &dyn Hysteretic, samples: usize) -> Result<Self> {
+        Self::with(set, law, samples, false)
+    }
+
+    /// The same for the force alone.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn force_alone(set: &HarmonicSet, law: &dyn Hysteretic, samples: usize) -> Result<Self> {
+        Self::with(set, law, samples, true)
+    }
+
+    fn with(set: &HarmonicSet, law: &dyn Hysteretic, samples: usize, force_alone: bool) -> Result<Self> {
         let least = (2 * set.highest_reduced() + 1).max(2);
         if samples < least {
             return fail!(
@@ -74,7 +87,11 @@ impl HystereticEvaluator {
             load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
             march: March::new(d, s, samples)?,
             map: ReturnMap::new(s)?,
-            sensitivity: Sensitivity::new(d, s, set.packed_len())?,
+            sensitivity: if force_alone {
+                None
+            } else {
+                Some(Sensitivity::new(d, s, set.packed_len())?)
+            },
             starts: memory(s.saturating_mul(MARCHES))?,
             by_newton: try_vec(MARCHES, false, "a march over samples")?,
             step: memory(s)?,
@@ -119,11 +136,16 @@ impl HystereticEvaluator {
     ) -> Result<()> {
         self.find_periodic_states(law, omega, motion, interrupt)?;
         let omega = self.base * omega;
-        self.differentiate(law, omega, interrupt)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
             sums.fill(0.0);
         }
-        self.sensitivity.add_to(&self.march, &self.signals, out);
+        if !out.is_force_alone() {
+            self.differentiate(law, omega, interrupt)?;
+        }
+        self.signals.add_forces(&self.march, out);
+        if let Some(sensitivity) = self.sensitivity.as_mut().filter(|_| !out.is_force_alone()) {
+            sensitivity.add_to(&self.signals, out);
+        }
         self.finish(motion, out);
         (out.slip_fraction, out.open_fraction) = (0.0, 0.0);
         (out.stuck, out.linear) = (false, false);
@@ -193,7 +215,9 @@ impl HystereticEvaluator {
         self.step.fill(0.0);
         law.march(omega, 2, &self.load_u, &self.load_v, &self.step, &mut self.march)?;
         self.starts[..self.states].copy_from_slice(&self.march.z[..self.states]);
-        self.sensitivity.load(&self.march, &self.signals, omega);
+        if let Some(sensitivity) = &mut self.sensitivity {
+            sensitivity.load(&self.march, &self.signals, omega);
+        }
         Ok(())
     }
 
@@ -282,28 +306,42 @@ impl HystereticEvaluator {
     /// part depends on the earlier marches; their derivatives are then followed from the load on.
     fn differentiate(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let last = self.marches - 1;
+        let Some(mut sensitivity) = self.sensitivity.take() else {
+            return Ok(());
+        };
+        let followed = self.follow(&mut sensitivity, last, (law, omega), interrupt);
+        self.sensitivity = Some(sensitivity);
+        followed
+    }
+
+    /// The same up to the march of number `last`, into `sensitivity`.
+    fn follow(
+        &mut self,
+        sensitivity: &mut Sensitivity,
+        last: usize,
+        (law, omega): (&dyn Hysteretic, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         if self.map.has_kept && last > 0 {
             for k in 0..last {
                 interrupt.check()?;
                 self.march_from(law, omega, k)?;
-                self.sensitivity
-                    .pass(&self.march, &self.signals, omega, false, interrupt)?;
+                sensitivity.pass(&self.march, &self.signals, omega, false, interrupt)?;
                 if self.by_newton[k] {
                     self.map.form(&self.march, self.signals.samples, interrupt)?;
-                    self.sensitivity.periodic(&self.map);
+                    sensitivity.periodic(&self.map);
                 } else {
-                    self.sensitivity.onward();
+                    sensitivity.onward();
                 }
             }
             self.march_from(law, omega, last)?;
             self.map.form(&self.march, self.signals.samples, interrupt)?;
         }
-        self.sensitivity
-            .pass(&self.march, &self.signals, omega, true, interrupt)?;
+        sensitivity.pass(&self.march, &self.signals, omega, true, interrupt)?;
         if self.map.is_regular {
-            self.sensitivity.periodic(&self.map);
+            sensitivity.periodic(&self.map);
         } else {
-            self.sensitivity.onward();
+            sensitivity.onward();
         }
         Ok(())
     }

@@ -77,6 +77,17 @@ impl Signals {
         }
     }
 
+    /// Adds the Fourier sums of the force to `out`, without their weights.
+    pub fn add_forces(&self, march: &March, out: &mut Evaluation) {
+        let (d, m) = (self.directions, self.length);
+        add_outer_products(
+            (&self.basis, m),
+            (&march.f[..self.samples * d], d, d),
+            self.samples,
+            &mut out.force[..d * m],
+        );
+    }
+
     fn basis(&self, j: usize) -> &[f64] {
         &self.basis[j * self.length..(j + 1) * self.length]
     }
@@ -284,16 +295,10 @@ impl Sensitivity {
         }
     }
 
-    /// Adds the Fourier sums of the force and of its derivatives, those of the start included, to `out`, without their
+    /// Adds the Fourier sums of the derivatives of the force, those of the start included, to `out`, without their
     /// weights.
-    pub fn add_to(&mut self, march: &March, signals: &Signals, out: &mut Evaluation) {
+    pub fn add_to(&mut self, signals: &Signals, out: &mut Evaluation) {
         let (d, m, row, width) = (signals.directions, signals.length, self.row(), self.width);
-        add_outer_products(
-            (&signals.basis, m),
-            (&march.f[..signals.samples * d], self.directions, d),
-            signals.samples,
-            &mut out.force[..self.directions * m],
-        );
         for i in 0..self.directions {
             let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
             let (fixed, by_start) = sums.split_at_mut(width * m);

@@ -8,7 +8,7 @@ use crate::aft::toeplitz::Toeplitz;
 use crate::contact::contact_state::State;
 use crate::contact::piece::Piece;
 use crate::error::{Result, try_vec};
-use crate::fourier::HarmonicSet;
+use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
@@ -58,13 +58,13 @@ impl Assembly {
     }
 
     /// Adds a piece with its transforms tₙ = (1/2π)∫ e^{−inτ} dτ for the n of the spectrum, and with its anchor at
-    /// the time `anchor`.
+    /// the time `anchor`. Without a Jacobian the motion at the anchor is a constant of the piece.
     ///
     /// # Errors
     /// `StoppedByCaller`.
     pub(super) fn add(
         &mut self,
-        set: &HarmonicSet,
+        (set, motion): (&HarmonicSet, &[f64]),
         (piece, state): (&Piece, State),
         transform: &[Complex64],
         anchor: Option<f64>,
@@ -85,8 +85,16 @@ impl Assembly {
         let own = self.pending * m..(self.pending + 1) * m;
         let g = &mut self.g[own.clone()];
         pack(set, transform, g);
+        let mut constant = piece.offset;
+        let anchor = match anchor {
+            Some(tau) if out.is_force_alone() => {
+                constant -= piece.slope * jet(set, motion, tau).x;
+                None
+            }
+            anchor => anchor,
+        };
         for (o, g) in out.offset.iter_mut().zip(&*g) {
-            *o += piece.offset * g;
+            *o += constant * g;
         }
         if let Some(tau) = anchor {
             let anchor = &mut self.anchors[own];
@@ -130,6 +138,9 @@ impl Assembly {
     ) -> Result<()> {
         self.toeplitz.set(set, &self.spectrum);
         out.force.copy_from_slice(&out.offset);
+        if out.is_force_alone() {
+            return self.toeplitz.add_product(motion, &mut out.force, interrupt);
+        }
         let m = motion.len().max(1);
         let together = columns_together(m);
         for (k, jacobian) in out.jacobian.chunks_mut(together * m).enumerate() {

@@ -52,6 +52,18 @@ impl MemorylessEvaluator {
     /// # Errors
     /// `Argument` for a law without directions, and for fewer samples than distinguish the harmonics; `OutOfMemory`.
     pub fn new(set: &HarmonicSet, law: &dyn Memoryless, requested: usize) -> Result<Self> {
+        Self::with(set, law, requested, false)
+    }
+
+    /// The same for the force alone.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn force_alone(set: &HarmonicSet, law: &dyn Memoryless, requested: usize) -> Result<Self> {
+        Self::with(set, law, requested, true)
+    }
+
+    fn with(set: &HarmonicSet, law: &dyn Memoryless, requested: usize, force_alone: bool) -> Result<Self> {
         let (d, m) = (law.directions(), set.packed_len());
         let highest = set.highest_reduced();
         if d == 0 {
@@ -88,7 +100,11 @@ impl MemorylessEvaluator {
             toeplitz: Toeplitz::new(set)?,
             quadrature: samples(with_velocity * d * m)?,
             packed: samples(with_velocity * m)?,
-            block: try_vec(with_velocity * m.saturating_mul(m), 0.0, "a contact Jacobian")?,
+            block: if force_alone {
+                Vec::new()
+            } else {
+                try_vec(with_velocity * m.saturating_mul(m), 0.0, "a contact Jacobian")?
+            },
         })
     }
 
@@ -134,6 +150,9 @@ impl MemorylessEvaluator {
         law.evaluate(own, self.transform.held(), &self.u, &self.v, samples)?;
         out.clear();
         self.forces(set, out);
+        if out.is_force_alone() {
+            return Ok(());
+        }
         self.tangents(set, omega, out, interrupt)?;
         // F − J·X
         let order = out.force.len();

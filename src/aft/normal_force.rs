@@ -22,11 +22,15 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
+    pub fn new(set: &HarmonicSet, force_alone: bool) -> Result<Self> {
         Ok(Self {
             set: set.try_clone()?,
             evaluator: VaryingNormalLoadEvaluator::new(set)?,
-            found: Evaluation::new(set, 2)?,
+            found: if force_alone {
+                Evaluation::force_alone(set, 2)?
+            } else {
+                Evaluation::new(set, 2)?
+            },
         })
     }
 
@@ -53,6 +57,9 @@ impl Normal {
             .evaluate(law, &self.set, &motion[n - 2 * m..], &mut self.found, interrupt)?;
         out.force[n - m..].copy_from_slice(&self.found.force[m..]);
         out.offset[n - m..].copy_from_slice(&self.found.offset[m..]);
+        if out.is_force_alone() {
+            return Ok(());
+        }
         for k in 0..m {
             let column = &self.found.jacobian[(m + k) * 2 * m..][m..2 * m];
             out.jacobian[(n - m + k) * n..][n - m..n].copy_from_slice(column);

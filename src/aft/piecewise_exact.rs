@@ -98,8 +98,14 @@ impl Exact {
             interrupt.check()?;
             transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
             let state = law.state(piece);
-            self.assembly
-                .add(set, (piece, state), &self.transform, piece.anchor, out, interrupt)?;
+            self.assembly.add(
+                (set, motion),
+                (piece, state),
+                &self.transform,
+                piece.anchor,
+                out,
+                interrupt,
+            )?;
         }
         interrupt.check()?;
         self.assembly.finish(set, motion, out, interrupt)

@@ -112,8 +112,14 @@ impl Sampled {
                 *t /= n as f64;
             }
             let anchor = piece.anchor.map(|j| TAU * j / n as f64);
-            self.assembly
-                .add(set, (piece, law.state(piece)), &self.transform, anchor, out, interrupt)?;
+            self.assembly.add(
+                (set, motion),
+                (piece, law.state(piece)),
+                &self.transform,
+                anchor,
+                out,
+                interrupt,
+            )?;
         }
         interrupt.check()?;
         self.assembly.finish(set, motion, out, interrupt)

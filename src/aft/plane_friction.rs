@@ -41,7 +41,8 @@ pub struct PlaneFrictionEvaluator {
     spectra: [Vec<Complex64>; 3],
     toeplitz: Toeplitz,
     g: Vec<f64>,
-    sensitivity: Box<PlaneSensitivity>,
+    /// None where the force alone is evaluated.
+    sensitivity: Option<Box<PlaneSensitivity>>,
 }
 
 impl PlaneFrictionEvaluator {
@@ -50,16 +51,32 @@ impl PlaneFrictionEvaluator {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(set: &HarmonicSet, law: &dyn PlaneFriction) -> Result<Self> {
+        Self::with(set, law, false)
+    }
+
+    /// The same for the force alone.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn force_alone(set: &HarmonicSet, law: &dyn PlaneFriction) -> Result<Self> {
+        Self::with(set, law, true)
+    }
+
+    fn with(set: &HarmonicSet, law: &dyn PlaneFriction, force_alone: bool) -> Result<Self> {
         let spectrum = || try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, CONTEXT);
         let has_normal = law.normal().is_some();
         Ok(Self {
             path: boxed(|| PlanePath::new(set, !has_normal))?,
-            normal: law.normal().map(|_| Normal::new(set)).transpose()?,
+            normal: law.normal().map(|_| Normal::new(set, force_alone)).transpose()?,
             transform: spectrum()?,
             spectra: [spectrum()?, spectrum()?, spectrum()?],
             toeplitz: Toeplitz::new(set)?,
             g: try_vec(set.packed_len(), 0.0, CONTEXT)?,
-            sensitivity: boxed(|| PlaneSensitivity::new(set, law.directions()))?,
+            sensitivity: if force_alone {
+                None
+            } else {
+                Some(boxed(|| PlaneSensitivity::new(set, law.directions()))?)
+            },
         })
     }
 
@@ -97,7 +114,12 @@ impl PlaneFrictionEvaluator {
         }
         law.path(motion, pieces, &mut self.path, interrupt)?;
         self.add_forces(law, set, motion, out, interrupt)?;
-        self.sensitivity.add_to(law, &mut self.path, out, interrupt)?;
+        out.stuck = matches!(self.path.repetition, Repetition::Rests([None, None]));
+        out.linear = out.stuck;
+        let Some(sensitivity) = self.sensitivity.as_mut().filter(|_| !out.is_force_alone()) else {
+            return Ok(());
+        };
+        sensitivity.add_to(law, &mut self.path, out, interrupt)?;
         let m = set.packed_len();
         let order = motion.len().max(1);
         out.offset[..2 * m].copy_from_slice(&out.force[..2 * m]);
@@ -106,8 +128,6 @@ impl PlaneFrictionEvaluator {
                 *o -= j * x;
             }
         }
-        out.stuck = matches!(self.path.repetition, Repetition::Rests([None, None]));
-        out.linear = out.stuck;
         Ok(())
     }
 
@@ -156,7 +176,17 @@ impl PlaneFrictionEvaluator {
                 self.spectra[spectrum].iter_mut().for_each(|s| *s *= factor);
                 self.toeplitz.set(set, &self.spectra[spectrum]);
             }
-            Block::new(&mut out.jacobian, d, m, place).add_toeplitz(&self.toeplitz);
+            if out.is_force_alone() {
+                let [i, j] = place.map(|direction| direction * m);
+                self.toeplitz
+                    .add_product(&motion[j..], &mut out.offset[i..], interrupt)?;
+            } else {
+                Block::new(&mut out.jacobian, d, m, place).add_toeplitz(&self.toeplitz);
+            }
+        }
+        if out.is_force_alone() {
+            out.force[..2 * m].copy_from_slice(&out.offset[..2 * m]);
+            return Ok(());
         }
         apply(&out.jacobian, motion, &out.offset, &mut out.force);
         Ok(())

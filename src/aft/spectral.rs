@@ -38,7 +38,9 @@ impl Assembly {
             let nonlinear = out.force[i] / degree;
             out.force[i] = linear * x + nonlinear;
             out.offset[i] = (1.0 - degree) * nonlinear;
-            out.jacobian[i * m + i] += linear;
+            if let Some(own) = out.jacobian.get_mut(i * m + i) {
+                *own += linear;
+            }
         }
         Ok(())
     }

@@ -7,7 +7,11 @@
 
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
+
+/// Numbers of columns between two checks.
+const NUMBERS_TOGETHER: usize = 1 << 22;
 
 /// The lists from which the columns of T(S) are read.
 pub(super) struct Toeplitz {
@@ -116,6 +120,30 @@ impl Toeplitz {
             }
         }
     }
+
+    /// Adds T(S) x to a packed force, column by column, without a matrix.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub(super) fn add_product(&self, x: &[f64], force: &mut [f64], interrupt: &Interrupt<'_>) -> Result<()> {
+        let m = self.row.len();
+        let together = (NUMBERS_TOGETHER / m.max(1)).max(1);
+        let (mean, rest) = force[..m].split_at_mut(usize::from(self.has_mean));
+        for (j, x) in x[..m].iter().enumerate() {
+            if j % together == together - 1 {
+                interrupt.check_before((together * m) as u64)?;
+            }
+            let column = self.column(j);
+            for f in &mut *mean {
+                *f += x * column.mean;
+            }
+            let [a, b] = column.parts;
+            for ((f, a), b) in rest.iter_mut().zip(a).zip(b) {
+                *f += x * (a + b);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The complex numbers of a list.
@@ -173,6 +201,16 @@ mod tests {
                     assert!(gap < 1e-13, "H {highest}, ({i}, {j}): {gap:e}");
                 }
                 assert!(found[j * leading + m..(j + 1) * leading].iter().all(|x| *x == 0.0));
+            }
+            let x: Vec<f64> = (0..m).map(|j| (1.0 + j as f64).sin()).collect();
+            let mut force = vec![0.5; m];
+            toeplitz.add_product(&x, &mut force, &Interrupt::none()).unwrap();
+            for (i, force) in force.iter().enumerate() {
+                let product = (0..m).map(|j| expected[j * m + i] * x[j]).sum::<f64>();
+                assert!(
+                    (force - 0.5 - product).abs() < 1e-13 * (1.0 + m as f64),
+                    "H {highest}, {i}"
+                );
             }
         }
     }

@@ -97,7 +97,18 @@ impl VaryingNormalLoadEvaluator {
         for (spectrum, place) in self.spectra.iter().zip(BLOCKS) {
             interrupt.check_before((m * m) as u64)?;
             self.toeplitz.set(set, spectrum);
-            Block::new(&mut out.jacobian, 2, m, place).add_toeplitz(&self.toeplitz);
+            if out.is_force_alone() {
+                let [i, j] = place.map(|direction| direction * m);
+                // The offset has all constants by now.
+                self.toeplitz
+                    .add_product(&motion[j..], &mut out.offset[i..], interrupt)?;
+            } else {
+                Block::new(&mut out.jacobian, 2, m, place).add_toeplitz(&self.toeplitz);
+            }
+        }
+        if out.is_force_alone() {
+            out.force.copy_from_slice(&out.offset);
+            return Ok(());
         }
         apply(&out.jacobian, motion, &out.offset, &mut out.force);
         Ok(())
@@ -129,8 +140,9 @@ impl VaryingNormalLoadEvaluator {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let m = set.packed_len();
+        let of_products = if out.is_force_alone() { m } else { m * m };
         for piece in &self.tangential {
-            interrupt.check_before((4 * m * m) as u64)?;
+            interrupt.check_before((4 * of_products) as u64)?;
             if piece.state == State::Open {
                 continue;
             }
@@ -147,11 +159,16 @@ impl VaryingNormalLoadEvaluator {
             if let Some(r) = piece.anchor {
                 set.basis(r, &mut self.anchor);
                 let by_y = piece.at_y + piece.moved_y;
-                for (j, factor) in [piece.at_x, by_y].into_iter().enumerate() {
-                    Block::new(&mut out.jacobian, 2, m, [0, j]).add_product(factor, &self.g, &self.anchor);
+                let there = |x: &[f64]| self.anchor.iter().zip(x).map(|(c, x)| c * x).sum::<f64>();
+                let y = there(&motion[m..]);
+                if out.is_force_alone() {
+                    constant += piece.at_x * there(motion) + piece.at_y * y;
+                } else {
+                    for (j, factor) in [piece.at_x, by_y].into_iter().enumerate() {
+                        Block::new(&mut out.jacobian, 2, m, [0, j]).add_product(factor, &self.g, &self.anchor);
+                    }
+                    constant -= piece.moved_y * y;
                 }
-                let y: f64 = self.anchor.iter().zip(&motion[m..]).map(|(c, y)| c * y).sum();
-                constant -= piece.moved_y * y;
             }
             for (o, g) in out.offset[..m].iter_mut().zip(&self.g) {
                 *o += constant * g;

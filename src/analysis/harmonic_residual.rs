@@ -101,7 +101,8 @@ fn forced_residual_of_independent(
 ) -> Result<()> {
     let highest = solver.harmonics;
     let at_frequency = model.at_frequency(omega)?;
-    let contact = ContactTerms::new(model, &at_frequency, (solver, omega), x, interrupt)?;
+    let derivatives = jacobian.is_some() || d_omega.is_some();
+    let contact = ContactTerms::new(model, &at_frequency, (solver, omega, derivatives), x, interrupt)?;
     let mut dynamic = Vec::new();
     for h in 0..=highest {
         interrupt.part(Phase::Setup, h, highest + 1)?;
@@ -260,7 +261,7 @@ impl ContactTerms {
     fn new(
         model: &Model,
         at: &Model,
-        (solver, omega): (&SolverOptions, f64),
+        (solver, omega, derivatives): (&SolverOptions, f64, bool),
         x: &[Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
@@ -283,8 +284,14 @@ impl ContactTerms {
                 }
                 try_push(&mut rows, own, CONTEXT)?;
             }
-            let mut evaluation = evaluate(contact, &set, (solver.samples, omega), &packed, interrupt)?;
-            if let Some(growth) = model.growth_of_load(number, omega) {
+            let mut evaluation = evaluate(
+                (contact, derivatives),
+                &set,
+                (solver.samples, omega),
+                &packed,
+                interrupt,
+            )?;
+            if let Some(growth) = model.growth_of_load(number, omega).filter(|_| derivatives) {
                 // ∂f/∂ω = (∂f/∂ln N) ∂ln N/∂ω
                 let by_load = if contact.load_scales_motion() {
                     &evaluation.offset
@@ -395,9 +402,9 @@ impl Block<'_> {
     }
 }
 
-/// A law in the caller's units at packed motions.
+/// A law in the caller's units at packed motions, with its Jacobian or its force alone.
 fn evaluate(
-    contact: &Contact,
+    (contact, jacobian): (&Contact, bool),
     set: &HarmonicSet,
     (samples, omega): (usize, f64),
     packed: &[f64],
@@ -410,8 +417,14 @@ fn evaluate(
             "omega = 0, needs a number > 0 for a law with states, which takes steps in time"
         );
     }
-    let mut evaluation = Evaluation::interruptible(set, contact.directions(), interrupt)?;
-    let mut evaluator = Evaluator::new(set, samples, core::iter::once(&*law))?;
+    let once = core::iter::once(&*law);
+    let (mut evaluation, mut evaluator) = if jacobian {
+        let evaluation = Evaluation::interruptible(set, contact.directions(), interrupt)?;
+        (evaluation, Evaluator::new(set, samples, once)?)
+    } else {
+        let evaluation = Evaluation::force_alone(set, contact.directions())?;
+        (evaluation, Evaluator::force_alone(set, samples, once)?)
+    };
     evaluator.prepare(set, &packed[..set.packed_len()], interrupt)?;
     evaluator.evaluate(&*law, set, packed, omega, &mut evaluation, interrupt)?;
     Ok(evaluation)
@@ -471,7 +484,7 @@ pub fn contact_evaluate_with(
     if let Some(i) = motion.iter().position(|z| !z.is_finite()) {
         return fail!(NotFinite, "motion[{i}] is not finite");
     }
-    allow_law(harmonics, directions, samples, jacobian.is_some())?;
+    allow_law(contact, harmonics, samples, jacobian.is_some())?;
     let set = HarmonicSet::all(harmonics)?;
     let m = set.packed_len();
     let mut packed = try_vec(m * directions, 0.0, "a contact motion")?;
@@ -480,7 +493,13 @@ pub fn contact_evaluate_with(
             set.set(packed, i, z);
         }
     }
-    let evaluation = evaluate(contact, &set, (samples, omega), &packed, interrupt)?;
+    let evaluation = evaluate(
+        (contact, jacobian.is_some()),
+        &set,
+        (samples, omega),
+        &packed,
+        interrupt,
+    )?;
     // From here on all of the arrays is written, or none.
     interrupt.check_before(evaluation.jacobian.len() as u64)?;
     for (force, packed) in force.chunks_exact_mut(count).zip(evaluation.force.chunks_exact(m)) {

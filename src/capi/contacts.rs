@@ -61,7 +61,7 @@ pub struct hbvib_contact {
     pub dof_a: [i64; 3],
     /// Side b, likewise.
     pub dof_b: [i64; 3],
-    /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
+    /// Cyclic models: side b lies in sector s + sector_offset, -(N - 1) .. N - 1. 0 in plain ones.
     pub sector_offset: i64,
     /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
     /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and

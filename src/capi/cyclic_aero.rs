@@ -48,7 +48,7 @@ fn form_of(form: i32, argument: i32) -> Result<AeroForm> {
 ///               The mean has the real part. Imaginary parts mean nothing in time: time
 ///               integration, verification and stability refuse them.
 /// offsets       sector of the motion counted from that of the force, 0 the same sector, each
-///               sector once; n_offsets numbers.
+///               sector once, -(N - 1) .. N - 1; n_offsets numbers.
 /// form          HBVIB_AERO_DISPLACEMENT or HBVIB_AERO_VELOCITY.
 /// Errors: HBVIB_E_UNSUPPORTED for a plain structure; HBVIB_E_INDEX (dofs), HBVIB_E_ARGUMENT (dofs
 /// or offsets twice, form), HBVIB_E_NOT_FINITE (coefficients), HBVIB_E_DIMENSION (n_dofs,

@@ -38,9 +38,12 @@ use num_complex::Complex64;
 /// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
-/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or of
-/// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
-/// jac. Above 16 GiB, without jac above 500 MB, nothing is requested, and the error is
+/// Memory with jac: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or
+/// of 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1) or
+/// 256 MiB + 64 KiB (H + 1), whichever are fewer. Without jac no Jacobian is formed:
+/// 2.5 KiB d (H + 1), 250 bytes for each of the samples, of which HBVIB_REGULARISED takes
+/// 128 (H + 1) by itself, and 1 MiB, for HBVIB_FRICTION_3D another term as above. Where the latter
+/// is more than 500 MiB, or the former more than 16 GiB, nothing is requested, and the error is
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,

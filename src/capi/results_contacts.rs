@@ -29,9 +29,10 @@ pub enum hbvib_state {
 /// stored point: entry j at omega t = 2 pi j / n. The force is that of this contact alone and not
 /// truncated at harmonic H: the law at the motion of the point. Events of HBVIB_JENKINS and
 /// HBVIB_UNILATERAL are located exactly, also where the branch was solved with samples; friction in
-/// a plane is integrated over a multiple of n samples, and a law of the caller is called with the n
-/// times. In a cyclic model the contact is that of sector 0. A contact that is linear at any motion
-/// has its linear force and sticks; the motion of the whole structure is recovered for it.
+/// a plane is followed exactly, and a law of the caller is called with the n times, up to 16384 at
+/// once; with states it is marched over them. In a cyclic model the contact is that of sector 0. A
+/// contact that is linear at any motion has its linear force and sticks; the motion of the whole
+/// structure is recovered for it.
 ///
 /// point      number of a point of the curve, or of a peak, fold or requested solution.
 /// contact    number from hbvib_model_add_contact.
@@ -46,6 +47,8 @@ pub enum hbvib_state {
 /// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact, direction), HBVIB_E_DIMENSION
 /// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
 /// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
+/// Memory: 16 n bytes and n, and a law of the caller with states some hundred n: a march above
+/// 500 MB is refused with the n that it needs (HBVIB_E_OUT_OF_MEMORY).
 /// Threads: any number on one branch.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
@@ -125,16 +128,16 @@ pub unsafe extern "C" fn hbvib_branch_contact_loop_with_hooks(
         let motion = optional((motion, 6), "motion")?;
         let force = optional((force, 7), "force")?;
         let state = optional((state, 8), "state")?;
+        let wanted = [motion.is_some(), force.is_some(), state.is_some()];
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                branch.contact_loop_with(point, contact, n, interrupt)
+                branch.contact_loop_along((point, contact, direction), n, wanted, interrupt)
             })
         }?;
-        // Times run slowest: one direction is every d-th number.
         for (out, values) in [(motion, &found.motion), (force, &found.force)] {
             if let Some(p) = out {
-                for (j, row) in values.chunks_exact(directions).enumerate() {
-                    unsafe { p.add(j).write(row[direction]) };
+                for (j, value) in values.iter().enumerate() {
+                    unsafe { p.add(j).write(*value) };
                 }
             }
         }

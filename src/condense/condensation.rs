@@ -13,7 +13,7 @@ use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
-use crate::condense::memory_limit::within_directly;
+use crate::condense::memory_limit::{within_directly, within_for_contacts};
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
@@ -236,6 +236,7 @@ impl Condensed {
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
         model.check_matrices(mode.is_some())?;
+        within_for_contacts(options.memory_limit, model)?;
         let contact_classes = ContactClasses::new(model)?;
         let active = &contact_classes.active;
         let set = carried(model, options, forced, active)?;

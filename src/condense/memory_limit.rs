@@ -30,6 +30,23 @@ pub fn mega(bytes: usize) -> usize {
     bytes.div_ceil(1 << 20)
 }
 
+/// Bytes of a condensed model for each of its contacts.
+const OF_A_CONTACT: usize = 500;
+
+/// Refuses a model whose contacts alone would exceed the limit.
+pub(super) fn within_for_contacts(limit: usize, model: &Model) -> Result<()> {
+    let contacts = model.contacts().len();
+    let need = contacts.saturating_mul(OF_A_CONTACT);
+    if limit == 0 || need <= limit {
+        return Ok(());
+    }
+    Err(beyond(format_args!(
+        "{contacts} contacts need about {} MB beside the model, more than memory_limit = {limit} bytes; raise it to {need} at least, \
+         or gather contacts between the same degrees of freedom",
+        mega(need)
+    )))
+}
+
 /// Refuses a model whose matrices and complex LU factors would exceed the limit.
 pub(super) fn within_directly(limit: usize, model: &Model, numbers: &[usize]) -> Result<()> {
     if limit == 0 {

@@ -20,6 +20,9 @@ const NEAR_RIGID: f64 = 1e3;
 /// Reference stiffness of a near-rigid contact over the stiffness of the structure.
 const REDUCED: f64 = 10.0;
 
+/// Stiffness of a spring over that of the structure where that is negative: then neither κ nor κ/2 makes their sum zero.
+const ABOVE_NEGATIVE: f64 = 4.0;
+
 /// Stiffness of the structure at each of `coordinates` relative coordinates: the largest diagonal entry of K with its
 /// linear contacts, or of ω²M, among the degrees of freedom of its sides.
 pub(super) fn structural_stiffness(
@@ -66,7 +69,7 @@ pub(super) fn structural_stiffness(
 }
 
 /// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at zero motion, to that of
-/// the structure, so that κ moves the poles whatever kt is.
+/// the structure, so that κ moves the poles whatever kt is; where the structure itself is unstable, to some times that.
 pub(super) fn raise_for_springs(
     model: &Model,
     assembled: &[AssembledDirection],
@@ -75,7 +78,13 @@ pub(super) fn raise_for_springs(
 ) {
     for at in assembled.iter().filter(|at| model.contacts()[at.contact].is_spring()) {
         let c = at.coordinate;
-        stiffness[c] = stiffness[c].max(structural[c]);
+        let motion = model
+            .structure()
+            .contact_motion(&model.contacts()[at.contact], at.direction);
+        let own = |p| model.structure().wave_diagonal(MatrixKind::Stiffness, 0, p).re;
+        let is_negative = motion.terms().any(|term| own(term.dof) < 0.0);
+        let factor = if is_negative { ABOVE_NEGATIVE } else { 1.0 };
+        stiffness[c] = stiffness[c].max(factor * structural[c]);
     }
 }
 

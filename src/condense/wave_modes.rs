@@ -85,8 +85,9 @@ pub(super) fn proportional([m, k, c]: [&[Complex64]; 3]) -> Option<(f64, f64)> {
     if size_m == 0.0 || size_k == 0.0 {
         return None;
     }
-    // Stiffness alone is the usual form, and two nearly parallel matrices would lose digits.
-    let candidates = [(0.0, inner(k, c) / inner(k, k)), (inner(m, c) / inner(m, m), 0.0), {
+    // One matrix alone is the usual form, and two nearly parallel matrices would lose digits. Where both do, as for one mass, a
+    // soft structure under a stiff contact would lose them by βK.
+    let candidates = [(inner(m, c) / inner(m, m), 0.0), (0.0, inner(k, c) / inner(k, k)), {
         let (mm, kk, mk) = (inner(m, m), inner(k, k), inner(m, k));
         let (mc, kc) = (inner(m, c), inner(k, c));
         let determinant = mm * kk - mk * mk;

@@ -53,8 +53,10 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
         && let Some(cholesky) = Cholesky::new(m.clone())
     {
         let l = cholesky.l();
+        // The complex root of a negative pivot exists: it is imaginary, and its real part is rounding.
+        let is_definite = l.diagonal().iter().all(|x| x.im.abs() <= REGULAR * x.re);
         let diagonal = l.diagonal().map(|x| x.re);
-        if diagonal.min() > REGULAR * diagonal.max() {
+        if is_definite && diagonal.min() > REGULAR * diagonal.max() {
             let (Some(left), true) = (l.solve_lower_triangular(k), n > 0) else {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
             };
@@ -267,5 +269,22 @@ mod tests {
             &Interrupt::none(),
         );
         assert!(pairs.is_err_and(|e| e.status == crate::error::Status::NotPositiveDefinite));
+    }
+
+    #[test]
+    fn a_negative_definite_mass_is_an_error() {
+        for n in 1..=4 {
+            let k = DMatrix::<Complex64>::identity(n, n);
+            let m = DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
+                0 => Complex64::from(-2.0),
+                1 => Complex64::new(0.0, if i > j { 0.4 } else { -0.4 }),
+                _ => Complex64::ZERO,
+            });
+            let pairs = generalised(&k, &m, &Interrupt::none());
+            assert!(
+                pairs.is_err_and(|e| e.status == crate::error::Status::NotPositiveDefinite),
+                "{n}"
+            );
+        }
     }
 }

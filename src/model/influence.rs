@@ -70,6 +70,18 @@ impl AeroInfluence {
                 );
             }
         }
+        if let Some((k, offset)) = offsets
+            .iter()
+            .enumerate()
+            .find(|(_, k)| k.unsigned_abs() >= sectors as u64)
+        {
+            return fail!(
+                Argument,
+                "aerodynamic influence: offsets[{k}] = {offset}, needs -{} .. {} on {sectors} sectors",
+                sectors - 1,
+                sectors - 1
+            );
+        }
         let sectors = sectors as i64;
         once("dofs", "degree of freedom", dofs, |&dof| dof)?;
         once("offsets", "sector", offsets, |k| k.rem_euclid(sectors))?;

@@ -157,6 +157,15 @@ impl Model {
                 "{what}: sector_offset = {sector_offset}, needs 0 in a plain structure"
             );
         }
+        let sectors = self.structure().sectors();
+        if sector_offset.unsigned_abs() >= sectors as u64 {
+            return fail!(
+                Argument,
+                "{what}: sector_offset = {sector_offset}, needs -{} .. {} on {sectors} sectors",
+                sectors - 1,
+                sectors - 1
+            );
+        }
         self.structure().check_motion(what, sides, sector_offset, node_b)
     }
 }

@@ -11,26 +11,24 @@
 //! over the harmonics of the motion, with F as the solution was found with it; friction in one direction
 //! under a constant load has a sum of positive terms instead, see [`one_motion`].
 
-pub mod from_samples;
+mod follower;
+mod from_samples;
 pub mod one_motion;
 mod period;
 mod plane_motion;
 pub mod two_motions;
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::contact::contact_state::State;
 use crate::contact::law::{Form, Law};
-use crate::error::{Result, try_push, try_vec};
-use crate::fourier::HarmonicSet;
-use crate::fourier::{TurningPoints, jet};
+use crate::error::{Result, try_push};
+use crate::fourier::{HarmonicSet, TurningPoints};
 use crate::interrupt::Interrupt;
+use crate::results::contact_loops::follower::Follower;
 use crate::results::contact_loops::one_motion::ScalarOrbit;
-use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, extrema, range, time};
-use crate::results::contact_loops::two_motions::CoupledOrbit;
-use crate::results::signal_check::check_time;
+use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, extrema, range};
 use std::f64::consts::PI;
 
-pub use period::{Account, Times};
+pub use period::Account;
 
 /// Source of the force.
 #[derive(Clone, Copy)]
@@ -86,70 +84,22 @@ impl<'a> Orbit<'a> {
         self.motion.directions
     }
 
-    /// The contact at n times.
+    /// The contact at n times, a slice after the other.
     ///
     /// # Errors
-    /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic.
-    pub fn times(&self, n: usize, interrupt: &Interrupt<'_>) -> Result<Times> {
-        let PeriodicMotion {
-            set,
-            packed,
-            directions,
-            ..
-        } = self.motion;
-        let d = directions;
-        let mut out = Times {
-            motion: try_vec(n.saturating_mul(d), 0.0, CONTEXT)?,
-            force: try_vec(n.saturating_mul(d), 0.0, CONTEXT)?,
-            state: try_vec(n, State::Stick, CONTEXT)?,
-        };
-        for (j, row) in out.motion.chunks_exact_mut(d.max(1)).enumerate() {
-            check_time(interrupt, j, set)?;
-            let tau = time(set, j, n);
-            for (k, x) in row.iter_mut().enumerate() {
-                *x = jet(set, self.motion.signal(k), tau).x;
-            }
+    /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.
+    pub fn follow(&self, n: usize, interrupt: &Interrupt<'_>) -> Result<Follower<'a>> {
+        match self.maker {
+            Maker::Law(law) => Follower::of_law(self.motion, n, (law, self.samples), interrupt),
+            Maker::Spring(stiffness) => Ok(Follower::of_spring(self.motion, n, stiffness)),
         }
-        let law = match self.maker {
-            Maker::Law(law) => law,
-            Maker::Spring(stiffness) => {
-                for (f, x) in out.force.iter_mut().zip(&out.motion) {
-                    *f = stiffness * x;
-                }
-                return Ok(out);
-            }
-        };
-        match law.form() {
-            Form::PiecewiseLinear(_) | Form::Spectral(_) => {
-                let orbit = ScalarOrbit::new(set, packed, law, interrupt)?;
-                let rows = out.force.iter_mut().zip(&mut out.state).zip(&out.motion);
-                for (j, ((force, state), x)) in rows.enumerate() {
-                    check_time(interrupt, j, set)?;
-                    (*force, *state) = orbit.at(time(set, j, n), *x);
-                }
-            }
-            Form::VaryingNormalLoad(law) => {
-                let orbit = CoupledOrbit::new(set, packed, law, interrupt)?;
-                let rows = out.force.chunks_exact_mut(2).zip(&mut out.state);
-                for (j, ((force, state), x)) in rows.zip(out.motion.chunks_exact(2)).enumerate() {
-                    check_time(interrupt, j, set)?;
-                    let found = orbit.at(time(set, j, n), [x[0], x[1]]);
-                    force.copy_from_slice(&found.0);
-                    *state = found.1;
-                }
-            }
-            Form::PlaneFriction(law) => plane_motion::followed(&self.motion, law, &mut out, interrupt)?,
-            Form::Hysteretic(law) => from_samples::marched(&self.motion, law, self.samples, &mut out, interrupt)?,
-            Form::Memoryless(law) => from_samples::pointwise(&self.motion, law, &mut out, interrupt)?,
-        }
-        Ok(out)
     }
 
     /// Work and shares of the period. The work of laws that cannot dissipate, and of friction that does not
     /// slip, is exactly 0.
     ///
     /// # Errors
-    /// As [`Self::times`].
+    /// As [`Self::follow`].
     pub fn account(&self, interrupt: &Interrupt<'_>) -> Result<Account> {
         let Maker::Law(law) = self.maker else {
             return Ok(Account::default());
@@ -175,8 +125,8 @@ impl<'a> Orbit<'a> {
             directions,
             omega,
         } = self.motion;
-        let mut found = Evaluation::new(set, directions)?;
-        let mut evaluator = Evaluator::new(set, self.samples, std::iter::once(law))?;
+        let mut found = Evaluation::force_alone(set, directions)?;
+        let mut evaluator = Evaluator::force_alone(set, self.samples, std::iter::once(law))?;
         evaluator.evaluate(law, set, packed, omega, &mut found, interrupt)?;
         let (slip, open) = (found.slip_fraction, found.open_fraction);
         let takes_nothing = match law.form() {

@@ -2,7 +2,7 @@
 
 use crate::contact::Contact;
 use crate::contact::contact_state::State;
-use crate::error::{Result, fail, try_extend, try_vec};
+use crate::error::{Result, fail, try_extend, try_room, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
 use crate::interrupt::{Interrupt, Phase};
@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// Largest number of times of a loop or a history.
 pub const MOST_TIMES: usize = 1 << 24;
+
+const LOOP: &str = "the loop of a contact";
 
 /// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -95,7 +97,8 @@ impl Branch {
     ///
     /// The force is that of this contact alone, at the motion of the point. Friction in one direction and
     /// unilateral, tabulated and cubic springs are exact, even if the branch was computed by samples. A law of the
-    /// caller is called with the n times. Friction in a plane is evaluated step by step over a multiple of n
+    /// caller is called with the n times, up to 16,384 at once; one with states is marched over them, which is refused where it
+    /// would take more than 500 MB. Friction in a plane is evaluated step by step over a multiple of n
     /// samples, at least as many as in the solution. In a cyclic model the contact is that of sector 0. Contacts
     /// that are linear at any motion have no coordinate of their own, and the whole structure is recovered for
     /// them.
@@ -121,16 +124,63 @@ impl Branch {
         self.check_contact(point, contact)?;
         check_times(n)?;
         self.with_orbit(point, contact, interrupt, |orbit, length| {
-            let mut found = orbit.times(n, interrupt)?;
-            for value in found.motion.iter_mut().chain(&mut found.force) {
-                *value *= length;
+            let directions = orbit.directions();
+            let mut found = ContactLoop {
+                directions,
+                motion: try_room(n.saturating_mul(directions), LOOP)?,
+                force: try_room(n.saturating_mul(directions), LOOP)?,
+                state: try_room(n, LOOP)?,
+            };
+            orbit.follow(n, interrupt)?.each(interrupt, |slice| {
+                found.motion.extend(slice.motion.iter().map(|x| x * length));
+                found.force.extend(slice.force.iter().map(|f| f * length));
+                found.state.extend(&slice.state);
+            })?;
+            Ok(found)
+        })
+    }
+
+    /// One direction of [`Self::contact_loop`], of which it holds no more than is `wanted`: motions, forces, states. The rest is
+    /// empty.
+    ///
+    /// # Errors
+    /// As [`Self::contact_loop`], with `Index` for an unknown direction; `StoppedByCaller`.
+    pub fn contact_loop_along(
+        &self,
+        (point, contact, direction): (usize, usize, usize),
+        n: usize,
+        wanted: [bool; 3],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<ContactLoop> {
+        self.check_contact(point, contact)?;
+        check_times(n)?;
+        self.with_orbit(point, contact, interrupt, |orbit, length| {
+            let directions = orbit.directions();
+            if direction >= directions {
+                return fail!(Index, "direction = {direction}, needs 0 .. {directions}");
             }
-            Ok(ContactLoop {
-                directions: orbit.directions(),
-                motion: found.motion,
-                force: found.force,
-                state: found.state,
-            })
+            let [motion, force, state] = wanted.map(|wanted| if wanted { n } else { 0 });
+            let mut found = ContactLoop {
+                directions: 1,
+                motion: try_room(motion, LOOP)?,
+                force: try_room(force, LOOP)?,
+                state: try_room(state, LOOP)?,
+            };
+            orbit.follow(n, interrupt)?.each(interrupt, |slice| {
+                let along = |values: &[f64], to: &mut Vec<f64>| {
+                    to.extend(values.iter().skip(direction).step_by(directions).map(|x| x * length));
+                };
+                if wanted[0] {
+                    along(&slice.motion, &mut found.motion);
+                }
+                if wanted[1] {
+                    along(&slice.force, &mut found.force);
+                }
+                if wanted[2] {
+                    found.state.extend(&slice.state);
+                }
+            })?;
+            Ok(found)
         })
     }
 

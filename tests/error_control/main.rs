@@ -6,4 +6,5 @@ mod common;
 mod error_estimate;
 mod error_estimate_laws;
 mod error_estimate_modes;
+mod error_estimate_wells;
 mod tolerance;

@@ -2,8 +2,9 @@
 //! leave the model usable: its response is the same afterwards, bit for bit.
 
 use crate::common::refusal::{OMEGA, refused, unharmed};
-use crate::common::{BASE, all_harmonics, harmonics, solve_at};
+use crate::common::{BASE, all_harmonics, harmonics, one_mass, solve_at};
 use hbvib::analysis::forced_response::forced_response;
+use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
@@ -354,4 +355,22 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
     for (options, status, words) in cases {
         refused(options.check(4, 2, 24), status, &[words]);
     }
+}
+
+#[test]
+fn contacts_beyond_the_memory_limit_are_refused_by_their_number() {
+    let mut model = one_mass(0.1, &Contact::jenkins(0, None, 1e-3, 0.3, 1.0), 1.0);
+    for _ in 1..4000 {
+        model.add_contact(&Contact::jenkins(0, None, 1e-3, 0.3, 1.0)).unwrap();
+    }
+    let limited = |memory_limit| SolverOptions {
+        memory_limit,
+        ..harmonics(1)
+    };
+    let refusal = respond(&model, &limited(1_999_999), &range(0.5, 0.5)).unwrap_err();
+    assert_eq!(refusal.status, Status::OutOfMemory);
+    for words in ["4000 contacts", "memory_limit = 1999999", "raise it to 2000000"] {
+        assert!(refusal.to_string().contains(words), "{refusal}");
+    }
+    respond(&model, &limited(2_000_000), &range(0.5, 0.5)).unwrap();
 }

@@ -8,3 +8,4 @@ mod contact_loops;
 mod contact_states;
 mod energy;
 mod energy_of_sectors;
+mod long_loops;

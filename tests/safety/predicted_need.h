@@ -66,11 +66,21 @@ static double samples_of_results(const sizes *s, const hbvib_solver_options *o)
     return most_samples(o);
 }
 
+/* Of the path of friction in a plane. */
+static double need_of_a_path(double h) { return smaller(2 * MIB * (h + 1), 256 * MIB + 64 * KIB * (h + 1)); }
+
 /* Of a law with d motions, as the header tells for hbvib_contact_evaluate. */
 static double need_of_a_law(double d, double h, double samples)
 {
     const double law = 8 * (1 + d) * 4 * d * d * (h + 1) * (h + 1) + 250 * larger(samples, 128 * (h + 1)) + MIB;
-    return d > 1 ? law + 2 * MIB * (h + 1) : law;
+    return d > 1 ? law + need_of_a_path(h) : law;
+}
+
+/* The same without a Jacobian. */
+static double need_of_a_force(const hbvib_contact *c, double h, double samples)
+{
+    const double own = c->kind == HBVIB_REGULARISED ? 128 * (h + 1) : 0, d = (double)directions(c);
+    return 2560 * d * (h + 1) + 250 * larger(samples, own) + MIB + (c->kind == HBVIB_FRICTION_3D ? need_of_a_path(h) : 0);
 }
 
 /* Of the equations of a point, which memory_limit bounds. */
@@ -93,6 +103,9 @@ static double need_of_linear_modes(const sizes *s)
     return 400 * (double)s->dofs * (double)s->dofs + 512 * KIB + 800 * s->squares;
 }
 
+/* Of the static state, about which modes may be asked for. */
+static double need_at_rest(const sizes *s) { return 6 * KIB * s->motions; }
+
 /* Of building, changing, copying, saving and loading a model. */
 static double need_of_a_change(const sizes *s) { return 16 * KIB + 8 * (double)s->saved; }
 
@@ -110,7 +123,7 @@ static double need_of_a_branch(const sizes *s, const hbvib_solver_options *o, do
     const double limit = o->memory_limit > 0 ? (double)o->memory_limit : HUGE_VAL;
     const double equations = smaller(limit, need_of_equations(s, h, samples));
     const double estimate = automatic || o->estimate_error ? smaller(limit, 100e6 + 4 * equations) : 0;
-    const double pieces = s->most > 1 ? 2 * MIB * (h + 1) : 0;
+    const double pieces = s->most > 1 ? need_of_a_path(h) : 0;
     return need_of_structure(s, h) + (automatic ? 4 : 2) * equations + estimate + pieces +
            points * (48 * (h + 1) * ((double)s->dofs + s->motions) + 512) + need_of_linear_modes(s) + 2 * MIB;
 }

@@ -62,6 +62,7 @@ static hbvib_branch *freed_branch;
 static struct solved {
     sizes model;
     double harmonics, samples;
+    hbvib_model *of;
 } of_branch[MOST];
 
 static hbvib_model *some_model(int *which)
@@ -92,6 +93,18 @@ static struct solved sizes_of_branch(const hbvib_branch *branch)
     return none;
 }
 
+/* The model of a branch where it lives, mostly; else some model. */
+static hbvib_model *model_of(const struct solved *of, int *which)
+{
+    int i;
+    for (i = 0; i < n_models && !one_in(4); i++) {
+        if (models[i] != of->of) continue;
+        *which = i;
+        return models[i];
+    }
+    return some_model(which);
+}
+
 /* Outcomes of each function: its statuses, from HBVIB_OK on. */
 static struct outcome {
     const char *name;
@@ -105,7 +118,8 @@ static clock_t longest;
 static double allowed;
 
 /* What is solved, for a report, and the longest call. */
-static char solving[400] = "", slowest[500] = "";
+static char solving[600] = "", slowest[700] = "";
+static const hbvib_model *solved_model;
 
 static struct outcome *outcome_of(const char *name)
 {
@@ -121,6 +135,23 @@ typedef struct beginning {
     clock_t time;
     int64_t bytes;
 } beginning;
+
+/* Writes the model that is solved to a file named by the environment, for a look at a failure. */
+static void save_model(void)
+{
+    const char *name = getenv("RANDOM_CALLS_SAVE");
+    int64_t size = 0;
+    unsigned char *bytes;
+    FILE *file;
+    if (name == NULL || solved_model == NULL || hbvib_model_save(solved_model, 0, NULL, &size) != HBVIB_OK) return;
+    bytes = malloc((size_t)size);
+    file = fopen(name, "wb");
+    if (bytes != NULL && file != NULL && hbvib_model_save(solved_model, size, bytes, &size) == HBVIB_OK) fwrite(bytes, 1, (size_t)size, file);
+    if (file != NULL) fclose(file);
+    free(bytes);
+    fprintf(stderr, "saved the model of %lld degrees of freedom and %lld contacts\n", (long long)hbvib_model_dofs(solved_model),
+            (long long)hbvib_model_contacts(solved_model));
+}
 
 static beginning begin_call(void)
 {
@@ -141,6 +172,7 @@ static void judge(const char *name, int64_t status, beginning begin)
     if ((double)bytes > o->share * allowed) o->share = (double)bytes / allowed;
     if ((double)bytes > allowed) {
         failures++;
+        save_model();
         fprintf(stderr, "%s: %lld bytes, %.0f are its need%s\n", name, (long long)bytes, allowed, solving);
     }
     calls++;
@@ -431,8 +463,11 @@ static double somewhere(int which)
     return number(which >= 0 && dofs[which] == 4 ? 1300 : 1.2);
 }
 
+static void ask_of(hbvib_branch *branch, int what);
+
 static void solve(void)
 {
+    static const int asked_at_once[4] = {8, 9, 10, 13};
     static double at[1];
     int which;
     hbvib_model *model = some_model(&which);
@@ -441,7 +476,7 @@ static void solve(void)
     hbvib_hooks h = hooks();
     hbvib_branch *branch = NULL;
     hbvib_status status;
-    struct solved from = {sizes_of(model), 0, 0};
+    struct solved from = {sizes_of(model), 0, 0, model};
     snprintf(solving, sizeof solving,
              "; n = %lld, wheel = %lld, m = %g, d = %g, tolerance = %g, harmonics = %lld and %lld, samples = %lld, points = %lld, step_max = %g, "
              "limit = %lld, flexibility = %d, bytes saved = %lld",
@@ -449,6 +484,7 @@ static void solve(void)
              (long long)s->max_harmonics, (long long)s->samples, (long long)s->max_points, s->step_max, (long long)s->memory_limit,
              (int)s->flexibility, (long long)from.model.saved);
     const int estimates = s->tolerance > 0 || s->estimate_error;
+    solved_model = model;
     from.harmonics = highest(s);
     from.samples = samples_of_results(&from.model, s);
     if (one_in(2)) {
@@ -457,6 +493,7 @@ static void solve(void)
         hbvib_forced_options_init(&o, sizeof o);
         o.omega_start = somewhere(which);
         o.omega_stop = one_in(3) ? o.omega_start : o.omega_start * number(1.02);
+        snprintf(solving + strlen(solving), sizeof solving - strlen(solving), ", omega = %.17g .. %.17g", o.omega_start, o.omega_stop);
         if (one_in(4)) {
             o.guess_len = guess(which);
             o.guess = o.guess_len != 0 || one_in(20) ? guessed : NULL;
@@ -537,7 +574,10 @@ static void solve(void)
     solves++;
     if (status >= 0) solved++;
     solving[0] = '\0';
+    solved_model = NULL;
     keep(branch, &from);
+    /* Later most models have changed. */
+    if (branch != NULL && one_in(2)) ask_of(branch, asked_at_once[next() % 4]);
 }
 
 /* Damped modes, Campbell and interference diagrams of signed diameters. */
@@ -555,7 +595,7 @@ static void ask_for_waves(void)
     const int64_t d = count((int64_t)(next() % 9) - 4), order = count(1 + (int64_t)(next() % 9));
     const int32_t contacts = (int32_t)(next() % 4);
     /* Of all waves and speeds at a time. */
-    const double need = 4 * need_of_linear_modes(&m) + 2000 * (double)(m.wheel + 64) + 100 * (double)(m.saved);
+    const double need = need_at_rest(&m) + 4 * need_of_linear_modes(&m) + 2000 * (double)(m.wheel + 64) + 100 * (double)(m.saved);
     int64_t found = 0;
     if (n > 3) return;
     switch (next() % 4) {
@@ -573,10 +613,10 @@ static void ask_for_waves(void)
 }
 
 /* Loops and histories of up to 2^24 times. */
-static void ask_for_many_times(const hbvib_branch *branch, int64_t point, double need, const hbvib_hooks *h)
+static void ask_for_many_times(const hbvib_branch *branch, int64_t point, double need, const struct solved *of, const hbvib_hooks *h)
 {
     const int64_t n = times(1 << 12);
-    const double record = 8 * within(n, 1 << 24);
+    const double record = 8 * within(n, 1 << 24), march = of->model.sampled ? smaller(500 * MIB, record * (4 * of->harmonics + 40)) : 0;
     hbvib_status status;
     double *y, *f;
     int32_t *states;
@@ -584,8 +624,8 @@ static void ask_for_many_times(const hbvib_branch *branch, int64_t point, double
     y = malloc((size_t)n * sizeof *y + 8);
     f = malloc((size_t)n * sizeof *f + 8);
     states = malloc((size_t)n * sizeof *states + 8);
-    if (one_in(2)) CALL_NAMED("hbvib_branch_time_history_with_hooks, long", need + 4 * record, hbvib_branch_time_history_with_hooks, branch, point, 0, n, y, h);
-    else CALL_NAMED("hbvib_branch_contact_loop_with_hooks, long", need + 32 * record, hbvib_branch_contact_loop_with_hooks, branch, point, count(0), count(0), n, y, f, states, h);
+    if (one_in(2)) CALL_NAMED("hbvib_branch_time_history_with_hooks, long", need + 1.1 * record, hbvib_branch_time_history_with_hooks, branch, point, 0, n, y, h);
+    else CALL_NAMED("hbvib_branch_contact_loop_with_hooks, long", need + 2.2 * record + march + 16 * MIB, hbvib_branch_contact_loop_with_hooks, branch, point, count(0), count(0), n, y, f, states, h);
     free(y);
     free(f);
     free(states);
@@ -602,23 +642,22 @@ static void ask_for_sensitivity(const hbvib_model *model, const hbvib_branch *br
     memset(&p, 0, sizeof p);
     hbvib_parameter_init(&p, sizeof p);
     p.kind = (int32_t)(next() % 11) - 1;
-    p.contact = one_in(2) ? -1 : count(0);
-    p.scaling = (int32_t)(next() % 2);
-    CALL_WITHIN(need, hbvib_sensitivity, model, branch, point, (int32_t)(next() % 6), &p, 1, &derivative, 1, &reason, &onset, &h);
+    p.contact = one_in(3) ? count(0) : -1;
+    p.scaling = one_in(3);
+    CALL_WITHIN(need, hbvib_sensitivity, model, branch, point, (int32_t)(next() % (one_in(9) ? 6 : 3)), &p, 1, &derivative, 1, &reason, &onset, &h);
 }
 
-static void ask(void)
+static void ask_of(hbvib_branch *branch, int what)
 {
     static double x[2 * 64 * 128], y[256], f[256];
     static int32_t states[256];
     static int64_t point[64];
-    hbvib_branch *branch = some_branch();
     hbvib_hooks h = hooks();
     hbvib_status status;
     const int64_t stored = hbvib_branch_stored(branch), at = stored > 0 ? count((int64_t)(next() % (uint64_t)stored)) : count(0);
     int64_t n = 0;
     int which, i;
-    hbvib_model *model = some_model(&which);
+    hbvib_model *model;
     hbvib_view view;
     hbvib_energy energy;
     hbvib_contact_summary summary;
@@ -626,11 +665,11 @@ static void ask(void)
     hbvib_floquet_info info;
     hbvib_reduction r;
     const struct solved of = sizes_of_branch(branch);
-    const sizes m = sizes_of(model);
+    const sizes m = sizes_of(model = model_of(&of, &which));
     const double result = need_of_a_result(&of.model, of.harmonics, of.samples);
     memset(&r, 0, sizeof r);
     hbvib_reduction_init(&r, sizeof r);
-    switch (next() % 16) {
+    switch (what) {
     case 0:
         memset(&view, 0, sizeof view);
         hbvib_view_init(&view, sizeof view);
@@ -670,27 +709,40 @@ static void ask(void)
         break;
     case 10: CALL_WITHIN(result, hbvib_branch_synthesis_with_hooks, branch, model, NULL, 64, y, x, f, &n, &h); break;
     case 11: ask_for_waves(); break;
-    case 12: ask_for_many_times(branch, at, result, &h); break;
+    case 12: ask_for_many_times(branch, at, result, &of, &h); break;
     case 13: ask_for_sensitivity(model, branch, at, result + need_of_a_branch_point(&of.model, of.harmonics, of.samples) + 8 * (double)m.saved); break;
     case 14: CALL_WITHIN(result, hbvib_branch_slip_fraction, branch, at, y, one_in(20) ? count(1) : hbvib_model_contacts(model) & 255); break;
-    default: CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model, count((int64_t)(next() % 9) - 4), (int32_t)(next() % 4), count(1), y, NULL, &h);
+    default:
+        solved_model = model;
+        CALL_WITHIN(need_of_linear_modes(&m) + need_at_rest(&m), hbvib_linear_modes_with_hooks, model,
+                         m.wheel == m.dofs && !one_in(9) ? 0 : count((int64_t)(next() % 9) - 4), (int32_t)(next() % (one_in(5) ? 4 : 3)), count(1),
+                         y, NULL, &h);
+        solved_model = NULL;
     }
 }
+
+static void ask(void) { ask_of(some_branch(), (int)(next() % 16)); }
 
 /* A law at a motion of up to 10,000 harmonics, with and without its Jacobian, exactly or by samples. */
 static void many_harmonics(const hbvib_contact *c, int64_t d)
 {
     const int with = one_in(2);
     const int64_t h = (int64_t)(pow(10, with ? 3 * uniform() : 4 * uniform())), n = d * (h + 1), samples = one_in(2) ? times(4 * h + 16) : 0;
-    const double need = need_of_a_law((double)d, (double)h, within(samples, 1 << 24));
+    const double held = within(samples, 1 << 24), alone = need_of_a_force(c, (double)h, held);
+    const double need = with ? need_of_a_law((double)d, (double)h, held) : alone;
+    /* Beside what jac asks for, no more than 500 MiB. */
+    const double most = 500 * MIB + (with ? need_of_a_law((double)d, (double)h, 0) : 0);
     double *motion = malloc((size_t)n * 2 * sizeof *motion), *force = malloc((size_t)n * 2 * sizeof *force), *jac = NULL;
     hbvib_hooks hook = hooks();
     hbvib_status status;
     int64_t i;
+    snprintf(solving, sizeof solving, "; kind %d, kt = %g, kn = %g, mu = %g, preload = %g, H = %lld, samples = %lld", (int)c->kind, c->kt, c->kn,
+             c->mu, c->preload, (long long)h, (long long)samples);
     if (with) jac = malloc((size_t)(4 * n * n) * sizeof *jac);
     for (i = 0; i < 2 * n; i++) motion[i] = number(uniform() - 0.5) / (1 + (double)(i / 2 % (h + 1)));
-    CALL_NAMED(with ? "hbvib_contact_evaluate_with_hooks, jac" : "hbvib_contact_evaluate_with_hooks", with || need < 500e6 ? need : 500e6,
+    CALL_NAMED(with ? "hbvib_contact_evaluate_with_hooks, jac" : "hbvib_contact_evaluate_with_hooks", smaller(need, most),
                hbvib_contact_evaluate_with_hooks, c, h, samples, number(1), motion, n, force, n, jac, with ? 4 * n * n : 0, &hook);
+    solving[0] = '\0';
     free(motion);
     free(force);
     free(jac);
@@ -713,7 +765,7 @@ static void low(void)
         const int64_t n = one_in(20) ? 6 : 6 * d, samples = one_in(3) ? count(32) : 0;
         const double held = (double)(samples > 1 << 20 ? 1 << 20 : samples);
         if (one_in(15)) many_harmonics(&c, d);
-        else CALL_WITHIN(need_of_a_law((double)d, 5, held), hbvib_contact_evaluate, &c, 5, samples, number(1), x, n, y, n, jac, 4 * n * n);
+        else CALL_WITHIN(smaller(need_of_a_law((double)d, 5, held), 500 * MIB + need_of_a_law((double)d, 5, 0)), hbvib_contact_evaluate, &c, 5, samples, number(1), x, n, y, n, jac, 4 * n * n);
         return;
     }
     CALL(hbvib_model_save, some_model(&which), sizeof bytes, bytes, &size);

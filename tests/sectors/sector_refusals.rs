@@ -164,6 +164,20 @@ fn contacts_without_meaning_are_refused_by_degree_of_freedom() {
         let words = ["pair 2", "its own image", &format!("dof_a = {a}")];
         refused(model.add_contact(&contact), Status::Argument, &words);
     }
+    // No sector is so far away: the phase of 2^40 sectors would be rounding.
+    let sectors = model.structure().sectors() as i64;
+    for offset in [sectors, -sectors, 1 << 40, i64::MIN, i64::MAX] {
+        let contact = Contact {
+            sector_offset: offset,
+            ..Contact::jenkins(40, Some(41), 1e6, 0.3, 10.0)
+        };
+        let told = format!("sector_offset = {offset}");
+        refused(
+            model.add_contact(&contact),
+            Status::Argument,
+            &[&told, &format!("{}", sectors - 1)],
+        );
+    }
     // The same node seen from the next sector.
     let contact = Contact {
         sector_offset: 1,

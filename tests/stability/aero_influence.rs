@@ -394,6 +394,20 @@ fn bad_influence_is_refused() {
             Status::Dimension,
             "1 coefficients, needs 2 offsets",
         ),
+        (
+            &[0],
+            &one,
+            &[6],
+            Status::Argument,
+            "offsets[0] = 6, needs -5 .. 5 on 6 sectors",
+        ),
+        (
+            &[0],
+            &one,
+            &[-(1 << 40)],
+            Status::Argument,
+            "offsets[0] = -1099511627776",
+        ),
         (&[0], &nan, &[0], Status::NotFinite, "coefficients[0]"),
     ] {
         refused(model.set_aero(dofs, coefficients, offsets, form), status, &[words]);

@@ -5,7 +5,7 @@ use crate::contact_figures::{loops_figure, slip_figure};
 use crate::files::Files;
 use crate::job::{HysteresisPart, Job};
 use crate::points::chosen;
-use hbvib::{Branch, ContactLoop, Special, State};
+use hbvib::{Branch, ContactLoop, Error, Special, State};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
@@ -32,16 +32,13 @@ pub fn write(job: &Job, branch: &Branch, names: &Names, files: &mut Files<'_>) {
             }
         };
         let points = chosen(branch, part.points);
-        let mut loops = Vec::new();
-        for &point in &points {
-            match branch.contact_loop(point.point, contact, part.samples) {
-                Ok(found) => loops.push((point, found)),
-                Err(e) => files.fail(format!(
-                    "[[output.hysteresis]], contact \"{}\", {:.6} Hz: {e}",
-                    part.contact,
-                    point.omega / TAU
-                )),
-            }
+        let (loops, failed) = evaluated(branch, &points, (contact, part.samples));
+        for (omega, e) in failed {
+            let hertz = omega / TAU;
+            files.fail(format!(
+                "[[output.hysteresis]], contact \"{}\", {hertz:.6} Hz: {e}",
+                part.contact
+            ));
         }
         if loops.is_empty() && !points.is_empty() {
             continue;
@@ -51,6 +48,25 @@ pub fn write(job: &Job, branch: &Branch, names: &Names, files: &mut Files<'_>) {
             loops_figure(path, &labels[contact], &loops)
         });
     }
+}
+
+/// A point with its loop.
+type PointLoop = (Special, ContactLoop);
+
+/// The loops of a contact at points, and the frequencies at which there is none, each with the reason.
+fn evaluated(
+    branch: &Branch,
+    points: &[Special],
+    (contact, samples): (usize, usize),
+) -> (Vec<PointLoop>, Vec<(f64, Error)>) {
+    let (mut loops, mut failed) = (Vec::new(), Vec::new());
+    for &point in points {
+        match branch.contact_loop(point.point, contact, samples) {
+            Ok(found) => loops.push((point, found)),
+            Err(e) => failed.push((point.omega, e)),
+        }
+    }
+    (loops, failed)
 }
 
 impl HysteresisPart {
@@ -142,4 +158,119 @@ fn slip_table(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<()> {
         text += "\n";
     }
     fs::write(path, text).map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::evaluated;
+    use hbvib::{
+        Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Special, User,
+        UserForce, forced_response,
+    };
+    use std::sync::{Arc, Mutex};
+
+    /// A cubic spring that cannot be computed beyond a motion; it keeps the largest one that it was asked for.
+    struct Breaking {
+        beyond: f64,
+        largest: Mutex<f64>,
+    }
+
+    impl UserForce for Breaking {
+        fn evaluate(&self, call: &mut Call<'_>) -> i32 {
+            let most = call.u.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+            if most > self.beyond {
+                return 1;
+            }
+            let mut largest = self.largest.lock().unwrap();
+            *largest = largest.max(most);
+            for (j, u) in call.u.iter().enumerate() {
+                call.f[j] = 0.1 * u.powi(3);
+                call.df_du[j] = 0.3 * u.powi(2);
+            }
+            0
+        }
+    }
+
+    /// The points of a sweep of an oscillator with this law, and the law.
+    fn sweep(beyond: f64) -> (hbvib::Branch, Arc<Breaking>) {
+        let law = Arc::new(Breaking {
+            beyond,
+            largest: Mutex::new(0.0),
+        });
+        let mut model = Model::new(1).unwrap();
+        for (kind, value) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Damping, 0.1),
+            (MatrixKind::Stiffness, 1.0),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+        }
+        let user = User {
+            velocity: false,
+            ..User::new(law.clone(), 1, 16).unwrap()
+        };
+        model
+            .add_contact(&Contact::over(vec![0], ContactKind::User(user)))
+            .unwrap();
+        model.add_force(0, 1, 0.1.into()).unwrap();
+        let options = SolverOptions {
+            harmonics: 3,
+            tolerance: 0.0,
+            samples: 16,
+            ..SolverOptions::default()
+        };
+        let range = ForcedOptions {
+            omega_start: 0.7,
+            omega_stop: 1.4,
+            at: &[0.8, 1.05, 1.3],
+            guess: None,
+        };
+        (
+            forced_response(&model, &options, &range, &mut Hooks::default()).unwrap(),
+            law,
+        )
+    }
+
+    /// The solver asks for sixteen times of a period, a loop for four thousand: one of them is beyond the law at the peak.
+    #[test]
+    fn a_loop_that_cannot_be_evaluated_at_one_point_costs_that_of_this_point() {
+        let (branch, law) = sweep(f64::INFINITY);
+        let asked = *law.largest.lock().unwrap();
+        let points: Vec<Special> = (0..branch.points())
+            .map(|point| Special {
+                point,
+                omega: branch.omega()[point],
+                amplitude: branch.amplitude()[point],
+            })
+            .chain(branch.peaks().iter().copied())
+            .collect();
+        let most = |point: &Special| {
+            let motion = branch.contact_loop(point.point, 0, 4000).unwrap().motion;
+            motion.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+        };
+        let mut largest: Vec<f64> = points.iter().map(most).collect();
+        let beyond = largest.iter().filter(|most| **most > asked).count();
+        assert!(beyond > 0, "no motion is larger between the samples");
+        largest.sort_by(f64::total_cmp);
+        let [second, first] = largest[largest.len() - 2..] else {
+            panic!("one point")
+        };
+        let limit = 0.5 * (second.max(asked) + first);
+        assert!(limit < first && limit > asked);
+
+        let (branch, _) = sweep(limit);
+        let (loops, failed) = evaluated(&branch, &points, (0, 4000));
+        assert_eq!((loops.len(), failed.len()), (points.len() - 1, 1));
+        let highest = points
+            .iter()
+            .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
+            .unwrap();
+        assert_eq!(failed[0].0.to_bits(), highest.omega.to_bits());
+        assert!(failed[0].1.to_string().contains('1'), "{}", failed[0].1);
+        assert!(
+            loops
+                .iter()
+                .all(|(point, one)| point.omega.to_bits() != highest.omega.to_bits() && one.motion.len() == 4000)
+        );
+    }
 }

@@ -39,6 +39,10 @@ const PULL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Pieces per panel of the turn beyond which a path is given up.
 const MOST_PIECES: usize = 200;
 
+/// The same for a whole path, and pieces per panel that it may have all the same: with their list growing some 100 MB.
+const MOST_OF_A_PATH: usize = 1 << 18;
+const ALLOWED_PIECES: usize = 8;
+
 /// The force while the sides touch.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Phase {
@@ -125,6 +129,12 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Pieces beyond which the path is given up.
+    fn most_pieces(&self) -> usize {
+        let panels = self.path.panels;
+        (MOST_PIECES * panels).min(MOST_OF_A_PATH.max(ALLOWED_PIECES * panels))
+    }
+
     /// Follows the force over a time in which the sides touch, and which an opening may end.
     pub fn follow(&mut self, (from, to): (f64, f64), begin: Phase, opens: bool) -> Result<Phase> {
         let shortest = SHORTEST * self.path.turn;
@@ -132,7 +142,7 @@ impl<'a> Walk<'a> {
         let (mut events_here, mut after_slip) = (0, false);
         while to - tau > shortest {
             self.interrupt.check()?;
-            if self.path.pieces.len() > MOST_PIECES * self.path.panels {
+            if self.path.pieces.len() > self.most_pieces() {
                 return Err(Error::new(
                     Status::NoConvergence,
                     format_args!("friction in a plane passes between stick and slip too often to be followed"),
