@@ -6,6 +6,7 @@
 //!
 //! With arguments, rows are run whose names contain one of them: `cargo bench --bench work -- "case B"`.
 
+mod blade_and_ring;
 #[path = "../../examples/friction_patch/brick.rs"]
 mod brick;
 mod calibration;
@@ -145,7 +146,7 @@ fn measure(row: &Row) -> Result<()> {
 
 fn main() -> ExitCode {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    let rows = small::ROWS.iter().chain(many::ROWS);
+    let rows = small::ROWS.iter().chain(blade_and_ring::ROWS).chain(many::ROWS);
     for row in rows.filter(|row| wanted.is_empty() || wanted.iter().any(|w| row.name.contains(w.as_str()))) {
         if let Err(e) = measure(row) {
             eprintln!("{}: {e}", row.name);
