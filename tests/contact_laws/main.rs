@@ -7,6 +7,7 @@ mod common;
 mod cubic;
 mod derivatives_of_laws;
 mod force_alone;
+mod followed_events;
 mod friction;
 mod friction_jacobian;
 mod friction_plane;
