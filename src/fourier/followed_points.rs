@@ -37,8 +37,8 @@ impl Followed {
         for _ in 0..MOST_VALUES {
             let at = signal.at(tau);
             let (step, by_curvature) = householder([at.dx, at.ddx, at.dddx, at.fourth]);
-            // Comparisons with NaN are false.
-            if !(by_curvature.abs() <= LARGEST_BEND && step.abs() <= SHARE) {
+            let far = by_curvature.abs() > LARGEST_BEND || step.abs() > SHARE;
+            if far || by_curvature.is_nan() || step.is_nan() {
                 return None;
             }
             if is_last(step, by_curvature, short) {

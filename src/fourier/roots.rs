@@ -133,7 +133,7 @@ pub(super) fn safe_householder(
         bracket.narrow(tau, values[0]);
         let (step, bend) = householder(values);
         let next = tau - step;
-        if next == tau {
+        if next - tau == 0.0 {
             // It does not lie within the bracket, whose middle is far away.
             return tau;
         }

@@ -23,8 +23,8 @@ const SINES: [f64; 17] = [
     0.0,
     0.098_017_140_329_560_6,
     0.195_090_322_016_128_27,
-    0.290_284_677_254_462_37,
-    0.382_683_432_365_089_77,
+    0.290_284_677_254_462_4,
+    0.382_683_432_365_089_8,
     0.471_396_736_825_997_64,
     0.555_570_233_019_602_2,
     0.634_393_284_163_645_5,
@@ -73,8 +73,7 @@ const TO_INTEGER: f64 = 6_755_399_441_055_744.0;
 /// e^{iτ}.
 #[inline]
 pub(super) fn turn(tau: f64) -> Complex64 {
-    // Comparisons with NaN are false.
-    if !(tau.abs() < FARTHEST) {
+    if tau.is_nan() || tau.abs() >= FARTHEST {
         return Complex64::cis(tau);
     }
     let k = (tau * (32.0 / PI) + TO_INTEGER) - TO_INTEGER;
