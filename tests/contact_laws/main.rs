@@ -6,8 +6,8 @@ mod common;
 
 mod cubic;
 mod derivatives_of_laws;
-mod force_alone;
 mod followed_events;
+mod force_alone;
 mod friction;
 mod friction_jacobian;
 mod friction_plane;
