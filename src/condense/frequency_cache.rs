@@ -17,8 +17,8 @@ const SMALL: usize = 100;
 /// Relative error of sums.
 const TOLERANCE: f64 = 1e-11;
 
-/// Relative error of a slope by factorisation over that of its table.
-const SLOPE: f64 = 10.0;
+/// Deviation of a sum from a refined solution, or of its slope from one by factorisation, over the error of that factorisation.
+const BEYOND: f64 = 10.0;
 
 /// Tables of all carried harmonics.
 pub struct FrequencyCache {
@@ -247,7 +247,7 @@ fn agreement(
     let refined = workspace.refined(condensed, i, omega, interrupt)?;
     let own = deviation(&factorised, refined, outputs);
     let by_modes = deviation(&table.value, refined, outputs);
-    let are_close = by_modes <= TOLERANCE.max(own) && slope <= TOLERANCE.max(SLOPE * own);
+    let are_close = by_modes.max(slope) <= TOLERANCE.max(BEYOND * own);
     Ok((are_close && (slope + by_modes).is_finite()).then_some(own))
 }
 

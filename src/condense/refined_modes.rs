@@ -39,20 +39,33 @@ const STEPS: usize = 4;
 pub(super) fn modes(stiffness: &Csc, mass: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Pairs> {
     interrupt.check()?;
     let n = stiffness.rows;
-    let mut pairs = eigen::generalised(
-        &dense(stiffness, mass)?,
-        &dense(stiffness, &stiffness.values)?,
-        interrupt,
-    )?;
-    if pairs.values.len() != n || n < 2 {
+    let (m, k) = (dense(stiffness, mass)?, dense(stiffness, &stiffness.values)?);
+    let found = eigen::generalised(&m, &k, interrupt);
+    // What a penalty makes of soft motions is no lack of stiffness: the steps show it.
+    if !found.as_ref().is_ok_and(|pairs| pairs.values.len() == n)
+        && let Some(mut pairs) = eigen::with_definite_mass(&m, &k, 0.0, interrupt)?
+        && refine(stiffness, mass, &mut pairs, interrupt)?
+    {
         return Ok(pairs);
     }
-    for _ in 0..STEPS {
-        if step(stiffness, mass, &mut pairs, interrupt)? <= AGAIN {
-            break;
-        }
+    let mut pairs = found?;
+    if pairs.values.len() == n {
+        refine(stiffness, mass, &mut pairs, interrupt)?;
     }
     Ok(pairs)
+}
+
+/// Steps until they are small; whether they are.
+fn refine(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Interrupt<'_>) -> Result<bool> {
+    if stiffness.rows < 2 {
+        return Ok(true);
+    }
+    for _ in 0..STEPS {
+        if step(stiffness, mass, pairs, interrupt)? <= AGAIN {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The dense matrix with these values at the entries of a pattern.

@@ -44,7 +44,7 @@ const MASSLESS: f64 = 1e-12;
 pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     let n = k.nrows();
     if n > SMALL_UP_TO
-        && let Some(pairs) = with_regular_mass(k, m, interrupt)?
+        && let Some(pairs) = with_definite_mass(k, m, REGULAR, interrupt)?
     {
         return Ok(pairs);
     }
@@ -120,10 +120,14 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
     })
 }
 
-/// The pairs by M = L Lᴴ for a large structure; `None` where M is singular, or nearly so.
-fn with_regular_mass(
+/// The pairs by M = L Lᴴ; `None` where M is not definite, or its smallest pivot is not above a share `regular` of the largest.
+///
+/// # Errors
+/// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
+pub fn with_definite_mass(
     k: &DMatrix<Complex64>,
     m: &DMatrix<Complex64>,
+    regular: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Pairs>> {
     let n = k.nrows();
@@ -132,7 +136,7 @@ fn with_regular_mass(
         return Ok(None);
     }
     let diagonal = l.diagonal().map(|x| x.re);
-    if diagonal.min() <= REGULAR * diagonal.max() {
+    if diagonal.min() <= regular * diagonal.max() {
         return Ok(None);
     }
     let l = l.as_slice();
