@@ -15,7 +15,7 @@ use crate::condense::low_rank::Coefficients;
 use crate::condense::modal_solution::{Pair, Solution};
 use crate::condense::single_motion::{Coefficient, SingleMotion};
 use crate::condense::sum_terms::Source;
-use crate::condense::wave_modes::WaveModes;
+use crate::condense::wave_modes::{NEAR_MODE, WaveModes};
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
@@ -192,7 +192,7 @@ impl ModalMotion {
 impl ModalInverse {
     /// Sets c and s; `false` where a denominator is small.
     fn set(&mut self, at: Pair, modes: &WaveModes, nu: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
-        if !modes.invert((at.c, at.s), nu, &mut self.inverse) {
+        if !modes.invert((at.c, at.s), (nu, NEAR_MODE), &mut self.inverse) {
             return Ok(false);
         }
         let order = self.entries.len();

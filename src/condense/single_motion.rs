@@ -6,7 +6,7 @@
 //! > ξ = −p q*/d w,  ∂S = −Σ |q|² ∂d/d²,  ∂p = p² (∂S e + S ∂e),  ∂G = p² (∂S + S² ∂e),  ∂d = ∂c − ∂s μ.
 
 use crate::condense::modal_solution::{Pair, Solution};
-use crate::condense::wave_modes::WaveModes;
+use crate::condense::wave_modes::{NEAR_MODE, WaveModes};
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::expand;
 use num_complex::Complex64;
@@ -56,7 +56,7 @@ impl SingleMotion {
         w: Complex64,
         to: Solution<'_>,
     ) -> bool {
-        if !modes.invert((at.pair.c, at.pair.s), nu, &mut self.inverse) {
+        if !modes.invert((at.pair.c, at.pair.s), (nu, NEAR_MODE), &mut self.inverse) {
             return false;
         }
         // S, and Σ |q|²/d² and Σ |q|² μ/d² for its derivatives.

@@ -36,9 +36,17 @@ pub struct WaveModes {
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
 pub(super) const NEAR_RESONANCE: f64 = 1e-6;
 
+/// The same for a nonlinear mode, which is a resonance of the stuck structure while its contacts stick.
+pub(super) const NEAR_MODE: f64 = 1e-4;
+
 impl WaveModes {
-    /// 1/(1 + c − s μ) of all modes at ν, s being ν² and what damping adds to it; `false` where a denominator is small.
-    pub(super) fn invert(&self, (c, s): (Complex64, Complex64), nu: f64, inverse: &mut [Complex64]) -> bool {
+    /// 1/(1 + c − s μ) of all modes at ν, s being ν² and what damping adds to it; `false` where a denominator is as small as `near`.
+    pub(super) fn invert(
+        &self,
+        (c, s): (Complex64, Complex64),
+        (nu, near): (f64, f64),
+        inverse: &mut [Complex64],
+    ) -> bool {
         let mut least = f64::INFINITY;
         for (inverse, mu) in inverse.iter_mut().zip(&self.values) {
             let d = 1.0 + c - s * mu;
@@ -46,7 +54,7 @@ impl WaveModes {
             least = least.min(d.norm_sqr() / (size * size));
             *inverse = d.inv();
         }
-        least > NEAR_RESONANCE * NEAR_RESONANCE
+        least > near * near
     }
 
     /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
