@@ -218,34 +218,6 @@ impl Evaluator {
         }
     }
 
-    /// Memory to follow the turning points of so many coordinates from one motion to the next.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn reserve_followed(&mut self, set: &HarmonicSet, coordinates: usize) -> Result<()> {
-        match &mut self.scalar {
-            Scalar::Exact(evaluator) => evaluator.reserve_followed(set, coordinates),
-            Scalar::Sampled(_) => Ok(()),
-        }
-    }
-
-    /// The same as [`Self::prepare`] for a coordinate whose turning points are followed.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
-    pub fn prepare_followed(
-        &mut self,
-        set: &HarmonicSet,
-        motion: &[f64],
-        coordinate: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
-        match &mut self.scalar {
-            Scalar::Exact(evaluator) => evaluator.prepare_followed(set, motion, coordinate, interrupt),
-            Scalar::Sampled(evaluator) => evaluator.prepare(set, motion, interrupt),
-        }
-    }
-
     /// Force and Jacobian of `law` at packed motions, one direction after the other, and an angular frequency. A law
     /// of one direction needs its motion prepared.
     ///

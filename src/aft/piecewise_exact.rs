@@ -10,7 +10,7 @@ use crate::contact::law::PiecewiseLinear;
 use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::fourier::{Extremum, TurningPoints, most_turning_points};
+use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -19,9 +19,6 @@ use std::f64::consts::TAU;
 pub struct Exact {
     turning_points: TurningPoints,
     extrema: Vec<Extremum>,
-    /// Times of the turning points of each followed coordinate, and their numbers.
-    times: Vec<f64>,
-    counts: Vec<usize>,
     pieces: Vec<Piece>,
     transform: Vec<Complex64>,
     assembly: Assembly,
@@ -39,14 +36,12 @@ impl Exact {
         let mut extrema = Vec::new();
         let mut pieces = Vec::new();
         extrema
-            .try_reserve_exact(most_turning_points(set))
+            .try_reserve_exact(2 * highest + 4)
             .and_then(|()| pieces.try_reserve_exact(most_pieces))
             .map_err(|_| Error::out_of_memory("the pieces of a motion"))?;
         Ok(Self {
             turning_points: TurningPoints::new(set)?,
             extrema,
-            times: Vec::new(),
-            counts: Vec::new(),
             pieces,
             transform: try_vec(2 * highest + 1, Complex64::ZERO, "a transform")?,
             assembly,
@@ -59,46 +54,6 @@ impl Exact {
     /// `StoppedByCaller`.
     pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         self.turning_points.find(set, motion, &mut self.extrema, interrupt)
-    }
-
-    /// Memory to follow the turning points of so many coordinates.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn reserve_followed(&mut self, set: &HarmonicSet, coordinates: usize) -> Result<()> {
-        self.turning_points.reserve_followed(set)?;
-        let each = most_turning_points(set);
-        self.times = try_vec(each.saturating_mul(coordinates), 0.0, "the turning points of a motion")?;
-        self.counts = try_vec(coordinates, 0, "the turning points of a motion")?;
-        Ok(())
-    }
-
-    /// Finds the turning points of a packed motion of one coordinate, followed from those of its last one if memory for that is
-    /// reserved.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
-    pub fn prepare_followed(
-        &mut self,
-        set: &HarmonicSet,
-        motion: &[f64],
-        coordinate: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
-        let each = most_turning_points(set);
-        let (Some(count), Some(times)) = (
-            self.counts.get_mut(coordinate),
-            self.times.chunks_exact_mut(each).nth(coordinate),
-        ) else {
-            return self.prepare(set, motion, interrupt);
-        };
-        self.turning_points
-            .find_near(set, motion, &times[..*count], &mut self.extrema, interrupt)?;
-        *count = self.extrema.len().min(each);
-        for (to, e) in times.iter_mut().zip(&self.extrema) {
-            *to = e.tau;
-        }
-        Ok(())
     }
 
     /// The pieces of the law evaluated last.

@@ -1,14 +1,12 @@
 //! Real Fourier series: the carried harmonics and their packing, values and roots, transforms.
 
-mod followed_points;
 mod harmonic_set;
 mod roots;
 mod series;
 pub mod transform;
 mod turning_points;
-mod unit_turns;
 
 pub use harmonic_set::{HarmonicSet, gcd};
 pub use roots::safe_newton;
 pub use series::{Jet, VALUES_OF_A_CROSSING, crossing, jet};
-pub use turning_points::{Extremum, TurningPoints, most_turning_points};
+pub use turning_points::{Extremum, TurningPoints};

@@ -7,7 +7,7 @@ const EVENT_TOLERANCE: f64 = 1e-9;
 /// Values of a function up to which a root is sought.
 const MOST_VALUES: usize = 100;
 
-/// Largest error that the curvature leaves after the last step of Householder's method.
+/// Largest error that the curvature leaves after the last step of Halley's method.
 const LAST_ERROR: f64 = 1e-17;
 
 /// Two times between which a function changes its sign.
@@ -90,60 +90,42 @@ pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (
     tau
 }
 
-/// The step of Householder's method of fourth order to a root, and its bend, the share by which the curvature changes the step
-/// of Newton's method, from a function and three derivatives.
-#[inline]
-pub(super) fn householder([value, slope, curvature, third]: [f64; 4]) -> (f64, f64) {
-    let newton = value / slope;
-    let bend = 0.5 * newton * curvature / slope;
-    let rest = newton * newton * third / (6.0 * slope);
-    let below = 1.0 - 2.0 * bend + rest;
-    let step = if bend.abs() < 0.25 && (0.25..4.0).contains(&below) {
-        newton * (1.0 - bend) / below
-    } else if bend.abs() < 0.5 {
-        newton / (1.0 - bend)
-    } else {
-        newton
-    };
-    (step, bend)
-}
-
-/// Whether the error after a step is rounding; `short` is the longest one after which its fourth power is.
-#[inline]
-pub(super) fn is_last(step: f64, bend: f64, short: f64) -> bool {
-    step.abs() <= short && (bend * bend * bend * step).abs() <= LAST_ERROR
-}
-
-/// Householder's method inside a bracket from a guess, with bisection where a step leaves it or does not converge: fewer
-/// values of the function than Newton's method needs. `f` returns a function and three derivatives; a step of the length
+/// Halley's method inside a bracket from a guess, with bisection where a step leaves it or does not converge: fewer
+/// values of the function than Newton's method needs. `f` returns a function and two derivatives; a step of the length
 /// `short` is the last one.
-pub(super) fn safe_householder(
+pub(super) fn safe_halley(
     (a, b): (f64, f64),
     fa: f64,
     (guess, short): (f64, f64),
-    mut f: impl FnMut(f64) -> [f64; 4],
+    mut f: impl FnMut(f64) -> [f64; 3],
 ) -> f64 {
     let mut bracket = Bracket::new(a, b, fa);
     let mut tau = Bracket::begin(a, b, guess);
     for _ in 0..MOST_VALUES {
-        let values = f(tau);
-        if values[0] == 0.0 {
+        let [value, slope, curvature] = f(tau);
+        if value == 0.0 {
             return tau;
         }
-        bracket.narrow(tau, values[0]);
-        let (step, bend) = householder(values);
-        let next = tau - step;
-        if next - tau == 0.0 {
+        bracket.narrow(tau, value);
+        let newton = value / slope;
+        let bend = 0.5 * newton * curvature / slope;
+        let next = if bend.abs() < 0.5 {
+            tau - newton / (1.0 - bend)
+        } else {
+            tau - newton
+        };
+        let step = (next - tau).abs();
+        if step == 0.0 {
             // It does not lie within the bracket, whose middle is far away.
             return tau;
         }
-        if bracket.holds(next) && is_last(step, bend, short) {
+        if bracket.holds(next) && step <= short && bend * bend * step <= LAST_ERROR {
             return next;
         }
         tau = bracket.step(tau, next);
         if bracket.last < EVENT_TOLERANCE {
             // Near a tangent, or at an end of the bracket.
-            let [value, slope, ..] = f(tau);
+            let [value, slope, _] = f(tau);
             return bracket.polished(tau, value / slope);
         }
     }
@@ -158,10 +140,10 @@ mod tests {
     /// Root of sin(τ − c) and the number of values taken.
     fn sine(bracket: (f64, f64), guess: f64, c: f64) -> (f64, usize) {
         let taken = Cell::new(0);
-        let root = safe_householder(bracket, (bracket.0 - c).sin(), (guess, 4e-5), |tau| {
+        let root = safe_halley(bracket, (bracket.0 - c).sin(), (guess, 3e-7), |tau| {
             taken.set(taken.get() + 1);
             let (value, slope) = (tau - c).sin_cos();
-            [value, slope, -value, -slope]
+            [value, slope, -value]
         });
         (root, taken.get())
     }

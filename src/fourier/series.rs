@@ -1,12 +1,11 @@
 //! Values of a real Fourier series over one turn, and its crossings of a level.
 
 use crate::fourier::HarmonicSet;
-use crate::fourier::roots::safe_householder;
-use crate::fourier::unit_turns::{SMALL_ANGLE, small_turn, turn};
+use crate::fourier::roots::safe_halley;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Value and four derivatives of a series at one time.
+/// Value and three derivatives of a series at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet {
     /// x(τ)
@@ -17,19 +16,9 @@ pub struct Jet {
     pub ddx: f64,
     /// d³x/dτ³
     pub dddx: f64,
-    /// d⁴x/dτ⁴
-    pub fourth: f64,
 }
 
-impl Jet {
-    /// x a short time later.
-    #[inline]
-    pub(super) fn value_after(&self, s: f64) -> f64 {
-        self.x + s * (self.dx + s * (self.ddx / 2.0 + s * (self.dddx / 6.0 + s * self.fourth / 24.0)))
-    }
-}
-
-/// x to x⁗ of a packed signal at τ.
+/// x to x‴ of a packed signal at τ.
 #[must_use]
 pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
     at_turn(set, packed, Complex64::cis(tau))
@@ -41,7 +30,7 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     let stride = set.stride();
     let step = if stride == 2 { turn * turn } else { turn };
     // Value and p times the quadrature, which the processor makes side by side, and their products with p².
-    let (mut low, mut high, mut fourth) = ([0.0; 2], [0.0; 2], 0.0);
+    let (mut low, mut high) = ([0.0; 2], [0.0; 2]);
     let mut p = 1.0;
     for [a, b] in rest.as_chunks::<2>().0 {
         let (along, across) = ([turn.re, turn.im], [-turn.im, turn.re]);
@@ -52,7 +41,6 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
             low[k] += value;
             high[k] += square * value;
         }
-        fourth += square * square * (a * along[0] + b * across[0]);
         turn *= step;
         p += stride as f64;
     }
@@ -61,20 +49,30 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
         dx: -low[1],
         ddx: -high[0],
         dddx: high[1],
-        fourth,
     }
 }
 
 /// The jets of a signal at times that approach one another: most e^{iτ} follow from the one before.
-pub(super) struct Approach<'a> {
+struct Approach<'a> {
     set: &'a HarmonicSet,
     packed: &'a [f64],
     tau: f64,
     turn: Complex64,
 }
 
+/// Largest angle of which [`small_turn`] returns all digits.
+const SMALL_ANGLE: f64 = 0.1;
+
+/// e^{is} of a small angle, by its series up to s¹⁰.
+fn small_turn(s: f64) -> Complex64 {
+    let q = s * s;
+    let cosine = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+    let sine = s * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0))));
+    Complex64::new(cosine, sine)
+}
+
 impl<'a> Approach<'a> {
-    pub(super) fn new(set: &'a HarmonicSet, packed: &'a [f64]) -> Self {
+    fn new(set: &'a HarmonicSet, packed: &'a [f64]) -> Self {
         Self {
             set,
             packed,
@@ -83,23 +81,23 @@ impl<'a> Approach<'a> {
         }
     }
 
-    pub(super) fn at(&mut self, tau: f64) -> Jet {
+    fn at(&mut self, tau: f64) -> Jet {
         let step = tau - self.tau;
         self.turn = if step.abs() <= SMALL_ANGLE {
             self.turn * small_turn(step)
         } else {
-            turn(tau)
+            Complex64::cis(tau)
         };
         self.tau = tau;
         at_turn(self.set, self.packed, self.turn)
     }
 }
 
-/// Longest step, in angles of the highest harmonic, after which the error of Householder's method is rounding: it is the
-/// fourth power of the step.
-const LAST_STEP: f64 = 4e-5;
+/// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
+/// cube of the step.
+const LAST_STEP: f64 = 3e-6;
 
-pub(super) fn last_step(set: &HarmonicSet) -> f64 {
+fn last_step(set: &HarmonicSet) -> f64 {
     LAST_STEP / set.highest_reduced().max(1) as f64
 }
 
@@ -112,9 +110,9 @@ pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: 
     // Between two turning points a motion resembles half a wave of a cosine.
     let guess = a + (b - a) * (1.0 - 2.0 * (level - xa) / (xb - xa)).acos() / PI;
     let mut signal = Approach::new(set, packed);
-    safe_householder((a, b), xa - level, (guess, last_step(set)), |tau| {
+    safe_halley((a, b), xa - level, (guess, last_step(set)), |tau| {
         let at = signal.at(tau);
-        [at.x - level, at.dx, at.ddx, at.dddx]
+        [at.x - level, at.dx, at.ddx]
     })
 }
 
@@ -122,14 +120,15 @@ pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: 
 pub(super) fn turning_point(set: &HarmonicSet, packed: &[f64], (a, b): (f64, f64), slopes: (f64, f64)) -> (f64, f64) {
     let guess = a - slopes.0 * (b - a) / (slopes.1 - slopes.0);
     let mut signal = Approach::new(set, packed);
-    let mut last = None;
-    let tau = safe_householder((a, b), slopes.0, (guess, last_step(set)), |tau| {
+    let mut last = (0.0, 0.0, 0.0);
+    let tau = safe_halley((a, b), slopes.0, (guess, last_step(set)), |tau| {
         let at = signal.at(tau);
-        last = Some((tau, at));
-        [at.dx, at.ddx, at.dddx, at.fourth]
+        last = (tau, at.x, at.dx);
+        [at.dx, at.ddx, at.dddx]
     });
-    // The step from the last jet is short.
-    (tau, last.map_or(0.0, |(from, at)| at.value_after(tau - from)))
+    // The step from the last jet is short, and x′ falls to zero along it.
+    let (at, x, slope) = last;
+    (tau, x + 0.5 * (tau - at) * slope)
 }
 
 #[cfg(test)]

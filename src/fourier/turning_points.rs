@@ -1,8 +1,7 @@
 //! Turning points of a real Fourier series over one turn: the roots of its derivative.
 
-use crate::error::{Error, Result, try_vec};
+use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::fourier::followed_points::FollowedPoints;
 use crate::fourier::series::{jet, turning_point};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
@@ -37,7 +36,6 @@ pub struct TurningPoints {
     points: usize,
     spacing: f64,
     slope: Vec<f64>,
-    followed: FollowedPoints,
     kind: Grid,
 }
 
@@ -84,7 +82,6 @@ impl TurningPoints {
                 points: if set.is_odd() { whole / 2 } else { whole },
                 spacing: TAU / whole as f64,
                 slope: try_vec(whole + 1, 0.0, "a scan for turning points")?,
-                followed: FollowedPoints::new(),
                 kind: Grid::Transform {
                     plan,
                     buffer: try_vec(whole, Complex64::ZERO, "a transform")?,
@@ -97,7 +94,6 @@ impl TurningPoints {
             points,
             spacing,
             slope: try_vec(points + 1, 0.0, "a scan for turning points")?,
-            followed: FollowedPoints::new(),
             kind,
         })
     }
@@ -118,33 +114,7 @@ impl TurningPoints {
         found: &mut Vec<Extremum>,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.find_near(set, packed, &[], found, interrupt)
-    }
-
-    /// Memory to follow turning points by [`Self::find_near`] without further requests.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn reserve_followed(&mut self, set: &HarmonicSet) -> Result<()> {
-        let reserved = self.followed.reserve(most_turning_points(set));
-        reserved.map_err(|_| Error::out_of_memory("the turning points of a motion"))
-    }
-
-    /// The same from the times of the turning points of a neighbouring motion, in ascending order. They save time; the result is
-    /// that of [`Self::find`] to rounding, wherever they lie.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
-    pub fn find_near(
-        &mut self,
-        set: &HarmonicSet,
-        packed: &[f64],
-        old: &[f64],
-        found: &mut Vec<Extremum>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
         found.clear();
-        self.followed.clear();
         let bounds = Bounds::new(set, packed);
         // This also covers a motion that overflows, for which no bound would end the search.
         if !(bounds.bend > 0.0 && bounds.bend.is_finite()) {
@@ -153,11 +123,6 @@ impl TurningPoints {
         self.scan(set, packed);
         let n = self.points;
         let odd = set.is_odd();
-        let turn = if odd { PI } else { TAU };
-        if !old.is_empty() {
-            interrupt.check_before((2 * old.len() * packed.len()) as u64)?;
-            self.followed.follow(set, packed, old, bounds.jerk, turn);
-        }
         // One point past the end closes the cycle, with the sign that the mirror image has there.
         self.slope[n] = if odd { -self.slope[0] } else { self.slope[0] };
         // The sign at the start is that of the last value before it above rounding.
@@ -205,20 +170,13 @@ impl TurningPoints {
                 },
             };
             if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
-                let [from, end] = [left, right].map(|s| (s.tau, s.value));
-                let crosses = left.positive != right.positive;
-                let points = self.followed.all_within(from, end, bounds.bend);
-                // An end that is a root but for rounding may belong to either of its cells.
-                if let Some(points) = points.filter(|p| (p.len() % 2 == 1) == crosses) {
-                    found.extend(points.iter().map(|p| Extremum { tau: p.tau, x: p.x }));
-                } else {
-                    interrupt.check_before((VALUES_OF_A_ROOT * packed.len()) as u64)?;
-                    isolate(set, packed, [left, right], &bounds, found);
-                }
+                interrupt.check_before((VALUES_OF_A_ROOT * packed.len()) as u64)?;
+                isolate(set, packed, [left, right], &bounds, found);
             }
             left = right;
         }
         // Roots just past the end belong to the start of the turn.
+        let turn = if odd { PI } else { TAU };
         for e in found.iter_mut() {
             if e.tau >= turn {
                 e.tau -= turn;
@@ -251,12 +209,6 @@ impl TurningPoints {
             }
         }
     }
-}
-
-/// Bound of the number of turning points in a turn, or in half of one for sets of odd harmonics.
-#[must_use]
-pub fn most_turning_points(set: &HarmonicSet) -> usize {
-    2 * set.highest_reduced() + 4
 }
 
 /// Cells that are judged together.
@@ -332,8 +284,6 @@ impl WithSimd for Scan<'_> {
 struct Bounds {
     /// Bound of |x‴|.
     bend: f64,
-    /// Bound of |x⁗|.
-    jerk: f64,
     /// Values of x′ up to this are rounding, mostly that of the angles pτ.
     noise: f64,
     /// Bound of |x|.
@@ -343,27 +293,25 @@ struct Bounds {
 impl Bounds {
     fn new(set: &HarmonicSet, packed: &[f64]) -> Self {
         let rest = &packed[usize::from(set.has_mean())..];
-        let (mut size, mut turn, mut bend, mut jerk) = (0.0, 0.0, 0.0, 0.0);
+        let (mut size, mut turn, mut bend) = (0.0, 0.0, 0.0);
         let (mut p, stride) = (1.0, set.stride() as f64);
         for [a, b] in rest.as_chunks::<2>().0 {
             let amplitude = a.abs() + b.abs();
             size += amplitude;
             turn += amplitude * p * p;
             bend += amplitude * p * p * p;
-            jerk += amplitude * (p * p) * (p * p);
             p += stride;
         }
         Self {
             bend,
-            jerk,
             noise: 4.0 * f64::EPSILON * turn,
             size,
         }
     }
 
-    /// Whether x varies in a cell by rounding only between roots of x′ that are not separated.
-    fn is_finest(&self, width: f64) -> bool {
-        width * width * width * self.bend < 1e-14 * self.size
+    /// Width of a cell in which x varies by rounding only between roots of x′ that are not separated.
+    fn finest(&self) -> f64 {
+        (1e-14 * (self.size / self.bend)).cbrt()
     }
 
     /// The most by which x′ departs from its chord within a cell.
@@ -390,7 +338,7 @@ fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bound
     } else {
         a.value.abs().min(b.value.abs()) > bounds.largest_dip(width)
     };
-    if certain || bounds.is_finest(width) {
+    if certain || width < bounds.finest() {
         if crosses {
             push_root(set, packed, a, b, found);
         }

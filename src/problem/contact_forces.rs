@@ -98,8 +98,7 @@ impl<'a> ContactForces<'a> {
             try_push(&mut found, memory, CONTEXT)?;
         }
         let samples = if linear { 0 } else { samples };
-        let mut evaluator = Box::new(Evaluator::refined(set, (samples, condensed.refinement()), laws())?);
-        evaluator.reserve_followed(set, condensed.coordinates())?;
+        let evaluator = Box::new(Evaluator::refined(set, (samples, condensed.refinement()), laws())?);
         Ok(Self {
             arch: Arch::new(),
             condensed,
@@ -212,7 +211,7 @@ impl<'a> ContactForces<'a> {
             let here = assembled.at(omega);
             let y = gather_scaled(at, (m, here.of_motion), &self.scaled, &mut self.gathered);
             if at.len() == 1 && (prepared != at[0] || here.of_motion.is_some()) {
-                self.evaluator.prepare_followed(set, y, at[0], self.interrupt)?;
+                self.evaluator.prepare(set, y, self.interrupt)?;
                 prepared = if here.of_motion.is_none() { at[0] } else { usize::MAX };
             }
             self.evaluator

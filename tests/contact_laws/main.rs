@@ -6,7 +6,6 @@ mod common;
 
 mod cubic;
 mod derivatives_of_laws;
-mod followed_events;
 mod force_alone;
 mod friction;
 mod friction_jacobian;
