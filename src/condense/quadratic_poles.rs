@@ -19,7 +19,7 @@ use crate::condense::Condensed;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock};
 use crate::condense::refined_modes::{self, dense};
 use crate::condense::wave_poles::{Key, WavePoles};
-use crate::error::{Result, Status, try_vec};
+use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::general_eigen;
 use crate::linalg::lu::Lu;
@@ -141,7 +141,7 @@ impl Undamped {
             return Ok(None);
         }
         let massless = pairs.values.partition_point(|&mu| mu <= MASSLESS * largest);
-        let masses = pairs.values[massless..].to_vec();
+        let masses = try_copy(&pairs.values[massless..], CONTEXT)?;
         let mut shapes: Vec<Complex64> = pairs.vectors.data.into();
         for (shape, mu) in shapes[massless * n..].chunks_exact_mut(n).zip(&masses) {
             let scale = mu.sqrt().recip();
@@ -176,7 +176,10 @@ impl Undamped {
     fn poles(&self, key: Key, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
         let m = self.masses.len();
         let order = 2 * m;
-        let frequencies: Vec<f64> = self.masses.iter().map(|mu| mu.sqrt().recip()).collect();
+        let mut frequencies = try_copy(&self.masses, CONTEXT)?;
+        for omega in &mut frequencies {
+            *omega = omega.sqrt().recip();
+        }
         let mut a = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
         for (j, omega) in frequencies.iter().enumerate() {
             let (left, right) = (j * order, (m + j) * order);
@@ -235,7 +238,7 @@ impl Undamped {
             let row = || (0..order).map(|k| inverse[k * order + j]);
             // The columns of X have size 1.
             let condition = row().map(|z| z.norm_sqr()).sum::<f64>();
-            if !(condition <= MOST_CONDITION * MOST_CONDITION) {
+            if condition > MOST_CONDITION * MOST_CONDITION || condition.is_nan() {
                 return Ok(None);
             }
             for (to, z) in adjoints[j * m..].iter_mut().zip(row().skip(m)) {
@@ -268,7 +271,7 @@ impl Undamped {
                 slope += adjoints[k] * (2.0 * value * p + c);
             }
             let change = residual / slope;
-            if !(change.norm() <= MOST_CHANGE * value.norm()) {
+            if change.norm() > MOST_CHANGE * value.norm() || change.is_nan() {
                 return Ok(None);
             }
             *to = value - change;
@@ -285,8 +288,11 @@ impl Undamped {
         let (n, m) = (self.n, self.masses.len());
         let massless = n - m;
         let count = massless + values.len();
-        let mut ranked: Vec<usize> = (0..values.len()).collect();
-        ranked.sort_by(|&a, &b| values[b].norm().total_cmp(&values[a].norm()));
+        let mut ranked = try_vec(values.len(), 0, CONTEXT)?;
+        for (k, rank) in ranked.iter_mut().enumerate() {
+            *rank = k;
+        }
+        ranked.sort_unstable_by(|&a, &b| values[b].norm().total_cmp(&values[a].norm()));
         let mut sorted = [
             try_vec(values.len() * m, Complex64::ZERO, CONTEXT)?,
             try_vec(values.len() * m, Complex64::ZERO, CONTEXT)?,
@@ -332,7 +338,7 @@ fn is_damped(matrix: &DMatrix<Complex64>, motions: &[Complex64]) -> bool {
         for row in matrix.row_iter() {
             let products = || row.iter().zip(x).map(|(a, x)| a * x);
             force = force.max(products().sum::<Complex64>().norm());
-            terms = terms.max(products().map(|z| z.norm()).sum());
+            terms = terms.max(products().map(Complex64::norm).sum());
         }
         force > ROUNDING * terms
     })
@@ -363,7 +369,7 @@ fn stiffness_with_real_kappa(condensed: &Condensed, i: usize) -> Result<Csc> {
 
 /// M, with the matrices of a tied speed that grow with ω².
 fn inertia(block: &HarmonicBlock) -> Result<Vec<Complex64>> {
-    let mut mass = crate::error::try_copy(&block.mass, CONTEXT)?;
+    let mut mass = try_copy(&block.mass, CONTEXT)?;
     if let Some(tied) = &block.tied {
         let h = block.number as f64;
         for ((m, k), g) in mass.iter_mut().zip(&tied.stiffness).zip(&tied.gyroscopic) {
