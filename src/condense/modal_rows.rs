@@ -1,7 +1,7 @@
 //! The modes of a wave as contacts, response and springs see them, for all harmonics of the wave, and the sums over them.
 //!
 //! A structure with many modes has few that are not far stiffer than the harmonics that matter. With l the rows in a shape, r those
-//! in its adjoint (r = l for modes), and d = a − b μ, see [`Source`], the sum over the stiff ones is a series with the same matrices
+//! in its adjoint (r = l for modes), and d = a − b μ, see `sum_terms`, the sum over the stiff ones is a series with the same matrices
 //! at each frequency,
 //!
 //! > Σ l rᴴ/(a − b μ) = Σ_j zʲ S_j/a,  z = b/a,  S_j = Σ μʲ l rᴴ,  |z μ| ≤ 1/8,
