@@ -12,6 +12,7 @@
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen::{self, Pairs};
+use crate::linalg::inner;
 use crate::linalg::quadratic::{self, ComplexSum, terms};
 use crate::linalg::sparse::Csc;
 use faer::linalg::matmul::matmul;
@@ -23,6 +24,9 @@ const CONTEXT: &str = "the modes of the structure";
 
 /// Terms of φᴴ K φ over its value from which a product with K is made in twice the precision.
 const SOFT: f64 = 100.0;
+
+/// Order up to which plain loops make products.
+const SMALL_UP_TO: usize = 48;
 
 /// Relative distance of eigenvalues that count as equal, and the largest entry of E.
 const EQUAL: f64 = 1e-9;
@@ -106,14 +110,7 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
     let (mut s, mut r) = (zeros()?, zeros()?);
     for (to, y) in [(&mut s, &moved), (&mut r, &strained)] {
         interrupt.check_before(8 * (n * n * n) as u64)?;
-        matmul(
-            MatMut::from_column_major_slice_mut(to, n, n),
-            Accum::Replace,
-            MatRef::from_column_major_slice(x, n, n).adjoint(),
-            MatRef::from_column_major_slice(y, n, n),
-            Complex64::ONE,
-            Par::Seq,
-        );
+        projection(x, y, to, n);
     }
     // A soft motion has the more exact products, and is the later one: μ rises.
     for j in 0..n {
@@ -141,18 +138,54 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
             largest = largest.max(moved[at].norm());
         }
     }
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut strained, n, n),
-        Accum::Replace,
-        MatRef::from_column_major_slice(x, n, n),
-        MatRef::from_column_major_slice(&moved, n, n),
-        Complex64::ONE,
-        Par::Seq,
-    );
+    combination(x, &moved, &mut strained, n);
     for (x, change) in x.iter_mut().zip(&strained) {
         *x += change;
     }
     Ok(largest)
+}
+
+/// c ← Aᴴ B; the blocked product needs more of the stack than a small thread has.
+fn projection(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], n: usize) {
+    if n > SMALL_UP_TO {
+        matmul(
+            MatMut::from_column_major_slice_mut(c, n, n),
+            Accum::Replace,
+            MatRef::from_column_major_slice(a, n, n).adjoint(),
+            MatRef::from_column_major_slice(b, n, n),
+            Complex64::ONE,
+            Par::Seq,
+        );
+        return;
+    }
+    for (c, b) in c.chunks_exact_mut(n).zip(b.chunks_exact(n)) {
+        for (c, a) in c.iter_mut().zip(a.chunks_exact(n)) {
+            *c = inner(a, b);
+        }
+    }
+}
+
+/// c ← A B, likewise.
+fn combination(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], n: usize) {
+    if n > SMALL_UP_TO {
+        matmul(
+            MatMut::from_column_major_slice_mut(c, n, n),
+            Accum::Replace,
+            MatRef::from_column_major_slice(a, n, n),
+            MatRef::from_column_major_slice(b, n, n),
+            Complex64::ONE,
+            Par::Seq,
+        );
+        return;
+    }
+    c.fill(Complex64::ZERO);
+    for (c, b) in c.chunks_exact_mut(n).zip(b.chunks_exact(n)) {
+        for (a, b) in a.chunks_exact(n).zip(b) {
+            for (c, a) in c.iter_mut().zip(a) {
+                *c += a * b;
+            }
+        }
+    }
 }
 
 /// y ← A x for values on a pattern.

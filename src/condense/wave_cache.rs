@@ -24,8 +24,9 @@ pub(super) const ALL_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the modes of the structure";
 
-/// Degrees of freedom from which sums over poles take less time than factorisations.
-const POLES_FROM: usize = 12;
+/// Degrees of freedom from which sums over poles take less time than factorisations, and their search may take more of the stack than
+/// the small thread of a small model has.
+const POLES_FROM: usize = 49;
 
 /// The waves met so far.
 #[derive(Default)]

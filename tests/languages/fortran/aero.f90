@@ -31,7 +31,7 @@ program aero
 
    call refused(model%set_aero([3, 1], c, offsets, HBVIB_AERO_DISPLACEMENT), HBVIB_E_INDEX, 'dofs(1) = 3', 'a dof that is none')
    call refused(model%set_aero([1], c, offsets, HBVIB_AERO_DISPLACEMENT), HBVIB_E_DIMENSION, 'coefficients', 'a size')
-   call refused(model%set_aero([1, 2], c, [1, 6], HBVIB_AERO_VELOCITY), HBVIB_E_ARGUMENT, 'offsets[0]', 'a sector twice')
+   call refused(model%set_aero([1, 2], c, [1, -4], HBVIB_AERO_VELOCITY), HBVIB_E_ARGUMENT, 'offsets[0]', 'a sector twice')
    call works(plain%new(2), 'a plain structure')
    call refused(plain%set_aero([1, 2], c, offsets, HBVIB_AERO_VELOCITY), HBVIB_E_UNSUPPORTED, 'plain', 'no other sector')
    call works(model%set_aero([integer ::], c(:0, :0, :0), [integer ::], HBVIB_AERO_DISPLACEMENT), 'none')

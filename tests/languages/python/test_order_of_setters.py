@@ -190,7 +190,7 @@ def same(a, b):
 
 
 told, refused, solved = Counter(), 0, 0
-for kind, make_one, count in (("structure", plain_model, 150), ("wheel", wheel, 100), ("wheel of waves", wheel_of_waves, 50)):
+for kind, make_one, count in (("structure", plain_model, 200), ("wheel", wheel, 100), ("wheel of waves", wheel_of_waves, 50)):
     for number in range(count):
         make, setters = make_one()
         names = [name for name, _ in setters]
