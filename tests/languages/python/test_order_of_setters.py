@@ -190,7 +190,7 @@ def same(a, b):
 
 
 told, refused, solved = Counter(), 0, 0
-for kind, make_one, count in (("structure", plain_model, 200), ("wheel", wheel, 100), ("wheel of waves", wheel_of_waves, 50)):
+for kind, make_one, count in (("structure", plain_model, 150), ("wheel", wheel, 100), ("wheel of waves", wheel_of_waves, 50)):
     for number in range(count):
         make, setters = make_one()
         names = [name for name, _ in setters]
@@ -215,7 +215,7 @@ for kind, make_one, count in (("structure", plain_model, 200), ("wheel", wheel, 
             reference = found if reference is None else reference  # where the orderly one is refused
             check(f"{kind} {number}: the same response", same(found, reference), [names[i] for i in order])
 check("a third of the orders gives a response", solved > 1000, solved)
-check("each refusal is met", {"load", "modal damping", "fix", "spring", "mass", "coupling to the previous", "stiffness 1"} <= set(told),
+check("each refusal is met", {"load", "modal damping", "fix", "spring", "coupling to the previous", "stiffness 1"} <= set(told),
       told)
 
 # The orders of two setters that exclude each other.
