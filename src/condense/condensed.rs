@@ -6,6 +6,7 @@ use crate::condense::tied_load::{LoadedLaw, TiedLoad};
 use crate::contact::Law;
 use crate::error::{Result, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::linalg::sparse::Csc;
 use crate::model::degree_map::DegreeMap;
 use crate::model::reduced_wave::MotionRow;
 use crate::model::structure::Structure;
@@ -265,6 +266,25 @@ impl Condensed {
         let number = self.blocks[i].number;
         let share = if number == 1 { self.share[coordinate] } else { 1.0 };
         self.reference.kappa(self.reference_stiffness[coordinate], number) * share
+    }
+
+    /// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn stiffness_with_real_kappa(&self, i: usize) -> Result<Csc> {
+        let block = &self.blocks[i];
+        let mut reference = block.reference.try_clone()?;
+        reference.values.copy_from_slice(&block.stiffness);
+        for (c, row) in block.rows.iter().enumerate() {
+            let kappa = self.kappa(c, i).re;
+            for &(q, b) in row.terms() {
+                for &(p, a) in row.terms() {
+                    reference.add_stored(p, q, a.conj() * kappa * b);
+                }
+            }
+        }
+        Ok(reference)
     }
 
     /// Stiffness of the contacts of a coordinate.

@@ -12,13 +12,13 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Degrees of freedom up to which a table by factorisation has all digits, and takes little time.
-const SMALL: usize = 100;
+const FACTORISED_UP_TO: usize = 100;
 
 /// Relative error of sums.
 const TOLERANCE: f64 = 1e-11;
 
 /// Deviation of a sum from a refined solution, or of its slope from one by factorisation, over the error of that factorisation.
-const BEYOND: f64 = 10.0;
+const BEYOND_FACTORS: f64 = 10.0;
 
 /// Tables of all carried harmonics.
 pub struct FrequencyCache {
@@ -98,7 +98,7 @@ impl FrequencyCache {
             constant,
             tabulated: None,
             // Without a sweep no slope is used.
-            way: if !sweep && condensed.ndof() > SMALL {
+            way: if !sweep && condensed.ndof() > FACTORISED_UP_TO {
                 Way::Pointwise
             } else {
                 Way::Quick
@@ -165,7 +165,8 @@ impl FrequencyCache {
         }
         let (workspace, work) = (&mut self.workspace, &mut self.modal_work);
         // A large structure takes its sums where a small one is factorised: they have as many digits, and cost less.
-        let exactly = self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= SMALL && !self.is_stiff;
+        let exactly =
+            self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff;
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {
                 continue;
@@ -247,7 +248,7 @@ fn agreement(
     let refined = workspace.refined(condensed, i, omega, interrupt)?;
     let own = deviation(&factorised, refined, outputs);
     let by_modes = deviation(&table.value, refined, outputs);
-    let are_close = by_modes.max(slope) <= TOLERANCE.max(BEYOND * own);
+    let are_close = by_modes.max(slope) <= TOLERANCE.max(BEYOND_FACTORS * own);
     Ok((are_close && (slope + by_modes).is_finite()).then_some(own))
 }
 

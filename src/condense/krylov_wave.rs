@@ -41,7 +41,7 @@ const MOST_COLUMNS: usize = 600;
 const MOST_BLOCKS: usize = 12;
 
 /// Columns of a basis over those that are added before its next certificate, which costs as much as some of its factorisations.
-const GROWTH: usize = 5;
+const GROWTH_OF_BASIS: usize = 5;
 
 /// Blocks that memory is counted and reserved for.
 const USUAL_BLOCKS: usize = 7;
@@ -143,7 +143,7 @@ fn build<T: Entry>(
 
 /// Adds blocks until the basis is so much larger that a certificate is worth its cost; `false` where there is nothing to add.
 fn grown<T: Entry>(krylov: &mut BlockKrylov<T>, most: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
-    let enough = krylov.order() + krylov.order() / GROWTH;
+    let enough = krylov.order() + krylov.order() / GROWTH_OF_BASIS;
     let mut has_grown = false;
     while krylov.grow(interrupt)? {
         has_grown = true;

@@ -21,11 +21,9 @@ use crate::condense::refined_modes::{self, dense};
 use crate::condense::wave_poles::{Key, WavePoles};
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products::{self, multiply_adjoint};
 use crate::linalg::general_eigen;
 use crate::linalg::lu::Lu;
-use crate::linalg::sparse::Csc;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -34,16 +32,16 @@ const CONTEXT: &str = "the poles of the structure";
 
 /// Work, as order³ of a real matrix, up to which poles are computed: the QR iteration takes less than a second, in which nothing
 /// can stop it.
-const MOST_WORK: f64 = 900.0 * 900.0 * 900.0;
+const MOST_POLE_WORK: f64 = 900.0 * 900.0 * 900.0;
 
 /// Work of a complex matrix over that of a real one.
-const COMPLEX: f64 = 3.0;
+const WORK_OF_COMPLEX: f64 = 3.0;
 
 /// μ over the largest below which a motion has no mass.
-const MASSLESS: f64 = 1e-14;
+const MASSLESS_MOTION: f64 = 1e-14;
 
 /// Force of damping on a motion, over the sum of its terms, that is rounding.
-const ROUNDING: f64 = 1e-12;
+const UNDAMPED: f64 = 1e-12;
 
 /// Largest condition of a pole: sums lose as many digits.
 const MOST_CONDITION: f64 = 1e4;
@@ -99,7 +97,7 @@ fn is_small(n: usize, block: &HarmonicBlock) -> bool {
         && real(&block.damping)
         && real(&block.mass);
     let order = 2.0 * n as f64;
-    order.powi(3) * if is_real { 1.0 } else { COMPLEX } <= MOST_WORK
+    order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX } <= MOST_POLE_WORK
 }
 
 /// A wave in its undamped modes.
@@ -117,7 +115,11 @@ impl Undamped {
     fn new(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
         let (n, block) = (condensed.ndof(), &condensed.blocks()[i]);
         let pattern = &block.reference;
-        let stiffness = stiffness_with_real_kappa(condensed, i)?;
+        let mut stiffness = condensed.stiffness_with_real_kappa(i)?;
+        let structural = block.structural.iter().flat_map(|values| values.iter());
+        for (v, d) in stiffness.values.iter_mut().zip(structural) {
+            *v += Complex64::I * d;
+        }
         let mass = inertia(block)?;
         let mut hermitian = stiffness.try_clone()?;
         for j in 0..n {
@@ -137,10 +139,10 @@ impl Undamped {
             _ => return Ok(None),
         };
         let largest = pairs.values.last().copied().unwrap_or(0.0);
-        if largest <= 0.0 || pairs.values[0] < -MASSLESS * largest {
+        if largest <= 0.0 || pairs.values[0] < -MASSLESS_MOTION * largest {
             return Ok(None);
         }
-        let massless = pairs.values.partition_point(|&mu| mu <= MASSLESS * largest);
+        let massless = pairs.values.partition_point(|&mu| mu <= MASSLESS_MOTION * largest);
         let masses = try_copy(&pairs.values[massless..], CONTEXT)?;
         let mut shapes: Vec<Complex64> = pairs.vectors.data.into();
         for (shape, mu) in shapes[massless * n..].chunks_exact_mut(n).zip(&masses) {
@@ -157,16 +159,10 @@ impl Undamped {
                 return Ok(None);
             }
         }
-        let reduced = |matrix: &DMatrix<Complex64>| -> Result<Vec<Complex64>> {
-            if matrix.iter().all(|z| *z == Complex64::ZERO) {
-                return try_vec(masses.len() * masses.len(), Complex64::ZERO, CONTEXT);
-            }
-            projected(heavy, &product(matrix, heavy, n, interrupt)?, n)
-        };
         Ok(Some(Self {
             n,
-            damping: reduced(&damping)?,
-            rest: reduced(&rest)?,
+            damping: projected(&damping, heavy, interrupt)?,
+            rest: projected(&rest, heavy, interrupt)?,
             masses,
             shapes,
         }))
@@ -311,14 +307,7 @@ impl Undamped {
         let [shapes, adjoints] = sorted.each_ref().map(|of| -> Result<Vec<Complex64>> {
             let mut all = try_vec(count * n, Complex64::ZERO, CONTEXT)?;
             all[..massless * n].copy_from_slice(&self.shapes[..massless * n]);
-            matmul(
-                MatMut::from_column_major_slice_mut(&mut all[massless * n..], n, values.len()),
-                Accum::Replace,
-                MatRef::from_column_major_slice(heavy, n, m),
-                MatRef::from_column_major_slice(of, m, values.len()),
-                Complex64::ONE,
-                Par::Seq,
-            );
+            complex_products::multiply(heavy, of, &mut all[massless * n..], n);
             Ok(all)
         });
         Ok(WavePoles {
@@ -340,31 +329,8 @@ fn is_damped(matrix: &DMatrix<Complex64>, motions: &[Complex64]) -> bool {
             force = force.max(products().sum::<Complex64>().norm());
             terms = terms.max(products().map(Complex64::norm).sum());
         }
-        force > ROUNDING * terms
+        force > UNDAMPED * terms
     })
-}
-
-/// K_κ with the real part of κ at the entries of the pattern.
-fn stiffness_with_real_kappa(condensed: &Condensed, i: usize) -> Result<Csc> {
-    let block = &condensed.blocks()[i];
-    let mut reference = block.reference.try_clone()?;
-    reference.values.copy_from_slice(&block.stiffness);
-    for (v, d) in reference
-        .values
-        .iter_mut()
-        .zip(block.structural.iter().flat_map(|values| values.iter()))
-    {
-        *v += Complex64::I * d;
-    }
-    for (c, row) in block.rows.iter().enumerate() {
-        let kappa = condensed.kappa(c, i).re;
-        for &(q, b) in row.terms() {
-            for &(p, a) in row.terms() {
-                reference.add_stored(p, q, a.conj() * kappa * b);
-            }
-        }
-    }
-    Ok(reference)
 }
 
 /// M, with the matrices of a tied speed that grow with ω².
@@ -379,39 +345,22 @@ fn inertia(block: &HarmonicBlock) -> Result<Vec<Complex64>> {
     Ok(mass)
 }
 
-/// A X
-fn product(a: &DMatrix<Complex64>, x: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
-    interrupt.check()?;
-    times(a.as_slice(), x, n)
-}
-
 /// A X for a square matrix of order n.
 fn times(a: &[Complex64], x: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
     let mut product = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
-    let columns = x.len() / n.max(1);
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut product, n, columns),
-        Accum::Replace,
-        MatRef::from_column_major_slice(a, n, n),
-        MatRef::from_column_major_slice(x, n, columns),
-        Complex64::ONE,
-        Par::Seq,
-    );
+    complex_products::multiply(a, x, &mut product, n);
     Ok(product)
 }
 
-/// Φᴴ Y
-fn projected(shapes: &[Complex64], y: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
-    let (rows, columns) = (shapes.len() / n.max(1), y.len() / n.max(1));
-    let mut found = try_vec(rows * columns, Complex64::ZERO, CONTEXT)?;
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut found, rows, columns),
-        Accum::Replace,
-        MatRef::from_column_major_slice(shapes, n, rows).adjoint(),
-        MatRef::from_column_major_slice(y, n, columns),
-        Complex64::ONE,
-        Par::Seq,
-    );
+/// Φᴴ A Φ
+fn projected(a: &DMatrix<Complex64>, shapes: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
+    let n = a.nrows();
+    let count = shapes.len() / n.max(1);
+    let mut found = try_vec(count * count, Complex64::ZERO, CONTEXT)?;
+    if a.iter().any(|z| *z != Complex64::ZERO) {
+        interrupt.check()?;
+        multiply_adjoint(shapes, &times(a.as_slice(), shapes, n)?, &mut found, n);
+    }
     Ok(found)
 }
 

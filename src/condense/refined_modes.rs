@@ -11,30 +11,25 @@
 
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products::{self, multiply_adjoint};
 use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::inner;
 use crate::linalg::quadratic::{self, ComplexSum, terms};
 use crate::linalg::sparse::Csc;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the structure";
 
 /// Terms of φᴴ K φ over its value from which a product with K is made in twice the precision.
-const SOFT: f64 = 100.0;
-
-/// Order up to which plain loops make products.
-const SMALL_UP_TO: usize = 48;
+const SOFT_TERMS: f64 = 100.0;
 
 /// Relative distance of eigenvalues that count as equal, and the largest entry of E.
-const EQUAL: f64 = 1e-9;
-const MOST: f64 = 0.1;
+const EQUAL_VALUES: f64 = 1e-9;
+const LARGEST_STEP: f64 = 0.1;
 
 /// Entry of E above which a further step is made, and the most steps.
-const AGAIN: f64 = 1e-7;
-const STEPS: usize = 4;
+const STEP_AGAIN: f64 = 1e-7;
+const MOST_STEPS: usize = 4;
 
 /// μ, rising, and φ of a Hermitian pencil, `mass` on the pattern of K.
 ///
@@ -45,7 +40,7 @@ pub(super) fn modes(stiffness: &Csc, mass: &[Complex64], interrupt: &Interrupt<'
     let n = stiffness.rows;
     let (m, k) = (dense(stiffness, mass)?, dense(stiffness, &stiffness.values)?);
     let found = eigen::generalised(&m, &k, interrupt);
-    // What a penalty makes of soft motions is no lack of stiffness: the steps show it.
+    // Beside a penalty soft motions look as if they had no stiffness: the steps show that they have.
     if !found.as_ref().is_ok_and(|pairs| pairs.values.len() == n)
         && let Some(mut pairs) = eigen::with_definite_mass(&m, &k, 0.0, interrupt)?
         && refine(stiffness, mass, &mut pairs, interrupt)?
@@ -64,8 +59,8 @@ fn refine(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &In
     if stiffness.rows < 2 {
         return Ok(true);
     }
-    for _ in 0..STEPS {
-        if step(stiffness, mass, pairs, interrupt)? <= AGAIN {
+    for _ in 0..MOST_STEPS {
+        if step(stiffness, mass, pairs, interrupt)? <= STEP_AGAIN {
             return Ok(true);
         }
     }
@@ -97,7 +92,7 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
         interrupt.check_before(20 * stiffness.values.len() as u64)?;
         multiply(stiffness, mass, x, moved);
         // φᴴ K φ is 1.
-        if terms(stiffness, x) > SOFT {
+        if terms(stiffness, x) > SOFT_TERMS {
             sums.fill(ComplexSum::default());
             quadratic::product(stiffness, &stiffness.values, x, &mut sums);
             for (to, sum) in strained.iter_mut().zip(&sums) {
@@ -110,7 +105,7 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
     let (mut s, mut r) = (zeros()?, zeros()?);
     for (to, y) in [(&mut s, &moved), (&mut r, &strained)] {
         interrupt.check_before(8 * (n * n * n) as u64)?;
-        projection(x, y, to, n);
+        multiply_adjoint(x, y, to, n);
     }
     // A soft motion has the more exact products, and is the later one: μ rises.
     for j in 0..n {
@@ -128,64 +123,21 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
             let at = j * n + i;
             let gap = values[j] - values[i];
             let half = 0.5 * r[at];
-            let own = if gap.abs() > EQUAL * values[i].abs().max(values[j].abs()) {
+            let own = if gap.abs() > EQUAL_VALUES * values[i].abs().max(values[j].abs()) {
                 (s[at] + values[j] * r[at]) / gap
             } else {
                 half
             };
             // No small step: vectors of a group.
-            moved[at] = if own.norm() <= MOST { own } else { half };
+            moved[at] = if own.norm() <= LARGEST_STEP { own } else { half };
             largest = largest.max(moved[at].norm());
         }
     }
-    combination(x, &moved, &mut strained, n);
+    complex_products::multiply(x, &moved, &mut strained, n);
     for (x, change) in x.iter_mut().zip(&strained) {
         *x += change;
     }
     Ok(largest)
-}
-
-/// c ← Aᴴ B; the blocked product needs more of the stack than a small thread has.
-fn projection(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], n: usize) {
-    if n > SMALL_UP_TO {
-        matmul(
-            MatMut::from_column_major_slice_mut(c, n, n),
-            Accum::Replace,
-            MatRef::from_column_major_slice(a, n, n).adjoint(),
-            MatRef::from_column_major_slice(b, n, n),
-            Complex64::ONE,
-            Par::Seq,
-        );
-        return;
-    }
-    for (c, b) in c.chunks_exact_mut(n).zip(b.chunks_exact(n)) {
-        for (c, a) in c.iter_mut().zip(a.chunks_exact(n)) {
-            *c = inner(a, b);
-        }
-    }
-}
-
-/// c ← A B, likewise.
-fn combination(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], n: usize) {
-    if n > SMALL_UP_TO {
-        matmul(
-            MatMut::from_column_major_slice_mut(c, n, n),
-            Accum::Replace,
-            MatRef::from_column_major_slice(a, n, n),
-            MatRef::from_column_major_slice(b, n, n),
-            Complex64::ONE,
-            Par::Seq,
-        );
-        return;
-    }
-    c.fill(Complex64::ZERO);
-    for (c, b) in c.chunks_exact_mut(n).zip(b.chunks_exact(n)) {
-        for (a, b) in a.chunks_exact(n).zip(b) {
-            for (c, a) in c.iter_mut().zip(a) {
-                *c += a * b;
-            }
-        }
-    }
 }
 
 /// y ← A x for values on a pattern.

@@ -190,7 +190,7 @@ impl WaveCache {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
-        let reference = real_reference(condensed, i)?;
+        let reference = condensed.stiffness_with_real_kappa(i)?;
         let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass);
         if let Some(known) = self.waves.iter().find(is_known) {
             return Ok(Some(Arc::clone(known)));
@@ -286,22 +286,6 @@ fn modes_of(
         loss_factor: model.structure().loss_factor(),
         springs,
     }))
-}
-
-/// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.
-fn real_reference(condensed: &Condensed, i: usize) -> Result<Csc> {
-    let block = &condensed.blocks()[i];
-    let mut reference = block.reference.try_clone()?;
-    reference.values.copy_from_slice(&block.stiffness);
-    for (c, row) in block.rows.iter().enumerate() {
-        let kappa = condensed.kappa(c, i).re;
-        for &(q, b) in row.terms() {
-            for &(p, a) in row.terms() {
-                reference.add_stored(p, q, a.conj() * kappa * b);
-            }
-        }
-    }
-    Ok(reference)
 }
 
 /// Rows of the linear springs and stuck contacts with their stiffness; `None` where one couples its directions.

@@ -76,9 +76,6 @@ pub(super) fn reduced_blocks(
     }
     let forced = options.flexibility == Flexibility::Krylov;
     let structure = model.structure();
-    if !forced && is_chain(request)? {
-        return Ok(None);
-    }
     // A basis knows mass, viscous damping, stiffness and its loss factor, and forces of one size.
     if structure.has_structural_matrix()
         || structure.is_rotating()
@@ -87,6 +84,9 @@ pub(super) fn reduced_blocks(
         || model.excitation().has_unbalance()
     {
         return declined(forced);
+    }
+    if !forced && is_chain(request)? {
+        return Ok(None);
     }
     let most = if forced { usize::MAX } else { n / SHARE };
     let Some(groups) = groups(request, most, interrupt)? else {
@@ -131,6 +131,10 @@ fn is_chain(request: &Request<'_>) -> Result<bool> {
         return Ok(false);
     };
     let structure = request.model.structure();
+    // Seen without a copy of a large matrix.
+    if structure.stored(MatrixKind::Stiffness) > CHAIN * structure.ndof() {
+        return Ok(false);
+    }
     let stiffness = structure.wave_matrix(MatrixKind::Stiffness, number)?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
     let one = Complex64::ONE;

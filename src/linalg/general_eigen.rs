@@ -3,18 +3,18 @@
 
 use crate::error::{Error, Result, fail, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products;
 use faer::diag::DiagMut;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par, Spec};
+use faer::{MatMut, MatRef, Par, Spec};
 use num_complex::Complex64;
 
 /// Error of vectors, over the largest entry of the matrix, that is more than rounding.
-const ERROR: f64 = 1e-9;
+const WRONG_VECTORS: f64 = 1e-9;
 
 /// Order up to which a real matrix may be treated as a complex one.
-const COMPLEX_UP_TO: usize = 600;
+const AS_COMPLEX_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
@@ -45,8 +45,8 @@ pub fn eigen(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Pai
     }
     let is_real = a.iter().all(|z| z.im == 0.0);
     // Where pairs of complex eigenvalues are equal, faer 0.24 returns wrong vectors of a real matrix.
-    let done = is_real && of_real(a, n, &mut found)? && error(a, n, &found)? <= ERROR;
-    if !done && (n > COMPLEX_UP_TO && is_real || !of_complex(a, n, &mut found)?) {
+    let done = is_real && of_real(a, n, &mut found)? && error(a, n, &found)? <= WRONG_VECTORS;
+    if !done && (n > AS_COMPLEX_UP_TO && is_real || !of_complex(a, n, &mut found)?) {
         return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
     }
     for x in found.vectors.chunks_exact_mut(n) {
@@ -61,14 +61,7 @@ pub fn eigen(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Pai
 /// Largest entry of A X − X Λ, for vectors of size 1, over that of A.
 fn error(a: &[Complex64], n: usize, pairs: &Pairs) -> Result<f64> {
     let mut product = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut product, n, n),
-        Accum::Replace,
-        MatRef::from_column_major_slice(a, n, n),
-        MatRef::from_column_major_slice(&pairs.vectors, n, n),
-        Complex64::ONE,
-        Par::Seq,
-    );
+    complex_products::multiply(a, &pairs.vectors, &mut product, n);
     let largest = a.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
     let mut worst = 0.0_f64;
     let columns = product.chunks_exact(n).zip(pairs.vectors.chunks_exact(n));

@@ -6,6 +6,7 @@ pub mod cholesky;
 pub mod compensated_product;
 pub mod compensated_sum;
 pub mod complex_columns;
+pub mod complex_products;
 pub mod definite;
 pub mod eigen;
 pub mod factor;
