@@ -171,7 +171,7 @@ impl TurningPoints {
             };
             if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
                 interrupt.check_before((VALUES_OF_A_ROOT * packed.len()) as u64)?;
-                isolate(set, packed, [left, right], &bounds, found);
+                isolate((set, packed), [left, right], &bounds, found, interrupt)?;
             }
             left = right;
         }
@@ -329,7 +329,13 @@ struct Slope {
 }
 
 /// Stores every root of x′ between two times.
-fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bounds, found: &mut Vec<Extremum>) {
+fn isolate(
+    (set, packed): (&HarmonicSet, &[f64]),
+    [a, b]: [Slope; 2],
+    bounds: &Bounds,
+    found: &mut Vec<Extremum>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
     let width = b.tau - a.tau;
     let crosses = a.positive != b.positive;
     // x″ departs from the slope of the chord of x′ by at most bend·width/2.
@@ -342,8 +348,10 @@ fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bound
         if crosses {
             push_root(set, packed, a, b, found);
         }
-        return;
+        return Ok(());
     }
+    // A motion that hardly moves is halved to the end of the digits.
+    interrupt.check_before(packed.len() as u64)?;
     let tau = 0.5 * (a.tau + b.tau);
     let value = jet(set, packed, tau).dx;
     let positive = if value.abs() <= bounds.noise {
@@ -352,8 +360,8 @@ fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bound
         value > 0.0
     };
     let middle = Slope { tau, value, positive };
-    isolate(set, packed, [a, middle], bounds, found);
-    isolate(set, packed, [middle, b], bounds, found);
+    isolate((set, packed), [a, middle], bounds, found, interrupt)?;
+    isolate((set, packed), [middle, b], bounds, found, interrupt)
 }
 
 /// Refines the root of x′ between two times of opposite sign and stores it.

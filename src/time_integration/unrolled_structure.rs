@@ -13,6 +13,9 @@ use crate::time_integration::event_law::{Element, OF_ONE_SECTOR, Spring, unroll}
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
+/// Operations of an element at one time.
+pub(super) const OF_ONE_ELEMENT: usize = 20;
+
 const CONTEXT: &str = "the structure in time";
 
 /// A real sparse matrix, column by column.
@@ -206,7 +209,7 @@ impl<'s> System<'s> {
     /// Operations of one product with the matrices, for the checks of the interrupt.
     pub fn operations(&self) -> u64 {
         let entries = self.stiffness.values.len() + self.damping.values.len() + self.inertia.values.len();
-        2 * entries as u64 + 1000
+        (2 * entries + OF_ONE_ELEMENT * self.elements.len()) as u64 + 1000
     }
 
     /// Degrees of freedom of all carried sectors.

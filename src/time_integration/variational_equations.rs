@@ -7,7 +7,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::lu::Scalar;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::Entry;
-use crate::time_integration::unrolled_structure::{Sparse, System};
+use crate::time_integration::unrolled_structure::{OF_ONE_ELEMENT, Sparse, System};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the equations of perturbations";
@@ -143,9 +143,10 @@ impl<T: Number> VariationalEquations<T> {
         matches!(self.mass_factor, MassFactor::Diagonal(_))
     }
 
-    /// Operations of one product with the matrices.
+    /// Operations of one product with the matrices and elements.
     pub(super) fn operations(&self) -> u64 {
-        (LANES * (self.stiffness.len() + self.damping.len() + self.order)) as u64
+        let elements = OF_ONE_ELEMENT * self.elements.len();
+        (LANES * (self.stiffness.len() + self.damping.len() + self.order + elements)) as u64
     }
 
     /// a ← M⁻¹ a

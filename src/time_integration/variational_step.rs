@@ -81,8 +81,10 @@ impl<T: Number> VariationalStep<T> {
         let states = equations.states();
         if let (Some(implicit), Some(step)) = (&mut self.implicit, &interval.collocation) {
             implicit.factor(equations, interval, step, interrupt)?;
+            // Every stage of every column meets all elements.
+            let operations = STAGES as u64 * equations.operations() / LANES as u64;
             for column in columns.chunks_exact_mut(states.max(1)) {
-                interrupt.check()?;
+                interrupt.check_before(operations)?;
                 implicit.carry(equations, interval, step, column);
             }
             return Ok(());
