@@ -13,7 +13,7 @@ use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::{self, multiply_adjoint};
 use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::quadratic::{self, ComplexSum, terms};
+use crate::linalg::quadratic::{self, ComplexSum};
 use crate::linalg::sparse::Csc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -87,12 +87,16 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
     let x = vectors.as_mut_slice();
     let (mut strained, mut moved) = (zeros()?, zeros()?);
     let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
+    let (sizes, mut size) = (moduli(&stiffness.values)?, try_vec(n, 0.0, CONTEXT)?);
     let columns = strained.chunks_exact_mut(n).zip(moved.chunks_exact_mut(n));
     for (x, (strained, moved)) in x.chunks_exact(n).zip(columns) {
         interrupt.check_before(20 * stiffness.values.len() as u64)?;
         multiply(stiffness, mass, x, moved);
+        for (to, x) in size.iter_mut().zip(x) {
+            *to = modulus(x);
+        }
         // φᴴ K φ is 1.
-        if terms(stiffness, x) > SOFT_TERMS {
+        if terms(stiffness, &sizes, &size) > SOFT_TERMS {
             sums.fill(ComplexSum::default());
             quadratic::product(stiffness, &stiffness.values, x, &mut sums);
             for (to, sum) in strained.iter_mut().zip(&sums) {
@@ -138,6 +142,30 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
         *x += change;
     }
     Ok(largest)
+}
+
+/// |z|, without care for numbers whose square is out of range.
+fn modulus(z: &Complex64) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
+fn moduli(of: &[Complex64]) -> Result<Vec<f64>> {
+    let mut found = try_vec(of.len(), 0.0, CONTEXT)?;
+    for (to, z) in found.iter_mut().zip(of) {
+        *to = modulus(z);
+    }
+    Ok(found)
+}
+
+/// Sum of the moduli of the terms of xᴴ A x, from those of A, on a pattern, and of x.
+fn terms(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (j, x) in of_vector.iter().enumerate() {
+        let column = pattern.col_ptr[j]..pattern.col_ptr[j + 1];
+        let column = of_matrix[column.clone()].iter().zip(&pattern.row_idx[column]);
+        sum += x * column.map(|(a, &i)| a * of_vector[i]).sum::<f64>();
+    }
+    sum
 }
 
 /// y ← A x for values on a pattern.

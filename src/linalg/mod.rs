@@ -23,6 +23,7 @@ pub mod lu;
 pub mod matrix_view;
 mod nested_dissection;
 pub mod quadratic;
+mod real_pencil;
 mod reflections;
 pub mod row_index;
 mod separator;

@@ -60,6 +60,29 @@ pub fn terms(a: &Csc, x: &[Complex64]) -> f64 {
     x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum()
 }
 
+/// Terms of xᴴ A x over its value up to which plain sums have the digits of a size.
+const CANCELLED: f64 = 1e4;
+
+/// xᴴ A x of a Hermitian matrix to a dozen digits, which costs a quarter of all of them where the terms do not cancel.
+#[must_use]
+pub fn about_quadratic(a: &Csc, x: &[Complex64]) -> f64 {
+    let (mut form, mut size) = (0.0, 0.0);
+    for (j, xj) in x.iter().enumerate() {
+        let (mut column, mut largest) = (Complex64::ZERO, 0.0);
+        for (i, v) in a.column(j) {
+            let term = v.conj() * x[i];
+            column += term;
+            largest += term.re.abs() + term.im.abs();
+        }
+        form += xj.re * column.re + xj.im * column.im;
+        size += (xj.re.abs() + xj.im.abs()) * largest;
+    }
+    if size <= CANCELLED * form.abs() {
+        return form;
+    }
+    quadratic(a, x)
+}
+
 /// xᴴ A x of a Hermitian matrix.
 #[must_use]
 pub fn quadratic(a: &Csc, x: &[Complex64]) -> f64 {
