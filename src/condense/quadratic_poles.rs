@@ -21,7 +21,9 @@ use crate::condense::refined_modes::{self, dense};
 use crate::condense::wave_poles::{Key, WavePoles};
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::cholesky::entries_by_degrees;
 use crate::linalg::complex_products::{self, multiply_adjoint};
+use crate::linalg::factor::is_dense;
 use crate::linalg::general_eigen;
 use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
@@ -36,6 +38,14 @@ const MOST_POLE_WORK: f64 = 900.0 * 900.0 * 900.0;
 
 /// Work of a complex matrix over that of a real one.
 const WORK_OF_COMPLEX: f64 = 3.0;
+
+/// Points of a sweep for which the poles must pay.
+const POINTS: f64 = 300.0;
+
+/// Operations of the QR iteration over order³, and of a sparse factorisation, where it takes as long as so many, over the entries of
+/// its factor.
+const OPERATIONS_OF_POLES: f64 = 25.0;
+const OPERATIONS_OF_ENTRY: f64 = 1000.0;
 
 /// μ over the largest below which a motion has no mass.
 const MASSLESS_MOTION: f64 = 1e-14;
@@ -57,7 +67,7 @@ const MOST_CHANGE: f64 = 1e-6;
 pub(super) fn poles(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
     let block = &condensed.blocks()[i];
     let is_forced = matches!(block.artificial, Artificial::None);
-    if block.number == 0 || !is_forced || !is_small(condensed.ndof(), block) {
+    if block.number == 0 || !is_forced || !they_pay(condensed, block)? {
         return Ok(None);
     }
     let Some(wave) = Undamped::new(condensed, i, interrupt)? else {
@@ -88,16 +98,27 @@ pub(super) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
         && is_same(damping, &block.damping)
 }
 
-/// Whether the poles of a wave of so many degrees of freedom take no second.
-fn is_small(n: usize, block: &HarmonicBlock) -> bool {
+/// Whether the poles of a wave take less than a second, and no longer than the factorisations of a sweep.
+fn they_pay(condensed: &Condensed, block: &HarmonicBlock) -> Result<bool> {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
     let is_real = block.structural.is_none()
         && block.tied.is_none()
         && real(&block.stiffness)
         && real(&block.damping)
         && real(&block.mass);
-    let order = 2.0 * n as f64;
-    order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX } <= MOST_POLE_WORK
+    let order = 2.0 * condensed.ndof() as f64;
+    let work = order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX };
+    if work > MOST_POLE_WORK || is_dense(&block.reference) {
+        return Ok(work <= MOST_POLE_WORK);
+    }
+    // A wave serves all harmonics unless their speeds differ.
+    let harmonics = if block.tied.is_none() {
+        condensed.blocks().len()
+    } else {
+        1
+    };
+    let entries = entries_by_degrees(&block.reference)? as f64;
+    Ok(OPERATIONS_OF_POLES * work <= POINTS * harmonics as f64 * OPERATIONS_OF_ENTRY * entries)
 }
 
 /// A wave in its undamped modes.

@@ -128,7 +128,8 @@ impl Factor {
 }
 
 /// Whether a matrix is treated as dense.
-fn is_dense(a: &Csc) -> bool {
+#[must_use]
+pub fn is_dense(a: &Csc) -> bool {
     let n = a.rows as f64;
     a.rows <= DENSE_UP_TO || a.values.len() as f64 > DENSE_FILL * n * n
 }
