@@ -134,9 +134,9 @@ pub fn with_definite_mass(
     let n = k.nrows();
     // On a small stack blocked products of real numbers have no room.
     if n > SMALL_UP_TO
-        && let Some(pairs) = real_pencil::with_definite_mass(k, m, regular, interrupt)?
+        && let Some((values, vectors)) = real_pencil::with_definite_mass(k, m, regular, interrupt)?
     {
-        return Ok(Some(pairs));
+        return Ok(Some(Pairs { values, vectors }));
     }
     let mut l = copy(m)?;
     if !hermitian::cholesky(l.as_mut_slice(), n, interrupt)? {

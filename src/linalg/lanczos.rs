@@ -296,8 +296,8 @@ struct Run {
 }
 
 impl Run {
-    /// Ritz values with the last coefficient of their vectors, and so many of the last coefficients, vector after vector.
-    fn ritz(&self, rows: usize, interrupt: &Interrupt<'_>) -> Result<(Vec<(f64, f64)>, Vec<f64>)> {
+    /// Ritz values with so many of the last coefficients of their vectors, vector after vector.
+    fn ritz(&self, rows: usize, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<f64>)> {
         const CONTEXT: &str = "the eigenvectors";
         let size = self.alpha.len();
         let (mut values, mut beside) = (try_copy(&self.alpha, CONTEXT)?, try_vec(size, 0.0, CONTEXT)?);
@@ -309,11 +309,7 @@ impl Run {
             last[(size - rows + row) * rows + row] = 1.0;
         }
         tridiagonal::diagonalise((&mut values, &mut beside), &mut last, interrupt, |_| Ok(()))?;
-        let mut found = try_vec(size, (0.0, 0.0), CONTEXT)?;
-        for ((to, value), own) in found.iter_mut().zip(&values).zip(last.chunks_exact(rows)) {
-            *to = (*value, own[rows - 1]);
-        }
-        Ok((found, last))
+        Ok((values, last))
     }
 }
 
@@ -401,7 +397,8 @@ impl Search<'_> {
     /// Whether the goal is reached, or beyond reach.
     fn converged(&self, run: &Run, goal: Goal, v: &[Complex64]) -> Result<bool> {
         let after = self.after(run, v)?;
-        let mut ritz = run.ritz(1, self.interrupt)?.0;
+        let (values, last) = run.ritz(1, self.interrupt)?;
+        let mut ritz: Vec<(f64, f64)> = values.into_iter().zip(last).collect();
         let small = |(mu, last): &(f64, f64), tolerance: f64| after * last.abs() <= tolerance * mu.abs();
         Ok(match goal {
             Goal::Largest(count) => {
@@ -425,9 +422,9 @@ impl Search<'_> {
         let mut largest = 0.0_f64;
         let after = self.after(run, v)?;
         let size = run.alpha.len();
-        let (found, vectors) = run.ritz(size, self.interrupt)?;
-        let mut ritz: Vec<(f64, f64, &[f64])> = (found.iter().zip(vectors.chunks_exact(size)))
-            .map(|(&(mu, last), s)| (mu, after * last.abs(), s))
+        let (values, vectors) = run.ritz(size, self.interrupt)?;
+        let mut ritz: Vec<(f64, f64, &[f64])> = (values.iter().zip(vectors.chunks_exact(size)))
+            .map(|(&mu, s)| (mu, after * s[size - 1].abs(), s))
             .collect();
         ritz.sort_by(|a, b| b.0.total_cmp(&a.0));
         // The least value of the operator shows an eigenvalue below the shift.

@@ -3,10 +3,9 @@
 
 use crate::error::{Error, Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::eigen::Pairs;
 use faer::diag::DiagMut;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -19,6 +18,9 @@ const CONTEXT: &str = "the eigenvalues of a matrix";
 /// Residual of the pairs of a matrix over its largest entry and its order that is more than rounding.
 const WRONG: f64 = 1e-13;
 
+/// λ, rising, and φ with φᵀ M φ = 1, column after column.
+type Found = (Vec<f64>, DMatrix<Complex64>);
+
 /// The pairs by M = L Lᵀ; `None` where a matrix is not real, M is not definite or its smallest pivot is not above a share `regular` of
 /// the largest, or the pairs are not right. The interrupt is checked before each step, not within.
 ///
@@ -29,7 +31,7 @@ pub fn with_definite_mass(
     m: &DMatrix<Complex64>,
     regular: f64,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<Pairs>> {
+) -> Result<Option<Found>> {
     let n = k.nrows();
     let is_real = |a: &DMatrix<Complex64>| a.iter().all(|z| z.im == 0.0 && z.re.is_finite());
     if n == 0 || !is_real(k) || !is_real(m) {
@@ -42,7 +44,7 @@ pub fn with_definite_mass(
     let stack = MemStack::new(&mut scratch);
     let factored = cholesky_in_place(
         square_mut(&mut l, n),
-        Default::default(),
+        LltRegularization::default(),
         Par::Seq,
         stack,
         Spec::default(),
@@ -89,10 +91,7 @@ pub fn with_definite_mass(
     for (to, x) in vectors.iter_mut().zip(&x) {
         *to = (*x).into();
     }
-    Ok(Some(Pairs {
-        values,
-        vectors: DMatrix::from_vec(n, n, vectors),
-    }))
+    Ok(Some((values, DMatrix::from_vec(n, n, vectors))))
 }
 
 /// Largest entry of A X − X Λ over that of A; infinite where a value is not above the one before.
@@ -157,15 +156,15 @@ mod tests {
     fn chains_have_their_frequencies_in_closed_form_each_as_often_as_it_occurs() {
         for (length, copies) in [(130, 1), (60, 3), (2, 90)] {
             let (k, m) = chains(length, copies, 4.0);
-            let pairs = with_definite_mass(&k, &m, 0.0, &Interrupt::none()).unwrap().unwrap();
-            for (i, value) in pairs.values.iter().enumerate() {
+            let (values, vectors) = with_definite_mass(&k, &m, 0.0, &Interrupt::none()).unwrap().unwrap();
+            for (i, value) in values.iter().enumerate() {
                 let half = 0.5 * PI * (i / copies + 1) as f64 / (length + 1) as f64;
                 assert!(
                     (value - half.sin().powi(2)).abs() < 1e-14 * length as f64,
                     "{length}, {i}"
                 );
             }
-            let gram = pairs.vectors.adjoint() * &m * &pairs.vectors;
+            let gram = vectors.adjoint() * &m * &vectors;
             let off = gram - DMatrix::identity(k.nrows(), k.nrows());
             assert!(off.iter().all(|z| z.norm() < 1e-12), "{length}");
         }
