@@ -27,6 +27,7 @@ mod real_pencil;
 mod reflections;
 pub mod row_index;
 mod separator;
+pub mod shifted_inverse;
 pub mod small_lu;
 mod small_sum;
 mod sorted_columns;
