@@ -108,7 +108,7 @@ fn they_pay(condensed: &Condensed, block: &HarmonicBlock) -> Result<bool> {
         && real(&block.mass);
     let order = 2.0 * condensed.ndof() as f64;
     let work = order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX };
-    if work > MOST_POLE_WORK || is_dense(&block.reference) {
+    if work > MOST_POLE_WORK || is_dense(&block.reference)? {
         return Ok(work <= MOST_POLE_WORK);
     }
     // A wave serves all harmonics unless their speeds differ.
