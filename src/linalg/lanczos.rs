@@ -449,4 +449,39 @@ mod tests {
         }
         assert!(within((&k, &m), (0.5, 2.5), 20, &Interrupt::none()).unwrap().is_none());
     }
+
+    #[test]
+    fn intervals_of_complex_pencils_with_massless_motions_are_those_of_dense_algebra() {
+        for (n, every) in [(140, 1000), (260, 7)] {
+            let (mut k, mut m) = (Vec::new(), Vec::new());
+            for i in 0..n {
+                let x = i as f64;
+                k.push((i, i, Complex64::from(4.0 + (1.3 * x).sin())));
+                for apart in [1, 5] {
+                    if i + apart < n {
+                        let value = Complex64::from_polar(0.8, 0.7 * x);
+                        k.push((i, i + apart, value));
+                        k.push((i + apart, i, value.conj()));
+                    }
+                }
+                if i % every != 3 {
+                    m.push((i, i, Complex64::from(1.0 + 0.4 * (0.9 * x).cos())));
+                }
+            }
+            let (k, m) = (
+                Csc::from_triplets(n, n, k).unwrap(),
+                Csc::from_triplets(n, n, m).unwrap(),
+            );
+            let all = all_of(&k, &m, n, &Interrupt::none()).unwrap().values;
+            for (from, to) in [(0, 9), (20, 60), (n / 2, n / 2 + 2), (n / 3, 2 * n / 3)] {
+                let middle = |at: usize| 0.5 * (all[at] + all[at + 1]);
+                let interval = (if from == 0 { all[0] - 1.0 } else { middle(from - 1) }, middle(to));
+                let found = within((&k, &m), interval, n, &Interrupt::none()).unwrap().unwrap();
+                assert_eq!(found.values.len(), to + 1 - from, "{n}, {from} to {to}");
+                for (value, exact) in found.values.iter().zip(&all[from..=to]) {
+                    assert!((value - exact).abs() < 1e-10, "{n}: {value} against {exact}");
+                }
+            }
+        }
+    }
 }
