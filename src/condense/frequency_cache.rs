@@ -1,11 +1,11 @@
 //! The flexibility tables of all carried harmonics at a frequency: sums over modes or poles where a sweep has them, by
 //! factorisation elsewhere.
 
-use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::single_contact_lanes::SingleContactLanes;
+use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use num_complex::Complex64;
@@ -33,6 +33,8 @@ pub struct FrequencyCache {
     modal_slopes: bool,
     /// Whether a sweep uses other tables than those by factorisation.
     is_quicker: bool,
+    /// How the table of the lowest vibrating harmonic is made along it.
+    told: FlexibilityWay,
     /// Whether the structure is so stiff that factorisations lose the digits that sums have.
     is_stiff: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
@@ -67,6 +69,7 @@ impl FrequencyCache {
         let mut tables = Vec::new();
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
         let (mut is_quicker, mut is_stiff) = (false, false);
+        let mut told = None;
         let (mut waves, mut modal_work) = (Vec::new(), ModalWork::default());
         let count = condensed.blocks().len();
         for i in 0..count {
@@ -80,6 +83,13 @@ impl FrequencyCache {
                 None
             };
             is_quicker |= from_modes.is_some();
+            if condensed.blocks()[i].number > 0 && told.is_none() {
+                told = Some(match (condensed.blocks()[i].flexibility_way(), &from_modes) {
+                    _ if !sweep => FlexibilityWay::SingleFrequency,
+                    (FlexibilityWay::Modes | FlexibilityWay::Poles, None) => FlexibilityWay::Disagreement,
+                    (known, _) => known,
+                });
+            }
             let from_modes = from_modes.map(|(table, error)| {
                 is_stiff |= error > TOLERANCE;
                 table
@@ -94,6 +104,7 @@ impl FrequencyCache {
             modal_work,
             modal_slopes: true,
             is_quicker,
+            told: told.unwrap_or_default(),
             is_stiff,
             constant,
             tabulated: None,
@@ -104,6 +115,12 @@ impl FrequencyCache {
                 Way::Quick
             },
         })
+    }
+
+    /// How the table of the lowest vibrating harmonic is made along a sweep, and why so.
+    #[must_use]
+    pub fn flexibility_way(&self) -> FlexibilityWay {
+        self.told
     }
 
     /// Selects tables by factorisation from now on, without slopes if these are expensive.

@@ -15,10 +15,10 @@
 //!
 //! With a speed Ω = pω the matrices of ω² join M: M − p²K₁/h² − ipG/h.
 
-use crate::condense::Condensed;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock};
 use crate::condense::refined_modes::{self, dense};
 use crate::condense::wave_poles::{Key, WavePoles};
+use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::cholesky::entries_by_degrees;
@@ -59,19 +59,26 @@ const MOST_CONDITION: f64 = 1e4;
 /// Largest relative change of a pole by its Newton step.
 const MOST_CHANGE: f64 = 1e-6;
 
-/// The poles of the i-th carried harmonic; `None` where they are too many or badly conditioned, or the structure can move without
-/// the reference stiffness.
+/// The poles of the i-th carried harmonic, or why it has none.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
-pub(super) fn poles(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
+pub(super) fn poles(
+    condensed: &Condensed,
+    i: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<core::result::Result<WavePoles, FlexibilityWay>> {
+    const UNSUITABLE: FlexibilityWay = FlexibilityWay::Unsuitable;
     let block = &condensed.blocks()[i];
     let is_forced = matches!(block.artificial, Artificial::None);
-    if block.number == 0 || !is_forced || !they_pay(condensed, block)? {
-        return Ok(None);
+    if block.number == 0 || !is_forced {
+        return Ok(Err(UNSUITABLE));
+    }
+    if let Some(reason) = factors_are_quicker(condensed, block)? {
+        return Ok(Err(reason));
     }
     let Some(wave) = Undamped::new(condensed, i, interrupt)? else {
-        return Ok(None);
+        return Ok(Err(UNSUITABLE));
     };
     let key = Key {
         matrices: (
@@ -81,7 +88,7 @@ pub(super) fn poles(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) 
         ),
         tied: block.tied.as_ref().map(|_| block.number),
     };
-    wave.poles(key, interrupt)
+    Ok(wave.poles(key, interrupt)?.ok_or(UNSUITABLE))
 }
 
 /// Whether these are the poles of a block.
@@ -98,8 +105,8 @@ pub(super) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
         && is_same(damping, &block.damping)
 }
 
-/// Whether the poles of a wave take less than a second, and no longer than the factorisations of a sweep.
-fn they_pay(condensed: &Condensed, block: &HarmonicBlock) -> Result<bool> {
+/// Why the poles of a wave take more than a second, or longer than the factorisations of a sweep, if they do.
+fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<FlexibilityWay>> {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
     let is_real = block.structural.is_none()
         && block.tied.is_none()
@@ -108,8 +115,11 @@ fn they_pay(condensed: &Condensed, block: &HarmonicBlock) -> Result<bool> {
         && real(&block.mass);
     let order = 2.0 * condensed.ndof() as f64;
     let work = order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX };
-    if work > MOST_POLE_WORK || is_dense(&block.reference)? {
-        return Ok(work <= MOST_POLE_WORK);
+    if work > MOST_POLE_WORK {
+        return Ok(Some(FlexibilityWay::Many));
+    }
+    if is_dense(&block.reference)? {
+        return Ok(None);
     }
     // A wave serves all harmonics unless their speeds differ.
     let harmonics = if block.tied.is_none() {
@@ -118,7 +128,8 @@ fn they_pay(condensed: &Condensed, block: &HarmonicBlock) -> Result<bool> {
         1
     };
     let entries = entries_by_degrees(&block.reference)? as f64;
-    Ok(OPERATIONS_OF_POLES * work <= POINTS * harmonics as f64 * OPERATIONS_OF_ENTRY * entries)
+    let of_factors = POINTS * harmonics as f64 * OPERATIONS_OF_ENTRY * entries;
+    Ok((OPERATIONS_OF_POLES * work > of_factors).then_some(FlexibilityWay::Sparse))
 }
 
 /// A wave in its undamped modes.
