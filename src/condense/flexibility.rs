@@ -6,7 +6,7 @@
 
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply};
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, boxed, try_push, try_vec};
+use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::multiply_adjoint;
 use crate::linalg::inner;
@@ -234,10 +234,10 @@ impl Workspace {
                     *load += 2.0 * omega * u;
                 }
             }
-            self.product.copy_from_slice(&self.load);
-            dynamic.solve(condensed, i, omega, &mut self.product, false, interrupt)?;
-            dynamic.refine(condensed, i, at, &self.load, &mut self.product, interrupt)?;
-            read(rows, &self.product, &mut slope);
+            let mut change = try_copy(&self.load, CONTEXT)?;
+            dynamic.solve(condensed, i, omega, &mut change, false, interrupt)?;
+            dynamic.refine(condensed, i, at, &self.load, &mut change, interrupt)?;
+            read(rows, &change, &mut slope);
         }
         Ok([value, slope])
     }
