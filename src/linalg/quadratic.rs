@@ -218,7 +218,7 @@ impl WithSimd for Form<'_> {
                 }
                 re.add_products(&a_re, &b_re);
                 im.add_products(&a_re, &b_im);
-                if a_im != [0.0; LANES] {
+                if a_im.iter().any(|x| *x != 0.0) {
                     im.add_products(&a_im, &b_re);
                     re.add_products(&a_im.map(|a| -a), &b_im);
                 }
