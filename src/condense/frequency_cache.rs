@@ -254,12 +254,13 @@ fn agreement(
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;
     let parts = [(&table.value, &exact.value), (&table.slope, &exact.slope)];
     let checked = if core::mem::replace(checks_slope, false) { 2 } else { 1 };
+    let allowed = [TOLERANCE, OF_SLOPES];
     let mut own = 0.0_f64;
     let mut off = Vec::new();
     for (part, (by_modes, exact)) in parts.into_iter().take(checked).enumerate() {
         let (column, deviation) = worst_column(by_modes, exact, outputs);
         // A factorisation of a stiff structure may be no better: that column shows.
-        if deviation.is_nan() || deviation > [TOLERANCE, OF_SLOPES][part] {
+        if deviation.is_nan() || deviation > allowed[part] {
             let of_column = column * outputs..(column + 1) * outputs;
             try_push(&mut off, (part, column, try_copy(&exact[of_column], CONTEXT)?), CONTEXT)?;
         }
@@ -274,7 +275,7 @@ fn agreement(
             outputs,
         )
         .1;
-        if !(of_modes <= [TOLERANCE, OF_SLOPES][part].max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
+        if !(of_modes <= allowed[part].max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
             return Ok(None);
         }
         if part == 0 {

@@ -13,7 +13,7 @@ use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::{self, multiply_adjoint};
 use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::quadratic::{self, ComplexSum};
+use crate::linalg::quadratic::{self, ComplexSum, terms_of_moduli};
 use crate::linalg::sparse::Csc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -96,7 +96,7 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
             *to = modulus(x);
         }
         // φᴴ K φ is 1.
-        if terms(stiffness, &sizes, &size) > SOFT_TERMS {
+        if terms_of_moduli(stiffness, &sizes, &size) > SOFT_TERMS {
             sums.fill(ComplexSum::default());
             quadratic::product(stiffness, &stiffness.values, x, &mut sums);
             for (to, sum) in strained.iter_mut().zip(&sums) {
@@ -155,17 +155,6 @@ fn moduli(of: &[Complex64]) -> Result<Vec<f64>> {
         *to = modulus(z);
     }
     Ok(found)
-}
-
-/// Sum of the moduli of the terms of xᴴ A x, from those of A, on a pattern, and of x.
-fn terms(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (j, x) in of_vector.iter().enumerate() {
-        let column = pattern.col_ptr[j]..pattern.col_ptr[j + 1];
-        let column = of_matrix[column.clone()].iter().zip(&pattern.row_idx[column]);
-        sum += x * column.map(|(a, &i)| a * of_vector[i]).sum::<f64>();
-    }
-    sum
 }
 
 /// y ← A x for values on a pattern.

@@ -2,8 +2,9 @@
 //!
 //! The operator (K + σM)⁻¹ M is self-adjoint in the M-inner product; its largest eigenvalues 1/(λ + σ) belong to
 //! the lowest λ, or those largest by modulus to the λ next to a shift −σ among them (Ericsson & Ruhe 1980,
-//! doi:10.1090/S0025-5718-1980-0583502-2). The basis is kept orthogonal in full. Repeated eigenvalues need a starting vector for each copy: after convergence the search starts again,
-//! orthogonal to the vectors found, until it finds no larger eigenvalue.
+//! doi:10.1090/S0025-5718-1980-0583502-2). The basis is kept orthogonal in full. Repeated eigenvalues need a starting
+//! vector for each copy: after convergence the search starts again, orthogonal to the vectors found, until it finds no
+//! larger eigenvalue.
 
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};

@@ -65,6 +65,18 @@ pub fn terms(a: &Csc, x: &[Complex64]) -> f64 {
     x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum()
 }
 
+/// The same from the moduli of A, on a pattern, and of x, where many motions are asked for.
+#[must_use]
+pub fn terms_of_moduli(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (j, x) in of_vector.iter().enumerate() {
+        let column = pattern.col_ptr[j]..pattern.col_ptr[j + 1];
+        let column = of_matrix[column.clone()].iter().zip(&pattern.row_idx[column]);
+        sum += x * column.map(|(a, &i)| a * of_vector[i]).sum::<f64>();
+    }
+    sum
+}
+
 /// Terms of xᴴ A x over its value up to which plain sums have the digits of a size.
 const CANCELLED: f64 = 1e4;
 
