@@ -1603,6 +1603,62 @@ typedef struct {
 HBVIB_NODISCARD
 hbvib_status hbvib_hooks_init(hbvib_hooks *h, size_t size_of_h);
 
+/// What is read from a response over a period.
+typedef enum {
+  /// Amplitude of the fundamental: harmonic 1, or the one that hbvib_reduction names.
+  HBVIB_MEASURE_FUNDAMENTAL = 0,
+  /// Amplitude of one harmonic, 0 where the motion does not have it; harmonic 0 is the magnitude of
+  /// the mean.
+  HBVIB_MEASURE_HARMONIC = 1,
+  /// Largest magnitude over the period.
+  HBVIB_MEASURE_PEAK = 2,
+  /// Root of the mean square over the period, mean included.
+  HBVIB_MEASURE_RMS = 3,
+  /// Largest value minus smallest one over the period.
+  HBVIB_MEASURE_RANGE = 4,
+} hbvib_measure;
+
+/// The derivative of the motion by time that a response sees.
+typedef enum {
+  /// Displacement.
+  HBVIB_DISPLACEMENT = 0,
+  /// Velocity.
+  HBVIB_VELOCITY = 1,
+  /// Acceleration.
+  HBVIB_ACCELERATION = 2,
+} hbvib_component;
+
+/// A response: a gauge, the weighted sum of degrees of freedom of one sector, and what is read from
+/// it over a period. Fill it by hbvib_response_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// A value of enum hbvib_measure.
+  int32_t measure;
+  /// Number of the harmonic of HBVIB_MEASURE_HARMONIC; the others do not use it.
+  int64_t harmonic;
+  /// Number of degrees of freedom; 0: the response degree of freedom of the solver options.
+  int64_t n;
+  /// The degrees of freedom, from 0; NULL if n is 0.
+  const int64_t *dofs;
+  /// Their weights, n numbers; NULL: 1 each.
+  const double *weights;
+  /// Sector of the wheel, from 0.
+  int64_t sector;
+  /// A value of enum hbvib_component.
+  int32_t component;
+  /// Must be 0.
+  int32_t reserved;
+} hbvib_response;
+
+/// Fills a response with the fundamental displacement of the response degree of freedom.
+///
+/// r          the struct; untouched on error.
+/// size_of_r  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_response_init(hbvib_response *r, size_t size_of_r);
+
 /// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
 typedef struct hbvib_branch hbvib_branch;
 
@@ -1629,6 +1685,12 @@ typedef struct {
   const double *guess;
   /// Complex numbers in guess.
   int64_t guess_len;
+  /// Array of the responses that are watched, struct_size of the first apart, or NULL: the
+  /// fundamental of the response degree of freedom. The first one leads HBVIB_AMPLITUDE and
+  /// hbvib_branch_peaks, and a tolerance holds for each; see hbvib_branch_response.
+  const hbvib_response *responses;
+  /// Number of these responses.
+  int64_t responses_len;
 } hbvib_forced_options;
 
 /// Fills the options of a forced response with zeros: the frequencies must be set.
@@ -1940,6 +2002,60 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch,
                              double *amplitude,
                              int64_t *point,
                              int64_t *count);
+
+/// Results of a response at each stored point.
+typedef enum {
+  /// The measure.
+  HBVIB_READING_VALUE = 0,
+  /// Complex amplitude; NaN where the measure is none of a single harmonic.
+  HBVIB_READING_COMPLEX = 1,
+  /// Estimated relative error, of the complex amplitude where there is one. NaN where it is
+  /// unknown, and everywhere without a tolerance and without estimate_error.
+  HBVIB_READING_ERROR = 2,
+  /// Phase omega t of the largest magnitude of a peak, or of the largest value of a range, in
+  /// 0 .. 2 pi; NaN for other measures.
+  HBVIB_READING_INSTANT = 3,
+} hbvib_reading;
+
+/// Number of the responses that were asked for in hbvib_forced_options, or a negative status.
+///
+/// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
+int64_t hbvib_branch_responses(const hbvib_branch *branch);
+
+/// Borrows the values of a response at all stored points: those of the curve, then those of the
+/// peaks, folds and requested solutions beside it, so that the number of a point is its place.
+///
+/// response  number of the response, from 0.
+/// reading   HBVIB_READING_VALUE and so on (enum hbvib_reading).
+/// out       receives the view, whose memory stays valid until hbvib_branch_free; fill it by
+///           hbvib_view_init before; untouched on error.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_ARGUMENT (reading), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_response(const hbvib_branch *branch,
+                                   int64_t response,
+                                   int32_t reading,
+                                   hbvib_view *out);
+
+/// Maxima of a response within the range, refined on the solution, in the order of the branch.
+///
+/// response   number of the response, from 0.
+/// capacity   numbers that fit into each array.
+/// omega      receives their angular frequencies, or NULL.
+/// value      receives the measures there, or NULL.
+/// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
+/// count      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity too small: the arrays are
+/// untouched), HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch,
+                                         int64_t response,
+                                         int64_t capacity,
+                                         double *omega,
+                                         double *value,
+                                         int64_t *point,
+                                         int64_t *count);
 
 /// Ways to the flexibility of the contacts along a branch, told by hbvib_branch_reduction with the
 /// reason.

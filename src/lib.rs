@@ -138,8 +138,8 @@ pub use analysis::verify::{Verification, verify};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
-    Amplitude, BatchOptions, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions,
-    SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions, Waves,
+    Amplitude, BatchOptions, Component, DampingForm, FloquetOptions, ForcedOptions, Measure, ModeChoice, ModeOptions,
+    Response, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions, Waves,
 };
 
 // Results.
@@ -151,7 +151,7 @@ pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, Floquet, HigherPeak, LimitCycle,
-    Multiplier, MultiplierClass, Optimum, Special, Stretch,
+    Multiplier, MultiplierClass, Optimum, ResponseSeries, Special, Stretch,
 };
 pub use time_integration::TimeResponse;
 

@@ -6,11 +6,10 @@
 //! passes 1 belongs to the fold.
 
 use crate::adaptivity::branch_tracer::BranchTracer;
-use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
-use crate::continuation::Point;
 use crate::continuation::bracket::Bracket;
 use crate::continuation::special_points::{Locator, SpecialPoint};
+use crate::continuation::{Point, PointAt};
 use crate::error::{Result, try_push};
 use crate::results::{BifurcationKind, SpecialKind, Verdict};
 use num_complex::Complex64;

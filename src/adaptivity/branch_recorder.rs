@@ -4,7 +4,7 @@ use crate::condense::{Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_copy, try_push};
 use crate::options::MAX_REFINEMENT;
 use crate::results::mode_branch::ModePoint;
-use crate::results::{Branch, Record, SpecialKind, Verdict};
+use crate::results::{Branch, Record, SeenWithError, SpecialKind, Verdict};
 use core::cmp::Ordering;
 use num_complex::Complex64;
 
@@ -56,6 +56,7 @@ struct SpecialRecord<'a> {
     slip_fractions: Vec<f64>,
     sampling_error: f64,
     errors: (f64, f64),
+    seen: Vec<SeenWithError>,
     mode: Option<ModePoint>,
 }
 
@@ -172,6 +173,7 @@ impl<'a> BranchRecorder<'a> {
             slip_fractions: try_copy(record.slip_fractions, CONTEXT)?,
             sampling_error: record.sampling_error,
             errors: record.errors,
+            seen: try_copy(record.seen, CONTEXT)?,
             mode,
         };
         try_push(&mut self.specials, special, CONTEXT)
@@ -191,6 +193,7 @@ impl<'a> BranchRecorder<'a> {
                 slip_fractions: &special.slip_fractions,
                 sampling_error: special.sampling_error,
                 errors: special.errors,
+                seen: &special.seen,
             };
             self.branch.push_special(special.kind, special.after, &record)?;
             if let (Some(mode), Some(data)) = (special.mode, self.branch.mode_data_mut()) {

@@ -1,10 +1,9 @@
 //! Special points of a branch: located between two neighbours that were recorded, sharpened and recorded.
 
 use crate::adaptivity::branch_tracer::BranchTracer;
-use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
-use crate::continuation::Point;
 use crate::continuation::special_points::{Locator, SpecialPoint};
+use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status};
 use crate::problem::Problem;
 use crate::results::SpecialKind;
@@ -20,10 +19,20 @@ impl BranchTracer<'_> {
     ) -> Result<()> {
         analysis.select(a.1.max(b.1))?;
         let interrupt = self.interrupt;
-        if SpecialPoint::Peak.between(a.0, b.0) {
+        if analysis.observes_peaks() && SpecialPoint::Peak.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
                 locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
             })?;
+        }
+        for response in analysis.further_responses() {
+            analysis.select(a.1.max(b.1))?;
+            let seen = [analysis.seen_by(response, a)?, analysis.seen_by(response, b)?];
+            if SpecialPoint::Peak.between(&seen[0], &seen[1]) {
+                let (kind, ends) = (SpecialKind::PeakOf(response), [(&seen[0], a.1), (&seen[1], b.1)]);
+                self.find(analysis, kind, ends[0], ends[1], |locator, problem, a, b| {
+                    locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
+                })?;
+            }
         }
         if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
             && level.between(a.0, b.0)
@@ -89,7 +98,8 @@ impl BranchTracer<'_> {
         loop {
             let resolution = analysis.resolution();
             let (a, b) = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
-            let mut locator = Locator::new(a.unknowns().len(), self.course.settings)?;
+            let locator = Locator::new(a.unknowns().len(), self.course.settings)?;
+            let mut locator = locator.with_response(kind.response());
             let Some(point) = search(&mut locator, analysis.problem(), &a, &b)? else {
                 // A point found with fewer harmonics is better than none.
                 if let Some((point, resolution)) = &found {

@@ -1,13 +1,13 @@
 //! Tracing of a branch from its first point to the end of the range: points, folds, peaks, and solutions at requested
 //! parameter values. The tracer is the same for every analysis.
 
-use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
+use crate::adaptivity::controller::{AdaptivityController, Refined};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::adaptivity::retracing::RecentPoints;
 use crate::continuation::special_points::SpecialPoint;
-use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
+use crate::continuation::{Advance, Continuation, Metric, Point, PointAt, Settings};
 use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::{Interrupt, Phase};

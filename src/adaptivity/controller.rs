@@ -12,7 +12,7 @@
 
 use crate::adaptivity::discretised::{Assessment, Discretised};
 use crate::adaptivity::estimate_spacing::{EstimateSpacing, Signs};
-use crate::continuation::Point;
+use crate::continuation::{Point, PointAt};
 use crate::error::Result;
 use crate::error_estimate::{Estimate, MARGIN};
 use crate::interrupt::Interrupt;
@@ -44,9 +44,6 @@ const BACKTRACK: usize = 3;
 
 /// Most refinements of one point.
 const MOST_REFINEMENTS: usize = 12;
-
-/// A point with its resolution.
-pub(crate) type PointAt<'p> = (&'p Point, usize);
 
 /// A point with the harmonics that its error requires, at the current resolution.
 pub(crate) struct Refined {

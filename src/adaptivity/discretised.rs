@@ -1,7 +1,7 @@
 //! The two traits by which the tracer follows the branch of an analysis.
 
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::continuation::Point;
+use crate::continuation::{Point, PointAt};
 use crate::error::Result;
 use crate::error_estimate::Estimate;
 use crate::interrupt::Interrupt;
@@ -74,6 +74,21 @@ pub(crate) trait Discretised {
     /// Stability of a solved point of the current resolution; `None` unless requested.
     fn verdict(&mut self, _point: &Point) -> Result<Option<Verdict>> {
         Ok(None)
+    }
+
+    /// Further responses whose peaks are sought.
+    fn further_responses(&self) -> core::ops::Range<usize> {
+        0..0
+    }
+
+    /// Whether peaks of the amplitude that the problem observes are sought.
+    fn observes_peaks(&self) -> bool {
+        true
+    }
+
+    /// A point of a resolution as a further response sees it: its amplitude and slope are those of the response.
+    fn seen_by(&mut self, _response: usize, (point, _resolution): PointAt<'_>) -> Result<Point> {
+        point.try_clone()
     }
 
     /// Selects the most accurate evaluation for [`Self::linear_at`].

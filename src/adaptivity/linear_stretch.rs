@@ -6,11 +6,10 @@
 //! the end of the range.
 
 use crate::adaptivity::branch_tracer::{BranchTracer, Stretch, some_unless_lost};
-use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_grid::LinearGrid;
-use crate::continuation::Point;
 use crate::continuation::special_points::SpecialPoint;
+use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::results::SpecialKind;
@@ -223,7 +222,15 @@ impl BranchTracer<'_> {
                 format!("undamped resonance at {omega}: the response is unbounded, and no peak is recorded there");
             hooks.log(LogLevel::Warn, &text);
         } else {
-            self.find_peaks(analysis, low, high)?;
+            if analysis.observes_peaks() {
+                self.find_peaks(analysis, SpecialKind::Peak, low, high)?;
+            }
+            let resolution = analysis.resolution();
+            for response in analysis.further_responses() {
+                let low = analysis.seen_by(response, (low, resolution))?;
+                let high = analysis.seen_by(response, (high, resolution))?;
+                self.find_peaks(analysis, SpecialKind::PeakOf(response), &low, &high)?;
+            }
         }
         for (i, &p) in self.course.at.iter().enumerate() {
             let inside = (pa <= p && p < pb) || (pb < p && p <= pa) || (last && p.to_bits() == pb.to_bits());
@@ -253,7 +260,7 @@ impl BranchTracer<'_> {
 
     /// Records the maxima of the amplitude between two neighbours. Those of the cubic through both and their derivatives
     /// tell where more than one lies between them, or one beside a minimum.
-    fn find_peaks(&mut self, analysis: &mut dyn Traceable, low: &Point, high: &Point) -> Result<()> {
+    fn find_peaks(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, low: &Point, high: &Point) -> Result<()> {
         let ends = [low, high].map(|p| (p.parameter(), growth(p)));
         let [(from, begin), (to, end)] = ends;
         // The cubic's derivative in the parts, and its value nearest to a change of sign.
@@ -278,7 +285,7 @@ impl BranchTracer<'_> {
         }
         let single = begin > 0.0 && end <= 0.0;
         if single && brackets.len() <= 1 {
-            return self.find_peak(analysis, low, ends);
+            return self.find_peak(analysis, kind, low, ends);
         }
         if brackets.is_empty()
             && (begin > 0.0) == (end > 0.0)
@@ -298,30 +305,36 @@ impl BranchTracer<'_> {
                     && *value < to
                     && let Some(point) = analysis.linear_at(low, *value, self.interrupt)?
                 {
-                    *slope = growth(&point);
+                    *slope = growth_of(analysis, kind, &point)?;
                 }
             }
             if bracket[0].1 > 0.0 && bracket[1].1 <= 0.0 {
-                self.find_peak(analysis, low, bracket)?;
+                self.find_peak(analysis, kind, low, bracket)?;
             }
         }
         Ok(())
     }
 
     /// Records the maximum between two values: the root of the derivative, found fast and then accurately.
-    fn find_peak(&mut self, analysis: &mut dyn Traceable, from: &Point, ends: [(f64, f64); 2]) -> Result<()> {
-        let Some(near) = self.stationary(analysis, from, ends)? else {
+    fn find_peak(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        kind: SpecialKind,
+        from: &Point,
+        ends: [(f64, f64); 2],
+    ) -> Result<()> {
+        let Some(near) = self.stationary(analysis, kind, from, ends)? else {
             return Ok(());
         };
         analysis.set_accurate(true);
-        let accurate = self.stationary_near(analysis, &near, (ends[0].0, ends[1].0));
+        let accurate = self.stationary_near(analysis, kind, &near, (ends[0].0, ends[1].0));
         let recorded = accurate.and_then(|peak| {
             let peak = match peak {
                 Some(peak) => Some(peak),
                 None => analysis.linear_at(&near, near.parameter(), self.interrupt)?,
             };
             match peak {
-                Some(peak) => self.record_on_line(analysis, SpecialKind::Peak, peak),
+                Some(peak) => self.record_on_line(analysis, kind, peak),
                 None => Ok(()),
             }
         });
@@ -333,6 +346,7 @@ impl BranchTracer<'_> {
     fn stationary_near(
         &self,
         analysis: &mut dyn Traceable,
+        kind: SpecialKind,
         near: &Point,
         (low, high): (f64, f64),
     ) -> Result<Option<Point>> {
@@ -345,10 +359,10 @@ impl BranchTracer<'_> {
                 let Some(point) = analysis.linear_at(near, value, self.interrupt)? else {
                     return Ok(None);
                 };
-                *end = (value, growth(&point));
+                *end = (value, growth_of(analysis, kind, &point)?);
             }
             if ends[0].1 > 0.0 && ends[1].1 <= 0.0 {
-                return self.stationary(analysis, near, ends);
+                return self.stationary(analysis, kind, near, ends);
             }
             width *= WIDENING;
         }
@@ -359,6 +373,7 @@ impl BranchTracer<'_> {
     fn stationary(
         &self,
         analysis: &mut dyn Traceable,
+        kind: SpecialKind,
         near: &Point,
         [low, high]: [(f64, f64); 2],
     ) -> Result<Option<Point>> {
@@ -378,7 +393,7 @@ impl BranchTracer<'_> {
             let Some(point) = analysis.linear_at(near, at, self.interrupt)? else {
                 break;
             };
-            let slope = growth(&point);
+            let slope = growth_of(analysis, kind, &point)?;
             best = Some(point);
             if slope == 0.0 {
                 break;
@@ -412,6 +427,15 @@ fn predicted_growth(a: &Point, b: &Point, s: f64) -> (f64, f64) {
     let z = za + (da + (c2 + c3 * s) * s) * s;
     let dz = da + (c2 * 2.0 + c3 * (3.0 * s)) * s;
     ((z.conj() * dz).re, z.norm_sqr())
+}
+
+/// The same of the amplitude whose peak is sought.
+fn growth_of(analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<f64> {
+    let resolution = analysis.resolution();
+    Ok(match kind.response() {
+        Some(response) => growth(&analysis.seen_by(response, (point, resolution))?),
+        None => growth(point),
+    })
 }
 
 /// d|z|/dp of the observed amplitude.

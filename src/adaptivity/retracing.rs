@@ -6,10 +6,9 @@
 //! p = −s² near a fold, a step from −x to y that comes back in p has y > x, and the recorded solution at its parameter
 //! lies 2y > x + y away. Solving at the parameter of the point, from the cubic through the recorded ones, decides the rest.
 
-use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
 use crate::continuation::arc_cubic::Cubic;
-use crate::continuation::{Continuation, Metric, Point, Settings};
+use crate::continuation::{Continuation, Metric, Point, PointAt, Settings};
 use crate::error::{Error, Result, Status, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;

@@ -9,12 +9,13 @@ use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::forced_equations::Equations;
 use crate::analysis::point_error::observed;
+use crate::analysis::watched_responses::WatchedResponses;
 use crate::condense::FlexibilityWay;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reduction, Reference, reduced_resonances};
 use crate::continuation::resolve::resolve;
-use crate::continuation::{Point, Settings};
-use crate::error::{Result, boxed, try_vec};
+use crate::continuation::{Point, PointAt, Settings};
+use crate::error::{Result, boxed, try_extend, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
@@ -22,7 +23,7 @@ use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::resonances::Resonance;
 use crate::model::spring::along;
-use crate::options::SolverOptions;
+use crate::options::{Response, SolverOptions};
 use crate::problem::Problem;
 use crate::results::{Branch, Resolution, SpecialKind, Verdict};
 use num_complex::Complex64;
@@ -86,8 +87,10 @@ pub(super) struct ForcedDiscretised<'a> {
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
-    /// Error of the point estimated last.
+    /// Error of the point estimated last, and those of the responses.
     last_error: f64,
+    last_errors: Vec<f64>,
+    responses: WatchedResponses<'a>,
     /// Whether the caller requests the estimate of every point.
     estimates_each: bool,
     /// Newton iterations of the first point.
@@ -111,7 +114,7 @@ impl<'a> ForcedDiscretised<'a> {
             (&'a ModelCache, &'a SharedWaves),
         ),
         (level, guess): (usize, Option<Vec<f64>>),
-        response: usize,
+        (responses, response): (&'a [Response<'a>], usize),
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let resolution = levels.at(level)?;
@@ -121,8 +124,10 @@ impl<'a> ForcedDiscretised<'a> {
         if solver.stability.is_some() {
             branch.tell_stability();
         }
+        let responses = WatchedResponses::new(responses);
+        branch.watch(responses.list, responses.is_observed())?;
         let estimates = solver.estimate_error || levels.is_automatic();
-        let equations = boxed(|| Equations::new(resolution, &settings, response, guess, interrupt))?;
+        let equations = boxed(|| Equations::new(resolution, &settings, (responses.list, response), guess, interrupt))?;
         Ok(Self {
             flexibility_way: equations.problem.flexibility_way(),
             recorder: BranchRecorder::new(branch, solver.tolerance),
@@ -134,12 +139,14 @@ impl<'a> ForcedDiscretised<'a> {
             estimator: estimates
                 .then(|| {
                     let estimator = ForcedEstimator::new(model, solver, response, extended, interrupt);
-                    boxed(|| Ok(estimator.over((settings.start, settings.end))))
+                    boxed(|| Ok(estimator.over((settings.start, settings.end)).watching(responses.list)))
                 })
                 .transpose()?,
             stale: false,
             estimated: None,
             last_error: f64::NAN,
+            last_errors: Vec::new(),
+            responses,
             estimates_each: solver.estimate_error,
             first_iterations: 0,
             guess_used: None,
@@ -207,11 +214,14 @@ impl<'a> ForcedDiscretised<'a> {
         } = &mut *self.resolutions.current;
         let condensed = &resolution.condensed;
         problem.response(point.unknowns(), point.parameter(), response);
+        self.responses
+            .read(problem, &point.v, &point.tangent, condensed.length())?;
         let solved = Solved {
             condensed,
             motion: point.unknowns(),
             omega: point.parameter(),
             response: response[observed(condensed)] * condensed.length(),
+            watched: &self.responses.watched,
             sticks: Some(problem.forces().all_stuck()),
             iterations: self.first_iterations,
         };
@@ -222,7 +232,13 @@ impl<'a> ForcedDiscretised<'a> {
     fn error(&mut self, point: &Point) -> Result<f64> {
         match self.estimated.take() {
             Some(error) => Ok(error),
-            None => Ok(self.estimate_error(point)?.map_or(f64::NAN, |e| e.response)),
+            None => {
+                let found = self.estimate_error(point)?;
+                self.last_errors.clear();
+                let Some(found) = found else { return Ok(f64::NAN) };
+                try_extend(&mut self.last_errors, &found.responses, "the responses")?;
+                Ok(found.response)
+            }
         }
     }
 }
@@ -243,9 +259,9 @@ impl Discretised for ForcedDiscretised<'_> {
     fn select(&mut self, resolution: usize) -> Result<()> {
         self.stale |= resolution != self.resolutions.index();
         let (settings, response) = (&self.settings, self.recorder.branch().response_dof());
-        let interrupt = self.interrupt;
+        let (interrupt, responses) = (self.interrupt, self.responses.list);
         self.resolutions.select(resolution, |level| {
-            Equations::new(level, settings, response, None, interrupt)
+            Equations::new(level, settings, (responses, response), None, interrupt)
         })
     }
 
@@ -284,6 +300,8 @@ impl Discretised for ForcedDiscretised<'_> {
         };
         self.estimated = Some(estimate.response);
         self.last_error = estimate.response;
+        self.last_errors.clear();
+        try_extend(&mut self.last_errors, &estimate.responses, "the responses")?;
         Ok(Some(Assessment {
             error: estimate.response,
             estimate,
@@ -300,6 +318,9 @@ impl Discretised for ForcedDiscretised<'_> {
             return Ok(false);
         }
         self.estimated = Some(self.last_error * factor);
+        for error in &mut self.last_errors {
+            *error *= factor;
+        }
         Ok(true)
     }
 
@@ -320,7 +341,7 @@ impl Discretised for ForcedDiscretised<'_> {
             && self.model.structure().is_damped();
         let factorised = self.linear_response.accurate || condensed.ndof() <= FACTORISE_UP_TO;
         let own = self.linear_response.equations(needed, index, |resolution| {
-            Equations::new(resolution, &self.settings, response, None, self.interrupt)
+            Equations::new(resolution, &self.settings, (&[], response), None, self.interrupt)
         });
         let settings = &self.settings;
         let current = &mut *self.resolutions.current;
@@ -350,6 +371,33 @@ impl Discretised for ForcedDiscretised<'_> {
         self.stability.as_mut().map(|s| s.at(resolution, point)).transpose()
     }
 
+    fn further_responses(&self) -> core::ops::Range<usize> {
+        usize::from(self.responses.is_observed())..self.responses.list.len()
+    }
+
+    fn observes_peaks(&self) -> bool {
+        self.responses.list.is_empty() || self.responses.is_observed()
+    }
+
+    fn seen_by(&mut self, response: usize, (point, resolution): PointAt<'_>) -> Result<Point> {
+        let mut seen = point.try_clone()?;
+        let found = match self.responses.recent(response, (point, resolution)) {
+            Some(found) => Some(found),
+            None => {
+                let current = self.resolutions.index();
+                self.select(resolution)?;
+                let problem = &mut self.resolutions.current.problem;
+                let found = problem.see(response, &point.v, &point.tangent)?;
+                self.select(current)?;
+                found
+            }
+        };
+        if let Some((amplitude, slope)) = found {
+            (seen.amplitude, seen.slope) = (amplitude, slope);
+        }
+        Ok(seen)
+    }
+
     fn linear_share(&mut self, point: &Point) -> Result<f64> {
         let problem = &mut self.resolutions.current.problem;
         problem.linear_share(point.unknowns(), point.parameter())
@@ -361,7 +409,13 @@ impl Recorder for ForcedDiscretised<'_> {
         self.refresh(point)?;
         let error = self.error(point)?;
         self.recorder.note_error(error);
-        let record = self.resolutions.current.record(point, error)?;
+        let resolution = self.resolutions.index();
+        self.responses.see(
+            &mut self.resolutions.current.problem,
+            (point, resolution),
+            &self.last_errors,
+        )?;
+        let record = self.resolutions.current.record(point, error, &self.responses.seen)?;
         self.recorder.record(&record, point.stalled)?;
         self.linear = self.resolutions.current.problem.forces().all_linear();
         if let Some(stability) = &mut self.stability {
@@ -399,7 +453,11 @@ impl Recorder for ForcedDiscretised<'_> {
             point.residual = found.residual;
             return Ok(());
         }
-        corrector.evaluate(problem, &point.v)
+        corrector.evaluate(problem, &point.v)?;
+        if kind.response().is_some() {
+            point.amplitude = problem.observe(point.unknowns(), &point.tangent).0;
+        }
+        Ok(())
     }
 
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
@@ -408,8 +466,12 @@ impl Recorder for ForcedDiscretised<'_> {
             error = self.error(point)?;
             self.recorder.note_error(error);
         }
+        let index = self.resolutions.index();
+        let unknown = if kind.is_fold() { &[] } else { &self.last_errors[..] };
+        self.responses
+            .see(&mut self.resolutions.current.problem, (point, index), unknown)?;
         let resolution = self.resolutions.current.resolution;
-        let record = self.resolutions.current.record(point, error)?;
+        let record = self.resolutions.current.record(point, error, &self.responses.seen)?;
         self.recorder.record_special(kind, resolution, &record, None)?;
         self.resolutions.note_recorded();
         Ok(())

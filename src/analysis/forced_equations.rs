@@ -5,9 +5,10 @@ use crate::continuation::resolve::solve_linear;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::options::Response;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
-use crate::results::{Record, Resolution};
+use crate::results::{Record, Resolution, SeenWithError};
 use num_complex::Complex64;
 
 /// The equations at one resolution.
@@ -35,17 +36,18 @@ impl<'a> Equations<'a> {
         Ok(found?.filter(|_| problem.forces().all_linear()))
     }
 
-    /// The equations over the range of the settings.
+    /// The equations over the range of the settings, with further responses.
     pub fn new(
         resolution: &'a Resolution,
         settings: &Settings,
-        response: usize,
+        (responses, response): (&[Response<'_>], usize),
         given: Option<Vec<f64>>,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let (condensed, samples) = (&*resolution.condensed, resolution.samples);
         let range = (settings.start, settings.end);
-        let problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
+        let mut problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
+        problem.watch((responses, response), samples)?;
         Ok(Self {
             corrector: Box::new(Corrector::new(
                 problem.unknowns(),
@@ -59,7 +61,7 @@ impl<'a> Equations<'a> {
     }
 
     /// The record of the point at which the problem was evaluated last.
-    pub fn record<'b>(&'b mut self, point: &'b Point, error: f64) -> Result<Record<'b>> {
+    pub fn record<'b>(&'b mut self, point: &'b Point, error: f64, seen: &'b [SeenWithError]) -> Result<Record<'b>> {
         let (u, omega) = (point.unknowns(), point.parameter());
         self.problem.response(u, omega, &mut self.response);
         let sampling_error = self.problem.sampling_error(u, omega)?;
@@ -74,6 +76,7 @@ impl<'a> Equations<'a> {
             slip_fractions: self.problem.slip_fractions(),
             sampling_error,
             errors: (error, f64::NAN),
+            seen,
         })
     }
 }

@@ -19,12 +19,12 @@ use crate::condense::{Condensed, FlexibilityWay, ModelCache, Reference};
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::{Detail, StepControl};
 use crate::continuation::{Point, Settings};
-use crate::error::{Error, Result, Status, boxed, try_push, try_vec};
+use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{Content, ForcedOptions, SolverOptions, check_highest};
+use crate::options::{Content, ForcedOptions, SolverOptions, check_highest, check_responses};
 use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -75,6 +75,9 @@ fn with_detail(
     range.check()?;
     range.check_guess(model.ndof())?;
     model.check_response_dof(solver.response_dof)?;
+    check_responses(range.responses, model.ndof(), model.structure().sectors())?;
+    let leading = with_leading_response(solver, range)?;
+    let solver = &leading;
     let interrupt = hooks.interrupt();
     let with_guess;
     let solver = match range.guess {
@@ -96,6 +99,24 @@ fn with_detail(
     branch.set_origin(model, true);
     odd_laws::check(model, &mut branch)?;
     Ok(branch)
+}
+
+/// The options with the response degree of freedom of the first response, where that has a single one.
+fn with_leading_response(solver: &SolverOptions, range: &ForcedOptions<'_>) -> Result<SolverOptions> {
+    let leading = range.responses.first().filter(|response| response.is_plain());
+    let Some(&[dof]) = leading.map(|response| response.dofs) else {
+        return Ok(*solver);
+    };
+    match solver.response_dof {
+        Some(other) if other != dof => fail!(
+            Argument,
+            "response_dof = {other}, but the first of the responses is that of {dof}; leave one of them out"
+        ),
+        _ => Ok(SolverOptions {
+            response_dof: Some(dof),
+            ..*solver
+        }),
+    }
 }
 
 /// Records the branch from its first point on.
@@ -158,8 +179,17 @@ fn follow(
     };
     let extended = extended_models(solver.estimate_error || levels.is_automatic())?;
     let models = (&levels, &stuck, (&extended, &waves));
-    let mut response =
-        boxed(|| ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt))?;
+    let mut response = boxed(|| {
+        ForcedDiscretised::new(
+            model,
+            solver,
+            settings,
+            models,
+            (level, given),
+            (range.responses, response_dof),
+            interrupt,
+        )
+    })?;
     hooks.log(
         LogLevel::Info,
         &sentence(response.flexibility_way(), response.branch().reduction().basis),

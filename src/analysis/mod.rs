@@ -41,6 +41,7 @@ pub mod time_response;
 mod tracked_damping;
 mod unbounded_response;
 pub mod verify;
+mod watched_responses;
 
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};

@@ -166,6 +166,7 @@ impl<'a> ModeDiscretised<'a> {
             motion: &equations.vibration,
             omega,
             response: equations.response[condensed.set().fundamental()] * condensed.length(),
+            watched: &[],
             sticks: Some(equations.problem.forces().all_stuck()),
             iterations: 0,
         };
@@ -358,5 +359,6 @@ fn record<'b>(equations: &'b Equations<'_>, point: &Point, numbers: &Numbers) ->
         slip_fractions: equations.problem.forces().slip_fractions(),
         sampling_error: numbers.sampling_error,
         errors: numbers.errors,
+        seen: &[],
     }
 }

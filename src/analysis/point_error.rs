@@ -80,6 +80,7 @@ pub fn estimate_at_with(
             .and_then(|x| x.get(observed(condensed)))
             .copied()
             .unwrap_or(Complex64::ZERO),
+        watched: &[],
         sticks: None,
         iterations: ITERATIONS,
     };

@@ -310,6 +310,7 @@ impl Tracked for TrackedDamping<'_> {
             motion: &vibration,
             omega,
             response: Complex64::ZERO,
+            watched: &[],
             sticks: Some(false),
             iterations: 0,
         };
@@ -388,6 +389,7 @@ impl Tracked for TrackedDamping<'_> {
             slip_fractions: equations.problem.forces().slip_fractions(),
             sampling_error,
             errors: (f64::NAN, error * self.damping.abs()),
+            seen: &[],
         };
         branch.push_followed(kind, &record)?;
         if let Some(modes) = branch.mode_data_mut() {

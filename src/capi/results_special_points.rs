@@ -102,11 +102,11 @@ pub unsafe extern "C" fn hbvib_branch_at(
 }
 
 /// Output arrays for special points, each optional, with the numbers of their arguments.
-struct Lists {
-    omega: (*mut f64, i32),
-    amplitude: (*mut f64, i32),
-    point: (*mut i64, i32),
-    count: (*mut i64, i32),
+pub(super) struct Lists {
+    pub(super) omega: (*mut f64, i32),
+    pub(super) amplitude: (*mut f64, i32),
+    pub(super) point: (*mut i64, i32),
+    pub(super) count: (*mut i64, i32),
 }
 
 impl Lists {
@@ -114,7 +114,7 @@ impl Lists {
     ///
     /// # Safety
     /// The caller of the C function states that `capacity` values fit into each array.
-    unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
+    pub(super) unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
         let columns = [
             Column::Reals(self.omega.0, self.omega.1, "omega"),
             Column::Reals(self.amplitude.0, self.amplitude.1, "amplitude"),

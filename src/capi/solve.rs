@@ -9,13 +9,14 @@ use super::model::hbvib_model;
 use super::outcome::Outcome;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
+use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::analysis;
 use crate::error::{Result, fail};
 use crate::hooks::Hooks;
 use crate::model::Model;
-use crate::options::{ForcedOptions, MAX_HARMONIC};
+use crate::options::{ForcedOptions, MAX_HARMONIC, Response};
 use crate::results::Branch;
 use core::ptr;
 use num_complex::Complex64;
@@ -69,6 +70,12 @@ pub struct hbvib_forced_options {
     pub guess: *const f64,
     /// Complex numbers in guess.
     pub guess_len: i64,
+    /// Array of the responses that are watched, struct_size of the first apart, or NULL: the
+    /// fundamental of the response degree of freedom. The first one leads HBVIB_AMPLITUDE and
+    /// hbvib_branch_peaks, and a tolerance holds for each; see hbvib_branch_response.
+    pub responses: *const hbvib_response,
+    /// Number of these responses.
+    pub responses_len: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_forced_options {
@@ -85,6 +92,8 @@ unsafe impl VersionedStruct for hbvib_forced_options {
             at_len: 0,
             guess: ptr::null(),
             guess_len: 0,
+            responses: ptr::null(),
+            responses_len: 0,
         }
     }
 }
@@ -129,7 +138,10 @@ pub unsafe extern "C" fn hbvib_forced_response(
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
         let forced = unsafe { load(forced, 3) }?;
-        let forced = unsafe { forced_options(&forced, model.ndof()) }.with_argument(3)?;
+        let watched =
+            unsafe { Watched::new(forced.responses, forced.responses_len, model.ndof(), 3) }.with_argument(3)?;
+        let responses = unsafe { watched.responses(3) }.with_argument(3)?;
+        let forced = unsafe { forced_options(&forced, &responses, model.ndof()) }.with_argument(3)?;
         unsafe {
             follow(hooks, out, forced.at.len(), |hooks| {
                 analysis::forced_response(&model, &solver, &forced, hooks)
@@ -138,7 +150,11 @@ pub unsafe extern "C" fn hbvib_forced_response(
     })
 }
 
-unsafe fn forced_options<'a>(o: &hbvib_forced_options, ndof: usize) -> Result<ForcedOptions<'a>> {
+unsafe fn forced_options<'a>(
+    o: &hbvib_forced_options,
+    responses: &'a [Response<'a>],
+    ndof: usize,
+) -> Result<ForcedOptions<'a>> {
     check_reserved(o.reserved, 3, "hbvib_forced_options")?;
     let at_len = count(o.at_len, 3, "at_len")?;
     let given = count(o.guess_len, 3, "guess_len")?;
@@ -157,6 +173,7 @@ unsafe fn forced_options<'a>(o: &hbvib_forced_options, ndof: usize) -> Result<Fo
         omega_stop: o.omega_stop,
         at: unsafe { input(o.at, at_len, 3, "at") }?,
         guess,
+        responses,
     };
     options.check()?;
     options.check_guess(ndof)?;

@@ -330,6 +330,37 @@ impl Workspace {
         dynamic.solve(condensed, i, omega, x, false, interrupt)?;
         dynamic.refine(condensed, i, at, &self.load, x, interrupt)
     }
+
+    /// The change of a motion x that was recovered last, dx = Z_κ⁻¹(∂F/∂ω dω − Wᴴ dw − ∂Z_κ/∂ω x dω), in the i-th carried
+    /// harmonic at ω.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn recover_along(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        (dw, d_omega): (&[Complex64], f64),
+        x: &[Complex64],
+        dx: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let block = &condensed.blocks()[i];
+        dx.fill(Complex64::ZERO);
+        self.add_frequency_slope(condensed, i, omega, x, dx);
+        for z in dx.iter_mut() {
+            *z *= -d_omega;
+        }
+        for (z, u) in dx.iter_mut().zip(block.unbalance.iter().flatten()) {
+            *z += 2.0 * omega * u * d_omega;
+        }
+        for (row, dw) in block.rows.iter().zip(dw) {
+            for &(p, a) in row.terms() {
+                dx[p] -= a.conj() * dw;
+            }
+        }
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, dx, false, interrupt)
+    }
 }
 
 /// The matrix of the current harmonic with its factors.

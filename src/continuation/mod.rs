@@ -18,5 +18,5 @@ pub mod step_control;
 
 pub use arc_length::{Advance, Continuation};
 pub use metric::Metric;
-pub use point::Point;
+pub use point::{Point, PointAt};
 pub use settings::Settings;

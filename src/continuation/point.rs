@@ -8,6 +8,9 @@ use num_complex::Complex64;
 /// Relative change of a parameter that may be round-off of the correction.
 const ROUND_OFF: f64 = 1e-10;
 
+/// A point with the number of its resolution.
+pub type PointAt<'p> = (&'p Point, usize);
+
 /// A point of a branch.
 #[derive(Clone, Debug)]
 pub struct Point {

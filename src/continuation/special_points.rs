@@ -71,6 +71,8 @@ pub struct Locator {
     /// Place of the solution found last on the same arc, and its departure from the cubic; empty: none.
     departed_at: f64,
     departure: Vec<f64>,
+    /// The further response that amplitudes are of; `None`: the observed one.
+    response: Option<usize>,
 }
 
 const CONTEXT: &str = "the search for special points";
@@ -99,7 +101,15 @@ impl Locator {
             derivative: try_vec(n + 1, 0.0, CONTEXT)?,
             departed_at: 0.0,
             departure: try_vec(n + 1, 0.0, CONTEXT)?,
+            response: None,
         })
+    }
+
+    /// Sees points as a further response of the problem.
+    #[must_use]
+    pub fn with_response(mut self, response: Option<usize>) -> Self {
+        self.response = response;
+        self
     }
 
     fn metric(&self, a: &Point, b: &Point) -> Metric {
@@ -303,6 +313,11 @@ impl Locator {
         let mut point = Point::new(v, corrected, 0.0);
         if metric.dot(&point.tangent, &self.derivative) < 0.0 {
             point.reverse();
+        }
+        if let Some(response) = self.response
+            && let Some((amplitude, slope)) = problem.see(response, &point.v, &point.tangent)?
+        {
+            (point.amplitude, point.slope) = (amplitude, slope);
         }
         Ok(Some(point))
     }

@@ -1,9 +1,10 @@
 //! The response of a point as its harmonics are doubled: how much of the change is still missing.
 //!
 //! With X₀ the response of the point, Xₖ that of the k-th extension and dₖ = |Xₖ − Xₖ₋₁| the next change is about
-//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q.
+//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q. Of several responses the largest relative change counts.
 
-use crate::error_estimate::estimate::{Estimate, MARGIN, relative};
+use crate::error::{Result, try_copy};
+use crate::error_estimate::estimate::{CONTEXT, Estimate, MARGIN};
 use num_complex::Complex64;
 
 /// The next change, relative to the whole, at which the response has settled, and at which it will do where no further
@@ -20,8 +21,8 @@ const MISSING: (f64, f64) = (0.5, 2.0);
 /// Responses of a point and of its extensions.
 #[derive(Clone, Debug)]
 pub(super) struct Doubling {
-    point: Complex64,
-    last: Complex64,
+    point: Vec<Complex64>,
+    last: Vec<Complex64>,
     /// First change, and the last two.
     first: f64,
     changes: [f64; 2],
@@ -29,25 +30,28 @@ pub(super) struct Doubling {
 }
 
 impl Doubling {
-    /// The response of the point.
-    pub fn new(point: Complex64) -> Self {
-        Self {
-            point,
-            last: point,
+    /// The responses of the point.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(point: &[Complex64]) -> Result<Self> {
+        Ok(Self {
+            point: try_copy(point, CONTEXT)?,
+            last: try_copy(point, CONTEXT)?,
             first: 0.0,
             changes: [0.0; 2],
             extensions: 0,
-        }
+        })
     }
 
-    /// Adds the response of the next extension.
-    pub fn add(&mut self, response: Complex64) {
-        let change = (response - self.last).norm();
+    /// Adds the responses of the next extension.
+    pub fn add(&mut self, responses: &[Complex64]) {
+        let change = largest(responses, &self.last, responses);
         if self.extensions == 0 {
             self.first = change;
         }
         self.changes = [self.changes[1], change];
-        self.last = response;
+        self.last.copy_from_slice(responses);
         self.extensions += 1;
     }
 
@@ -56,9 +60,9 @@ impl Doubling {
         self.extensions
     }
 
-    /// Size of the whole change so far.
+    /// Size of the whole change so far, relative to the response.
     fn whole(&self) -> f64 {
-        (self.last - self.point).norm()
+        largest(&self.last, &self.point, &self.last)
     }
 
     /// The next change, relative to the whole one; infinite where it is not known.
@@ -96,24 +100,23 @@ impl Doubling {
     /// Whether the whole change meets a tolerance with all that may be missing. One extension alone shows less than two.
     pub fn is_harmless(&self, tolerance: f64) -> bool {
         let whole = self.whole();
-        let size = self.last.norm();
         match self.extensions {
             0 => false,
-            1 => whole <= HARMLESS * tolerance * size,
-            _ => MARGIN * (whole + self.missing()) <= tolerance * size,
+            1 => whole <= HARMLESS * tolerance,
+            _ => MARGIN * (whole + self.missing()) <= tolerance,
         }
     }
 
     /// Whether the whole change is known well enough and misses a tolerance: a further extension would not change what follows.
     pub fn misses(&self, tolerance: f64) -> bool {
         let whole = self.whole() * (1.0 + self.next());
-        tolerance > 0.0 && self.suffices() && MARGIN * whole > tolerance * self.last.norm()
+        tolerance > 0.0 && self.suffices() && MARGIN * whole > tolerance
     }
 
     /// The estimate of the last extension, with the change that may be missing.
     pub fn bounded(&self, mut estimate: Estimate) -> Estimate {
         if self.extensions > 1 {
-            estimate.response += relative(self.missing(), self.last);
+            estimate.scale_response(estimate.response + self.missing());
         }
         estimate
     }
@@ -131,14 +134,23 @@ impl Doubling {
 
     /// The estimate of the last extension with the change that is missing.
     pub fn completed(&self, mut estimate: Estimate) -> Estimate {
-        estimate.response *= 1.0 + self.next();
+        estimate.scale_response(estimate.response * (1.0 + self.next()));
         estimate
     }
 
     /// The error of the response after the first extension, with a ratio found before.
     pub fn scaled(&self, ratio: f64) -> f64 {
-        relative(ratio * self.first, self.last)
+        ratio * self.first
     }
+}
+
+/// The largest difference of responses over their size; 0 where nothing differs.
+fn largest(a: &[Complex64], b: &[Complex64], sizes: &[Complex64]) -> f64 {
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).norm());
+    let relative = differences
+        .zip(sizes)
+        .map(|(d, size)| if d == 0.0 { 0.0 } else { d / size.norm() });
+    relative.fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -149,9 +161,9 @@ mod tests {
     /// Responses whose error falls by a factor q with each doubling.
     fn series(q: f64, extensions: usize) -> Doubling {
         let at = |k: i32| Complex64::new(1.0 + 1e-3 * q.powi(k), -2.0);
-        let mut series = Doubling::new(at(0));
+        let mut series = Doubling::new(&[at(0)]).unwrap();
         for k in 1..=extensions {
-            series.add(at(k as i32));
+            series.add(&[at(k as i32)]);
         }
         series
     }

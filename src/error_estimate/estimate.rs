@@ -16,7 +16,7 @@
 //! which neither the scaling of the equations nor the reference stiffness changes.
 
 use crate::condense::Condensed;
-use crate::error::{Result, Status, try_push, try_vec};
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
@@ -52,8 +52,11 @@ pub struct Estimate {
     pub too_large: bool,
     /// Relative error of the relative motions at the contacts, in norm.
     pub motion: f64,
-    /// Relative error of the complex fundamental of the response degree of freedom.
+    /// Relative error of the complex fundamental of the response degree of freedom, or the largest one of the responses that
+    /// were asked for.
     pub response: f64,
+    /// Relative error of each response that was asked for.
+    pub responses: Vec<f64>,
     /// Relative error of the frequency of a nonlinear mode; 0 for a forced response.
     pub frequency: f64,
     /// Absolute error of the damping ratio of a nonlinear mode; 0 for a forced response.
@@ -70,6 +73,17 @@ pub struct Estimate {
     pub corrected: Corrected,
 }
 
+impl Estimate {
+    /// Replaces the error of the response, and those of all responses in proportion.
+    pub(super) fn scale_response(&mut self, response: f64) {
+        let factor = response / self.response;
+        for error in &mut self.responses {
+            *error = if self.response > 0.0 { *error * factor } else { response };
+        }
+        self.response = response;
+    }
+}
+
 /// A solution with the extended harmonics, one or two Newton steps closer to the exact one.
 #[derive(Clone, Debug)]
 pub struct Corrected {
@@ -79,6 +93,8 @@ pub struct Corrected {
     pub motion: Vec<f64>,
     /// Fundamental of the response degree of freedom, in that unit.
     pub response: Complex64,
+    /// The responses that were asked for, in that unit: complex amplitudes where they have one.
+    pub watched: Vec<Complex64>,
     /// Angular frequency.
     pub omega: f64,
     /// Damping ratio of a nonlinear mode.
@@ -96,6 +112,8 @@ pub struct Solved<'a> {
     pub omega: f64,
     /// Fundamental of the response degree of freedom, in the caller's unit of length.
     pub response: Complex64,
+    /// The responses that were asked for, in that unit.
+    pub watched: &'a [Complex64],
     /// Whether all contacts stick, if that is known.
     pub sticks: Option<bool>,
     /// Newton iterations of a solution without a neighbour, by which the work of an estimate is bounded.
@@ -132,6 +150,7 @@ impl Solved<'_> {
             too_large: false,
             motion: 0.0,
             response: 0.0,
+            responses: try_vec(self.watched.len(), 0.0, CONTEXT)?,
             frequency: 0.0,
             damping: 0.0,
             harmonics: self.condensed.set().numbers().last().copied().unwrap_or(0),
@@ -142,6 +161,7 @@ impl Solved<'_> {
                 set: self.condensed.set().try_clone()?,
                 motion,
                 response: self.response,
+                watched: try_copy(self.watched, CONTEXT)?,
                 omega: self.omega,
                 damping,
             },
@@ -155,6 +175,7 @@ impl Solved<'_> {
             too_large,
             motion: f64::NAN,
             response: f64::NAN,
+            responses: try_vec(self.watched.len(), f64::NAN, CONTEXT)?,
             frequency: f64::NAN,
             damping: f64::NAN,
             change: f64::NAN,

@@ -18,8 +18,9 @@ use crate::error_estimate::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::options::SolverOptions;
+use crate::options::{Response, SolverOptions};
 use crate::problem::harmonic_balance::HarmonicBalance;
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Evaluations, each with a product, for which the work must suffice.
@@ -67,6 +68,8 @@ pub struct ForcedEstimator<'a> {
     tables: usize,
     /// Range of the frequencies of the points.
     range: Option<(f64, f64)>,
+    /// The responses that were asked for.
+    responses: &'a [Response<'a>],
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -97,7 +100,15 @@ impl<'a> ForcedEstimator<'a> {
             rows: Vec::new(),
             tables: 0,
             range: None,
+            responses: &[],
         }
+    }
+
+    /// Watches responses: their errors count.
+    #[must_use]
+    pub fn watching(mut self, responses: &'a [Response<'a>]) -> Self {
+        self.responses = responses;
+        self
     }
 
     /// For points in a range of frequency; for one point at a single frequency, after which no extended problem is kept.
@@ -206,7 +217,7 @@ impl<'a> ForcedEstimator<'a> {
     #[inline(never)]
     fn extend_by_doubling(&mut self, solved: &Solved<'_>, extent: Extent, mut work: Work) -> Result<Option<Estimate>> {
         let mut highest = extent.least;
-        let mut series = Doubling::new(solved.response);
+        let mut series = Doubling::new(observed(&solved.response, solved.watched))?;
         let mut last: Option<Estimate> = None;
         loop {
             let stage = Extent {
@@ -228,7 +239,7 @@ impl<'a> ForcedEstimator<'a> {
             let Some(mut found) = found.filter(|found| found.certified) else {
                 return Ok(last.filter(|_| series.suffices()).map(|last| series.completed(last)));
             };
-            series.add(found.corrected.response);
+            series.add(observed(&found.corrected.response, &found.corrected.watched));
             found.steps += last.as_ref().map_or(0, |last| last.steps);
             if highest >= extent.core && !extent.short {
                 return Ok(Some(found));
@@ -236,7 +247,7 @@ impl<'a> ForcedEstimator<'a> {
             if let Some((ratio, sure)) = self.ratio.at(extent.least).filter(|_| last.is_none()) {
                 let scaled = series.scaled(ratio);
                 if scaled <= sure * self.options.tolerance {
-                    found.response = scaled;
+                    found.scale_response(scaled);
                     return Ok(Some(found));
                 }
             }
@@ -378,7 +389,8 @@ impl<'a> ForcedEstimator<'a> {
         } else {
             let range = (omega, omega);
             let (response, samples, interrupt) = (self.response, resolution.samples, self.interrupt);
-            let problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
+            let mut problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
+            problem.watch((self.responses, response), samples)?;
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
         if by_modes && !system.problem.has_modes() {
@@ -422,5 +434,14 @@ impl<'a> ForcedEstimator<'a> {
         {
             self.extended.remove(oldest);
         }
+    }
+}
+
+/// What doubling watches: the responses that were asked for, or the one that every point has.
+fn observed<'o>(response: &'o Complex64, watched: &'o [Complex64]) -> &'o [Complex64] {
+    if watched.is_empty() {
+        core::slice::from_ref(response)
+    } else {
+        watched
     }
 }

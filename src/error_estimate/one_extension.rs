@@ -1,9 +1,9 @@
 //! One extension of a point of a forced response: the extended problem is solved, and its solution tells the error.
 
 use crate::condense::Condensed;
-use crate::error::{Result, try_copy, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, ROUNDING, SHARE, has_converged_tail, omits_nothing, relative, tail};
-use crate::error_estimate::extended_newton::{FirstStep, extend};
+use crate::error_estimate::extended_newton::{ExtendedSolution, FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::{Corrected, Estimate, Solved};
@@ -11,6 +11,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
+use num_complex::Complex64;
 
 /// Share of the residual that a guess from another point may leave.
 const CLOSER: f64 = 0.5;
@@ -63,7 +64,7 @@ pub(super) fn extend_once(
     system.measure_by_point(from.is_some());
     let length = condensed.length();
     let enough = |problem: &HarmonicBalance<'_>, at: &[f64], change: &[f64], next: &[f64]| {
-        if !extent.by_doubling {
+        if !extent.by_doubling || !solved.watched.is_empty() {
             let next = norm(&next[..n]);
             return next <= SHARE * norm(change) || next <= ROUNDING * norm(&before);
         }
@@ -110,17 +111,24 @@ pub(super) fn extend_once(
     let change = norm(&change) / size;
     let (x, dx) = system.problem.observe(&extended.at, &extended.next);
     let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
+    let watched = watched(system, solved, &extended, length)?;
     let tail = tail(set, solved.condensed.set(), &z)?;
     let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
     let known = |x: f64| if certified { x } else { f64::NAN };
     for z in &mut z {
         *z *= length;
     }
+    let mut responses = try_vec(watched.values.len(), f64::NAN, CONTEXT)?;
+    for (error, (value, change)) in responses.iter_mut().zip(watched.values.iter().zip(&watched.changes)) {
+        *error = known(relative(*change, *value));
+    }
+    let of_response = relative((response - solved.response).norm() + next, response);
     Ok(Some(Estimate {
         certified,
         too_large: !certified && extent.short,
         motion: known(change + extended.missing * norm(&extended.next[..n]) / size),
-        response: known(relative((response - solved.response).norm() + next, response)),
+        response: known(responses.iter().copied().reduce(f64::max).unwrap_or(of_response)),
+        responses,
         frequency: known(0.0),
         damping: known(0.0),
         harmonics: set.numbers().last().copied().unwrap_or(0),
@@ -131,8 +139,44 @@ pub(super) fn extend_once(
             set: set.try_clone()?,
             motion: z,
             response,
+            watched: watched.values,
             omega,
             damping: 0.0,
         },
     }))
+}
+
+/// The responses that were asked for with more harmonics.
+struct Watched {
+    values: Vec<Complex64>,
+    /// Changes from the point, with what may still be missing.
+    changes: Vec<f64>,
+}
+
+/// Reads the responses at the corrected solution Z + δ.
+fn watched(
+    system: &mut ExtendedSystem<HarmonicBalance<'_>>,
+    solved: &Solved<'_>,
+    extended: &ExtendedSolution,
+    length: f64,
+) -> Result<Watched> {
+    let mut found = Watched {
+        values: Vec::new(),
+        changes: Vec::new(),
+    };
+    if solved.watched.is_empty() {
+        return Ok(found);
+    }
+    let mut v = try_copy(&extended.at, CONTEXT)?;
+    try_push(&mut v, solved.omega, CONTEXT)?;
+    let mut seen = Vec::new();
+    system.problem.see_all(&v, &extended.next, &mut seen)?;
+    for (seen, before) in seen.iter().zip(solved.watched) {
+        let (value, change) = seen.observed();
+        let corrected = (value + change) * length;
+        let missing = extended.missing * change.norm() * length;
+        try_push(&mut found.values, corrected, CONTEXT)?;
+        try_push(&mut found.changes, (corrected - before).norm() + missing, CONTEXT)?;
+    }
+    Ok(found)
 }

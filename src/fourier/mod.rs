@@ -1,12 +1,14 @@
 //! Real Fourier series: the carried harmonics and their packing, values and roots, transforms.
 
 mod harmonic_set;
+mod measured;
 mod roots;
 mod series;
 pub mod transform;
 mod turning_points;
 
 pub use harmonic_set::{HarmonicSet, gcd};
+pub use measured::{Reader, Reading};
 pub use roots::safe_newton;
 pub use series::{Jet, VALUES_OF_A_CROSSING, crossing, jet};
 pub use turning_points::{Extremum, TurningPoints};

@@ -7,12 +7,14 @@ use crate::condense::Condensed;
 use crate::condense::FlexibilityWay;
 use crate::condense::frequency_cache::FrequencyCache;
 use crate::condense::modal_table::ModalTable;
-use crate::error::{Result, Status, try_vec};
+use crate::error::{Result, Status, boxed, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::lu::Lu;
+use crate::options::Response;
 use crate::problem::contact_forces::ContactForces;
+use crate::problem::gauges::{Gauges, Seen};
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual, put};
 use crate::problem::passed_resonance;
@@ -42,6 +44,9 @@ pub struct HarmonicBalance<'a> {
     /// One packed signal.
     pub(super) change: Vec<f64>,
     pub(super) products: ProductMemory,
+    /// Further responses, and what the last reading of one found.
+    gauges: Option<Box<Gauges<'a>>>,
+    seen: Vec<Seen>,
 }
 
 /// Memory of products with the Jacobian; that for systems which are solved by iteration is allocated by the first of them.
@@ -93,7 +98,34 @@ impl<'a> HarmonicBalance<'a> {
                 harmonic: [of_harmonic()?, of_harmonic()?],
                 ..ProductMemory::default()
             },
+            gauges: None,
+            seen: Vec::new(),
         })
+    }
+
+    /// Watches further responses.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn watch(&mut self, responses: (&[Response<'_>], usize), samples: usize) -> Result<()> {
+        let (condensed, interrupt) = (self.condensed, self.forces.interrupt());
+        self.gauges = match responses.0 {
+            [] => None,
+            _ => Some(boxed(|| Gauges::new(condensed, responses, samples, interrupt))?),
+        };
+        Ok(())
+    }
+
+    /// What all further responses are at `v` = (u, ω), with their derivatives along a direction.
+    ///
+    /// # Errors
+    /// Those of [`Gauges::read`].
+    pub fn see_all(&mut self, v: &[f64], direction: &[f64], seen: &mut Vec<Seen>) -> Result<()> {
+        seen.clear();
+        match &mut self.gauges {
+            Some(gauges) => gauges.read(v, direction, None, seen),
+            None => Ok(()),
+        }
     }
 
     /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only.
@@ -385,6 +417,14 @@ impl Problem for HarmonicBalance<'_> {
 
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         self.observe_at(u, direction, None)
+    }
+
+    fn see(&mut self, response: usize, v: &[f64], direction: &[f64]) -> Result<Option<(Complex64, Complex64)>> {
+        let Some(gauges) = &mut self.gauges else {
+            return Ok(None);
+        };
+        gauges.read(v, direction, Some(response), &mut self.seen)?;
+        Ok(self.seen.first().map(Seen::observed))
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, p: f64, u: &mut [f64]) -> Result<bool> {

@@ -7,6 +7,7 @@
 pub mod contact_forces;
 mod contact_jacobian;
 pub mod epmc;
+pub mod gauges;
 pub mod harmonic_balance;
 pub mod homotopy;
 mod nearby_response;

@@ -80,6 +80,15 @@ pub trait Problem: Jacobian {
     /// numbers, the parameter last).
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64);
 
+    /// A further response at a solved point v = (u, p) and its derivative along `direction`; `None`: the problem has none. The
+    /// point evaluated last remains what it is.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    fn see(&mut self, _response: usize, _v: &[f64], _direction: &[f64]) -> Result<Option<(Complex64, Complex64)>> {
+        Ok(None)
+    }
+
     /// Fills an initial guess; `false` where the problem has none of this kind.
     ///
     /// # Errors

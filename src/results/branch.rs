@@ -7,19 +7,10 @@ use crate::error::{Error, Result, Status, fail};
 use crate::results::mode_branch::ModeData;
 use crate::results::origin::Origin;
 use crate::results::parameter_branch::ParameterData;
+use crate::results::response_series::ResponseSeries;
+use crate::results::special::Special;
 use crate::results::verdict::Located;
 use num_complex::Complex64;
-
-/// A solution beside the curve: a peak, a fold, or one at a requested parameter value.
-#[derive(Clone, Copy, Debug)]
-pub struct Special {
-    /// Number of the point; it continues the numbering of the curve.
-    pub point: usize,
-    /// Angular frequency.
-    pub omega: f64,
-    /// Amplitude of the response degree of freedom.
-    pub amplitude: f64,
-}
 
 /// A branch of solutions.
 ///
@@ -48,6 +39,8 @@ pub struct Branch {
     pub(super) damping_error_estimate: Vec<f64>,
     pub(super) motion: Vec<f64>,
     pub(super) response: Vec<Complex64>,
+    /// The responses that were asked for.
+    pub(super) responses: Vec<ResponseSeries>,
     pub(super) peaks: Vec<Special>,
     pub(super) folds: Vec<Special>,
     /// Limit cycles, each with the slope of the damping ratio.
@@ -109,7 +102,8 @@ impl Branch {
         self.omega.get(point).copied()
     }
 
-    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point.
+    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point, or the measure of the first response that
+    /// was asked for.
     #[must_use]
     pub fn amplitude(&self) -> &[f64] {
         &self.amplitude[..self.curve]

@@ -4,8 +4,10 @@ use crate::condense::{Condensed, Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
 use crate::options::SolverOptions;
-use crate::results::branch::{Branch, Place, Special};
+use crate::results::branch::{Branch, Place};
 use crate::results::mode_branch::ModeData;
+use crate::results::response_series::SeenWithError;
+use crate::results::special::Special;
 use crate::results::verdict::{Bifurcation, BifurcationKind, Located};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -37,12 +39,16 @@ pub struct Record<'a> {
     /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
     /// damping ratio; NaN if unknown.
     pub errors: (f64, f64),
+    /// What the responses of the run are, in the solver's units, with their errors; empty without any.
+    pub seen: &'a [SeenWithError],
 }
 
 /// List to which a special point belongs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SpecialKind {
     Peak,
+    /// A peak of a further response.
+    PeakOf(usize),
     Fold,
     At(usize),
     /// Any but a fold, with the numbers of unstable directions before and after it.
@@ -56,6 +62,14 @@ pub(crate) enum SpecialKind {
 impl SpecialKind {
     pub fn is_fold(self) -> bool {
         matches!(self, Self::Fold | Self::Bifurcation(BifurcationKind::Fold, _))
+    }
+
+    /// The further response whose peak it is.
+    pub fn response(self) -> Option<usize> {
+        match self {
+            Self::PeakOf(response) => Some(response),
+            _ => None,
+        }
     }
 }
 
@@ -90,6 +104,7 @@ impl Branch {
             damping_error_estimate: Vec::new(),
             motion: Vec::new(),
             response: Vec::new(),
+            responses: Vec::new(),
             peaks: Vec::new(),
             folds: Vec::new(),
             limit_cycles: Vec::new(),
@@ -175,12 +190,20 @@ impl Branch {
             .try_reserve(points * record.motion.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
         self.motion.extend_from_slice(record.motion);
+        let length = record.resolution.condensed.length();
+        for (response, seen) in self.responses.iter_mut().zip(record.seen) {
+            response.push(seen, length)?;
+        }
         // The frequency is stored last: its length is the number of points.
         try_push(&mut self.omega, record.omega, CONTEXT)?;
         self.places.push(place);
         let condensed = &*record.resolution.condensed;
-        let length = condensed.length();
-        self.amplitude.push(record.amplitude.norm() * length);
+        let leading = self.responses.first().zip(record.seen.first());
+        let amplitude = match leading.filter(|(response, _)| !response.is_observed()) {
+            Some((_, seen)) => seen.seen.reading.value,
+            None => record.amplitude.norm(),
+        };
+        self.amplitude.push(amplitude * length);
         self.response.extend(record.response.iter().map(|x| x * length));
         self.residual.push(record.residual);
         self.sampling_error.push(record.sampling_error);
@@ -223,7 +246,26 @@ impl Branch {
             amplitude: self.amplitude[point],
         };
         let list = match kind {
-            SpecialKind::Peak => &mut self.peaks,
+            SpecialKind::Peak => {
+                if let Some(response) = self.responses.first_mut() {
+                    response.push_peak(special)?;
+                }
+                &mut self.peaks
+            }
+            SpecialKind::PeakOf(response) => {
+                let Some(of) = self.responses.get_mut(response) else {
+                    return crate::error::fail!(Internal, "a peak of an unknown response");
+                };
+                let special = Special {
+                    amplitude: of.values()[point],
+                    ..special
+                };
+                of.push_peak(special)?;
+                if response > 0 {
+                    return Ok(());
+                }
+                &mut self.peaks
+            }
             SpecialKind::Fold => {
                 self.push_bifurcation((BifurcationKind::Fold, [None; 2]), after, special)?;
                 &mut self.folds

@@ -354,6 +354,7 @@ impl Tracked for TrackedResponse<'_> {
             motion: &own,
             omega,
             response: amplitude * condensed.length(),
+            watched: &[],
             sticks: None,
             iterations: ITERATIONS,
         };
@@ -408,6 +409,7 @@ impl Tracked for TrackedResponse<'_> {
             slip_fractions: &slip_fractions,
             sampling_error,
             errors: (error, f64::NAN),
+            seen: &[],
         };
         branch.push_followed(kind, &record)?;
         data.push(p, (self.d_amplitude, f64::NAN))?;

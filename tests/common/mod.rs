@@ -4,6 +4,7 @@
 // Each test crate uses its own part of this module.
 #![allow(dead_code)]
 
+pub mod chains;
 pub mod decimal_comma;
 pub mod energy;
 pub mod example;
@@ -305,6 +306,7 @@ pub fn sweep(model: &Model, solver: &SolverOptions, from: f64, to: f64, at: &[f6
         omega_stop: to,
         at,
         guess: None,
+        responses: &[],
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }

@@ -261,6 +261,7 @@ fn compare(case: &Case) {
         omega_stop: end,
         at: &at,
         guess: None,
+        responses: &[],
     };
     let named = format!(
         "{} {:?} {:?}, {} contacts, H = {}, {start} .. {end}",
@@ -356,6 +357,7 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                 omega_stop: case.range.1,
                 at: &at,
                 guess: None,
+                responses: &[],
             };
             let options = case.options();
             let named = format!("{n} {shape:?} {damping:?}");

@@ -236,6 +236,7 @@ fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
             omega_stop: 2.0,
             at: &at,
             guess: None,
+            responses: &[],
         };
         let cancelled = || stop_after == 0;
         let mut progress = |p: &Progress| p.point >= stop_after;

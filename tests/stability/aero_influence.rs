@@ -449,6 +449,7 @@ fn bad_influence_is_refused() {
         omega_stop: 1.1,
         at: &[],
         guess: None,
+        responses: &[],
     };
     let solved = hbvib::forced_response(&sector(1), &krylov, &range, &mut Hooks::default());
     refused(solved, Status::Unsupported, &["aerodynamic"]);

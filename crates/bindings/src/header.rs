@@ -57,7 +57,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Solve",
         about: "options, progress and cancellation, forced responses",
-        files: &["solve_options", "solve_hooks", "solve"],
+        files: &["solve_options", "solve_hooks", "solve_responses", "solve"],
     },
     Section {
         title: "Results",
@@ -65,6 +65,7 @@ pub const SECTIONS: [Section; 13] = [
         files: &[
             "results",
             "results_special_points",
+            "results_responses",
             "results_reduction",
             "results_energy",
             "results_contacts",

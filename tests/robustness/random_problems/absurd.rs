@@ -156,6 +156,7 @@ fn absurd_options_end_within_their_bounds() {
             omega_stop: to,
             at: &[0.5 * (from + to)],
             guess: None,
+            responses: &[],
         };
         let found = model(&spring, &driven).and_then(|m| forced_response(&m, &solver, &range, &mut Hooks::default()));
         let asked = spring.0.load(Ordering::Relaxed);

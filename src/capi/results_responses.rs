@@ -1,0 +1,119 @@
+//! Section "Results" of the header: the responses that a forced response was asked for.
+
+#![allow(non_camel_case_types)]
+
+use super::boundary::{WithArgument, call, call_count};
+use super::handles::{KeptBranch, read};
+use super::indices::index;
+use super::matrices::hbvib_scalar;
+use super::results::hbvib_view;
+use super::results_special_points::Lists;
+use super::solve::hbvib_branch;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out};
+use crate::error::{Status, fail};
+use core::ptr;
+
+/// Results of a response at each stored point.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum hbvib_reading {
+    /// The measure.
+    HBVIB_READING_VALUE = 0,
+    /// Complex amplitude; NaN where the measure is none of a single harmonic.
+    HBVIB_READING_COMPLEX = 1,
+    /// Estimated relative error, of the complex amplitude where there is one. NaN where it is
+    /// unknown, and everywhere without a tolerance and without estimate_error.
+    HBVIB_READING_ERROR = 2,
+    /// Phase omega t of the largest magnitude of a peak, or of the largest value of a range, in
+    /// 0 .. 2 pi; NaN for other measures.
+    HBVIB_READING_INSTANT = 3,
+}
+
+/// Number of the responses that were asked for in hbvib_forced_options, or a negative status.
+///
+/// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_responses(branch: *const hbvib_branch) -> i64 {
+    call_count(|| Ok(read::<KeptBranch>(branch, 1)?.branch.responses().len()))
+}
+
+/// Borrows the values of a response at all stored points: those of the curve, then those of the
+/// peaks, folds and requested solutions beside it, so that the number of a point is its place.
+///
+/// response  number of the response, from 0.
+/// reading   HBVIB_READING_VALUE and so on (enum hbvib_reading).
+/// out       receives the view, whose memory stays valid until hbvib_branch_free; fill it by
+///           hbvib_view_init before; untouched on error.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_ARGUMENT (reading), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_response(
+    branch: *const hbvib_branch,
+    response: i64,
+    reading: i32,
+    out: *mut hbvib_view,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let all = kept.branch.responses();
+        let of = &all[index(response, all.len(), 2, "response")?];
+        unsafe { check_out(out, 4) }?;
+        use hbvib_reading as r;
+        let real = |values: &[f64]| (hbvib_scalar::HBVIB_REAL, values.as_ptr());
+        let (scalar, data) = match reading {
+            k if k == r::HBVIB_READING_VALUE as i32 => real(of.values()),
+            k if k == r::HBVIB_READING_ERROR as i32 => real(of.errors()),
+            k if k == r::HBVIB_READING_INSTANT as i32 => real(of.instants()),
+            k if k == r::HBVIB_READING_COMPLEX as i32 => (hbvib_scalar::HBVIB_COMPLEX, of.complex().as_ptr().cast()),
+            other => {
+                return fail!(Argument, "reading = {other}, needs a value of enum hbvib_reading").with_argument(3);
+            }
+        };
+        let points = of.values().len();
+        let view = hbvib_view {
+            scalar: scalar as i32,
+            rank: 1,
+            data: if points == 0 { ptr::null() } else { data },
+            shape: [points as i64, 1, 1],
+            ..hbvib_view::defaults()
+        };
+        unsafe { fill_out(out, view) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Maxima of a response within the range, refined on the solution, in the order of the branch.
+///
+/// response   number of the response, from 0.
+/// capacity   numbers that fit into each array.
+/// omega      receives their angular frequencies, or NULL.
+/// value      receives the measures there, or NULL.
+/// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
+/// count      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity too small: the arrays are
+/// untouched), HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_response_peaks(
+    branch: *const hbvib_branch,
+    response: i64,
+    capacity: i64,
+    omega: *mut f64,
+    value: *mut f64,
+    point: *mut i64,
+    count: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let all = kept.branch.responses();
+        let of = &all[index(response, all.len(), 2, "response")?];
+        let lists = Lists {
+            omega: (omega, 4),
+            amplitude: (value, 5),
+            point: (point, 6),
+            count: (count, 7),
+        };
+        unsafe { lists.fill(of.peaks(), (capacity, 3)) }
+    })
+}

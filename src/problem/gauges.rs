@@ -1,0 +1,217 @@
+//! Further responses at a solved point: gauges Σ w x of the whole motion, with their derivatives along a direction.
+//!
+//! The motion of a harmonic and its change along (dy, dω) follow from one factorisation each,
+//!
+//! > x = Z_κ⁻¹ (F − Wᴴ w),  dx = Z_κ⁻¹ (∂F/∂ω dω − Wᴴ dw − ∂Z_κ/∂ω x dω),  w = f − κ y,
+//!
+//! whatever the number of gauges. They are read at solved points alone: Newton's iterations do not know them.
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::Workspace;
+use crate::condense::near_rigid_motion;
+use crate::error::{Result, try_push, try_vec};
+use crate::fourier::{Reader, Reading};
+use crate::interrupt::Interrupt;
+use crate::model::reduced_wave::MotionRow;
+use crate::options::{Measure, Response};
+use crate::problem::contact_forces::ContactForces;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the responses";
+
+/// One gauge on a condensed model.
+struct Gauge {
+    measure: Measure,
+    order: i32,
+    /// Per carried harmonic the rows of its degrees of freedom, each times its weight and the turn to its sector.
+    rows: Vec<Vec<(Complex64, MotionRow)>>,
+}
+
+impl Gauge {
+    fn new(condensed: &Condensed, response: &Response<'_>, default: usize) -> Result<Self> {
+        let mut rows = Vec::new();
+        for (i, block) in condensed.blocks().iter().enumerate() {
+            let turn = block.next.powu(u32::try_from(response.sector).unwrap_or(u32::MAX));
+            let mut of_harmonic = Vec::new();
+            let only = [default];
+            let dofs = if response.dofs.is_empty() { &only } else { response.dofs };
+            for (k, dof) in dofs.iter().enumerate() {
+                let weight = response.weights.get(k).copied().unwrap_or(1.0);
+                try_push(
+                    &mut of_harmonic,
+                    (turn * weight, condensed.motion_row(i, *dof)?),
+                    CONTEXT,
+                )?;
+            }
+            try_push(&mut rows, of_harmonic, CONTEXT)?;
+        }
+        Ok(Self {
+            measure: response.measure,
+            order: response.component.order(),
+            rows,
+        })
+    }
+
+    /// Whether the measure depends on a carried harmonic.
+    fn reads(&self, condensed: &Condensed, i: usize) -> bool {
+        let set = condensed.set();
+        match self.measure {
+            Measure::Fundamental => i == set.watched(),
+            Measure::Harmonic(number) => set.numbers()[i] == number,
+            Measure::Peak | Measure::Rms | Measure::Range => true,
+        }
+    }
+
+    /// Σ w x in a harmonic.
+    fn along(&self, i: usize, x: &[Complex64]) -> Complex64 {
+        self.rows[i].iter().map(|(weight, row)| weight * row.along(x)).sum()
+    }
+
+    /// (ihω)ᵏ of the derivative by time, and its derivative by ω.
+    fn factor(&self, number: usize, omega: f64) -> (Complex64, Complex64) {
+        if self.order == 0 {
+            return (Complex64::ONE, Complex64::ZERO);
+        }
+        let by = Complex64::new(0.0, number as f64);
+        let of_omega = (by * omega).powi(self.order - 1) * by;
+        (of_omega * omega, of_omega * f64::from(self.order))
+    }
+}
+
+/// What a gauge reads at a point, in the unit of the condensed model.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// The reading.
+    pub reading: Reading,
+    /// Derivative of the value along the direction.
+    pub slope: f64,
+    /// Derivative of the complex amplitude, NaN where there is none.
+    pub complex_slope: Complex64,
+}
+
+impl Seen {
+    /// Amplitude and derivative as a problem observes them: complex where the measure is.
+    #[must_use]
+    pub fn observed(&self) -> (Complex64, Complex64) {
+        if self.reading.complex.re.is_nan() {
+            (self.reading.value.into(), self.slope.into())
+        } else {
+            (self.reading.complex, self.complex_slope)
+        }
+    }
+}
+
+/// The gauges of a run on one condensed model.
+pub struct Gauges<'a> {
+    condensed: &'a Condensed,
+    gauges: Vec<Gauge>,
+    forces: ContactForces<'a>,
+    workspace: Workspace,
+    reader: Reader,
+    /// Packed signals of the gauges, and their changes.
+    signals: Vec<f64>,
+    changes: Vec<f64>,
+    w: Vec<Complex64>,
+    dw: Vec<Complex64>,
+    x: Vec<Complex64>,
+    dx: Vec<Complex64>,
+}
+
+impl<'a> Gauges<'a> {
+    /// The gauges of `responses` on a condensed model; one without degrees of freedom has the `default` one.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(
+        condensed: &'a Condensed,
+        (responses, default): (&[Response<'_>], usize),
+        samples: usize,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<Self> {
+        let mut gauges = Vec::new();
+        for response in responses {
+            try_push(&mut gauges, Gauge::new(condensed, response, default)?, CONTEXT)?;
+        }
+        let set = condensed.set();
+        let numbers = gauges.len().saturating_mul(set.packed_len());
+        let vector = |n| try_vec(n, Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            condensed,
+            gauges,
+            forces: ContactForces::unchecked(condensed, samples, interrupt)?,
+            workspace: Workspace::new(condensed, None)?,
+            reader: Reader::new(set)?,
+            signals: try_vec(numbers, 0.0, CONTEXT)?,
+            changes: try_vec(numbers, 0.0, CONTEXT)?,
+            w: vector(condensed.coordinates())?,
+            dw: vector(condensed.coordinates())?,
+            x: vector(condensed.ndof())?,
+            dx: vector(condensed.ndof())?,
+        })
+    }
+
+    /// Reads the gauges at `v` = (u, ω) along a direction of as many numbers: one of them, or all.
+    ///
+    /// # Errors
+    /// `Singular` at an undamped resonance; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
+    pub fn read(&mut self, v: &[f64], direction: &[f64], one: Option<usize>, seen: &mut Vec<Seen>) -> Result<()> {
+        let (u, omega) = v.split_at(v.len() - 1);
+        let (condensed, omega) = (self.condensed, omega[0]);
+        let (along, d_omega) = (&direction[..u.len()], direction[u.len()]);
+        let interrupt = self.forces.interrupt();
+        let set = condensed.set();
+        let m = set.packed_len();
+        self.forces.evaluate(u, omega)?;
+        self.signals.fill(0.0);
+        self.changes.fill(0.0);
+        let wanted = |r: usize| one.is_none_or(|one| one == r);
+        for (i, &number) in set.numbers().iter().enumerate() {
+            let mut gauges = self.gauges.iter().enumerate();
+            if !gauges.any(|(r, gauge)| wanted(r) && gauge.reads(condensed, i)) {
+                continue;
+            }
+            for (c, (w, dw)) in self.w.iter_mut().zip(&mut self.dw).enumerate() {
+                *w = self.forces.minus_reference(u, c, i);
+                *dw = self.forces.along(along, c, i) + self.forces.by_omega(c, i) * d_omega;
+            }
+            let (x, dx) = (&mut self.x, &mut self.dx);
+            let at = (i, omega);
+            self.workspace.recover(condensed, i, omega, &self.w, x, interrupt)?;
+            self.workspace
+                .recover_along(condensed, at, (&self.dw, d_omega), x, dx, interrupt)?;
+            for (c, y) in self.w.iter_mut().enumerate() {
+                *y = set.get_at(u, c * m, i);
+            }
+            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, x, interrupt)?;
+            for (r, gauge) in self.gauges.iter().enumerate() {
+                let (factor, d_factor) = gauge.factor(number, omega);
+                let (value, change) = (gauge.along(i, x), gauge.along(i, dx));
+                let signal = r * m..(r + 1) * m;
+                set.set(&mut self.signals[signal.clone()], i, factor * value);
+                let change = factor * change + d_factor * value * d_omega;
+                set.set(&mut self.changes[signal], i, change);
+            }
+        }
+        seen.clear();
+        for (r, gauge) in self.gauges.iter().enumerate() {
+            if !wanted(r) {
+                continue;
+            }
+            let (signal, change) = (&self.signals[r * m..(r + 1) * m], &self.changes[r * m..(r + 1) * m]);
+            let mut reading = self.reader.read(set, gauge.measure, signal, interrupt)?;
+            reading.instant /= set.base().max(1) as f64;
+            let number = match gauge.measure {
+                Measure::Harmonic(number) => set.numbers().binary_search(&number).ok(),
+                Measure::Fundamental => Some(set.watched()),
+                Measure::Peak | Measure::Rms | Measure::Range => None,
+            };
+            let of_seen = Seen {
+                reading,
+                slope: self.reader.along(set, change),
+                complex_slope: number.map_or(Complex64::ZERO, |i| set.get(change, i)),
+            };
+            try_push(seen, of_seen, CONTEXT)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,9 @@
+//! Responses of a forced response: gauges, harmonics, peaks over the period, and their maxima over the frequency.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod peaks;
+mod readings;
+mod refused;
+mod tolerance;

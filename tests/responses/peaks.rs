@@ -1,0 +1,174 @@
+//! Peaks of every measure, against maxima of solutions at single frequencies, which know no peaks.
+
+use crate::common::chains::{chain, duffing};
+use hbvib::{Branch, Component, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response};
+
+fn solver() -> SolverOptions {
+    SolverOptions {
+        harmonics: 7,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    }
+}
+
+fn solve(model: &Model, (start, stop): (f64, f64), responses: &[Response<'_>], step_max: f64) -> Branch {
+    let solver = SolverOptions { step_max, ..solver() };
+    let range = ForcedOptions {
+        omega_start: start,
+        omega_stop: stop,
+        responses,
+        ..ForcedOptions::default()
+    };
+    forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
+}
+
+/// The responses at one frequency, from the motion of a point nearby.
+fn at(model: &Model, omega: f64, near: &[num_complex::Complex64], responses: &[Response<'_>]) -> Vec<f64> {
+    let range = ForcedOptions {
+        omega_start: omega,
+        omega_stop: omega,
+        guess: Some(near),
+        responses,
+        ..ForcedOptions::default()
+    };
+    let found = forced_response(model, &solver(), &range, &mut Hooks::default()).unwrap();
+    found.responses().iter().map(|r| r.values()[0]).collect()
+}
+
+/// Checks each peak of each response: no solution beside it is higher, and it is as high as the parabola through its neighbours.
+fn check_peaks(model: &Model, branch: &Branch, responses: &[Response<'_>]) -> usize {
+    let mut checked = 0;
+    for (r, found) in branch.responses().iter().enumerate() {
+        for peak in found.peaks() {
+            let mut x = vec![num_complex::Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
+            branch.harmonics_at(peak.point, &mut x).unwrap();
+            let step = 1e-5 * peak.omega;
+            let value = |omega: f64| at(model, omega, &x, responses)[r];
+            let [below, here, above] = [-step, 0.0, step].map(|by| value(peak.omega + by));
+            assert!(
+                (here - peak.amplitude).abs() < 1e-9 * here,
+                "{:?}: {here} {}",
+                responses[r],
+                peak.amplitude
+            );
+            assert!(
+                below <= here * (1.0 + 1e-12) && above <= here * (1.0 + 1e-12),
+                "{:?} {below} {here} {above}",
+                responses[r]
+            );
+            let bend = below - 2.0 * here + above;
+            let shift = 0.5 * step * (below - above) / bend;
+            // Where a contact begins to slip the curve has a corner, on both sides of which it falls in proportion.
+            let nearer = value(peak.omega + 0.1 * step) - here;
+            let is_corner = nearer < 0.05 * (above - here);
+            assert!(
+                shift.abs() < 0.02 * step || is_corner,
+                "{:?}: a peak at {} is off by {shift:e}",
+                responses[r],
+                peak.omega
+            );
+            checked += 1;
+        }
+    }
+    checked
+}
+
+const KINDS: [Measure; 5] = [
+    Measure::Fundamental,
+    Measure::Harmonic(3),
+    Measure::Peak,
+    Measure::Rms,
+    Measure::Range,
+];
+
+#[test]
+fn superharmonic_resonances_are_peaks_of_the_measures_that_feel_them() {
+    // x″ + 0.06 x′ + x + 0.3 x³ = 0.6 cos ωt: a third of the resonance lies at 0.36 to 0.4.
+    let model = duffing(0.06, 0.3, 0.6);
+    let responses = KINDS.map(|measure| Response {
+        measure,
+        dofs: &[0],
+        ..Response::default()
+    });
+    let branch = solve(&model, (0.3, 0.6), &responses, 0.0);
+    let fine = solve(&model, (0.3, 0.6), &responses, 2e-3);
+    let count = |branch: &Branch| branch.responses().iter().map(|r| r.peaks().len()).collect::<Vec<_>>();
+    assert_eq!(count(&branch), count(&fine));
+    assert!(branch.responses()[1].peaks().len() == 1 && branch.responses()[2].peaks().len() == 1);
+    assert!(check_peaks(&model, &branch, &responses) >= 4);
+    for (a, b) in branch.responses().iter().zip(fine.responses()) {
+        for (a, b) in a.peaks().iter().zip(b.peaks()) {
+            assert!((a.omega / b.omega - 1.0).abs() < 1e-9 && (a.amplitude / b.amplitude - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn peaks_of_every_measure_of_a_chain_with_friction_are_maxima() {
+    let model = chain(6, 0.0);
+    let mut responses = Vec::new();
+    for measure in KINDS {
+        for component in [Component::Displacement, Component::Acceleration] {
+            for dofs in [&[0][..], &[3]] {
+                responses.push(Response {
+                    measure,
+                    dofs,
+                    component,
+                    ..Response::default()
+                });
+            }
+        }
+    }
+    let branch = solve(&model, (0.3, 1.0), &responses, 0.0);
+    assert!(check_peaks(&model, &branch, &responses) > 15);
+    // A dense sweep has the same peaks.
+    let fine = solve(&model, (0.3, 1.0), &responses, 4e-3);
+    for ((a, b), response) in branch.responses().iter().zip(fine.responses()).zip(&responses) {
+        assert_eq!(a.peaks().len(), b.peaks().len(), "{response:?}");
+        for (a, b) in a.peaks().iter().zip(b.peaks()) {
+            assert!(
+                (a.omega / b.omega - 1.0).abs() < 1e-8,
+                "{response:?}: {} {}",
+                a.omega,
+                b.omega
+            );
+            assert!((a.amplitude / b.amplitude - 1.0).abs() < 1e-9, "{response:?}");
+        }
+    }
+}
+
+#[test]
+fn a_linear_structure_has_the_peaks_of_each_degree_of_freedom() {
+    let model = chain(6, f64::INFINITY);
+    let dofs: Vec<[usize; 1]> = (0..6).map(|dof| [dof]).collect();
+    let responses: Vec<Response<'_>> = dofs
+        .iter()
+        .map(|dofs| Response {
+            dofs,
+            ..Response::default()
+        })
+        .collect();
+    let branch = solve(&model, (0.1, 2.5), &responses, 0.0);
+    for (dof, found) in branch.responses().iter().enumerate() {
+        let alone = SolverOptions {
+            response_dof: Some(dof),
+            ..solver()
+        };
+        let range = ForcedOptions {
+            omega_start: 0.1,
+            omega_stop: 2.5,
+            ..ForcedOptions::default()
+        };
+        let alone = forced_response(&model, &alone, &range, &mut Hooks::default()).unwrap();
+        assert_eq!(found.peaks().len(), alone.peaks().len(), "degree of freedom {dof}");
+        for (a, b) in found.peaks().iter().zip(alone.peaks()) {
+            assert!(
+                (a.omega / b.omega - 1.0).abs() < 1e-10,
+                "{dof}: {} {}",
+                a.omega,
+                b.omega
+            );
+            assert!((a.amplitude / b.amplitude - 1.0).abs() < 1e-10, "{dof}");
+        }
+    }
+}

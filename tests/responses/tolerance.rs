@@ -1,0 +1,51 @@
+//! The tolerance holds for every response: errors against solutions with many more harmonics.
+
+use crate::common::chains::chain;
+use hbvib::{ForcedOptions, Hooks, Measure, Response, SolverOptions, forced_response};
+
+#[test]
+fn the_estimate_of_each_response_bounds_its_error() {
+    let dofs: Vec<[usize; 1]> = (0..6).map(|dof| [dof]).collect();
+    let mut responses = Vec::new();
+    for measure in [Measure::Fundamental, Measure::Peak, Measure::Rms, Measure::Range] {
+        responses.extend(dofs.iter().map(|dofs| Response {
+            measure,
+            dofs,
+            ..Response::default()
+        }));
+    }
+    for (preload, tolerance) in [(0.0, 1e-2), (0.0, 1e-3), (0.4, 1e-3)] {
+        let model = chain(6, preload);
+        for omega in [0.42, 0.55, 0.7, 0.9] {
+            let solve = |solver: SolverOptions| {
+                let range = ForcedOptions {
+                    omega_start: omega,
+                    omega_stop: omega,
+                    responses: &responses,
+                    ..ForcedOptions::default()
+                };
+                forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap()
+            };
+            let found = solve(SolverOptions {
+                tolerance,
+                ..SolverOptions::default()
+            });
+            let exact = solve(SolverOptions {
+                tolerance: 0.0,
+                harmonics: 151,
+                ..SolverOptions::default()
+            });
+            for ((found, exact), response) in found.responses().iter().zip(exact.responses()).zip(&responses) {
+                let (value, exact) = (found.values()[0], exact.values()[0]);
+                let error = (value / exact - 1.0).abs();
+                let told = found.errors()[0];
+                assert!(told <= tolerance, "{response:?} at {omega}: told {told:e}");
+                assert!(error <= tolerance, "{response:?} at {omega}: {error:e}, told {told:e}");
+                assert!(
+                    error <= 3.0 * told + 0.05 * tolerance,
+                    "{response:?} at {omega}: {error:e}, told {told:e}"
+                );
+            }
+        }
+    }
+}
