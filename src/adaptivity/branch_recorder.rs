@@ -182,6 +182,14 @@ impl<'a> BranchRecorder<'a> {
     /// The complete branch, its special points numbered after the curve.
     pub fn finish(mut self, ending: &Ending, reduction: Reduction, estimates: usize) -> Result<Box<Branch>> {
         for special in &self.specials {
+            let seen = special.kind.response().and_then(|r| Some((r, special.seen.get(r)?)));
+            if let Some((response, seen)) = seen
+                && self
+                    .branch
+                    .is_rounding(response, seen.seen.reading.value, special.resolution)
+            {
+                continue;
+            }
             let record = Record {
                 resolution: special.resolution,
                 omega: special.omega,

@@ -25,14 +25,7 @@ impl BranchTracer<'_> {
             })?;
         }
         for response in analysis.further_responses() {
-            analysis.select(a.1.max(b.1))?;
-            let seen = [analysis.seen_by(response, a)?, analysis.seen_by(response, b)?];
-            if SpecialPoint::Peak.between(&seen[0], &seen[1]) {
-                let (kind, ends) = (SpecialKind::PeakOf(response), [(&seen[0], a.1), (&seen[1], b.1)]);
-                self.find(analysis, kind, ends[0], ends[1], |locator, problem, a, b| {
-                    locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
-                })?;
-            }
+            self.find_peaks_of(analysis, response, a, b)?;
         }
         if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
             && level.between(a.0, b.0)
@@ -86,7 +79,7 @@ impl BranchTracer<'_> {
     }
 
     /// Searches between two neighbours and records the point that is found, with the harmonics that it requires.
-    fn find(
+    pub(super) fn find(
         &mut self,
         analysis: &mut dyn Traceable,
         kind: SpecialKind,

@@ -24,5 +24,6 @@ mod linear_stretch;
 pub(crate) mod resolutions;
 pub(crate) mod resonance_bands;
 pub(crate) mod resonance_grid;
+mod response_peaks;
 mod retracing;
 pub(crate) mod transfer;

@@ -1,0 +1,112 @@
+//! Peaks of further responses between two neighbours of a branch.
+//!
+//! The steps follow the motion, not each response: one of them may have a maximum and a minimum within a step. The cubic
+//! through the response at both ends and its derivatives tells where to look; solutions there decide.
+
+use crate::adaptivity::branch_tracer::BranchTracer;
+use crate::adaptivity::discretised::Traceable;
+use crate::continuation::special_points::{Locator, SpecialPoint};
+use crate::continuation::{Metric, Point, PointAt};
+use crate::error::{Result, try_push};
+use crate::linalg::norm;
+use crate::results::SpecialKind;
+
+/// Parts of the cubic in which changes of sign are sought.
+const PARTS_OF_ARC: usize = 16;
+
+impl BranchTracer<'_> {
+    /// Records the peaks of a further response between two neighbours.
+    pub(super) fn find_peaks_of(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        response: usize,
+        a: PointAt<'_>,
+        b: PointAt<'_>,
+    ) -> Result<()> {
+        analysis.select(a.1.max(b.1))?;
+        let resolution = analysis.resolution();
+        let (first, last) = (analysis.seen_by(response, a)?, analysis.seen_by(response, b)?);
+        let (first, last) = (analysis.transfer(&first, a.1)?, analysis.transfer(&last, b.1)?);
+        let brackets = self.predicted_brackets(&first, &last)?;
+        if SpecialPoint::Peak.between(&first, &last) && brackets.len() <= 1 {
+            return self.find_peak_of(analysis, response, (&first, resolution), (&last, resolution));
+        }
+        for (low, high) in brackets {
+            analysis.select(resolution)?;
+            let ends = [low, high].map(|s| self.solved_between(analysis, response, (&first, &last), s));
+            let [low, high] = ends;
+            let (Some(low), Some(high)) = (low?, high?) else {
+                continue;
+            };
+            if SpecialPoint::Peak.between(&low, &high) {
+                self.find_peak_of(analysis, response, (&low, resolution), (&high, resolution))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The solution at a share of an arc as a response sees it; the ends as they are.
+    fn solved_between(
+        &self,
+        analysis: &mut dyn Traceable,
+        response: usize,
+        (a, b): (&Point, &Point),
+        s: f64,
+    ) -> Result<Option<Point>> {
+        for (end, at) in [(a, 0.0), (b, 1.0)] {
+            if s == at {
+                return end.try_clone().map(Some);
+            }
+        }
+        let locator = Locator::new(a.unknowns().len(), self.course.settings)?;
+        let mut locator = locator.with_response(Some(response));
+        locator.between(analysis.problem(), (a, b), s, self.interrupt)
+    }
+
+    fn find_peak_of(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        response: usize,
+        a: PointAt<'_>,
+        b: PointAt<'_>,
+    ) -> Result<()> {
+        let interrupt = self.interrupt;
+        self.find(
+            analysis,
+            SpecialKind::PeakOf(response),
+            a,
+            b,
+            |locator, problem, a, b| locator.locate(problem, SpecialPoint::Peak, a, b, interrupt),
+        )?;
+        Ok(())
+    }
+
+    /// Shares of the arc between which the cubic has a maximum.
+    fn predicted_brackets(&self, a: &Point, b: &Point) -> Result<Vec<(f64, f64)>> {
+        let mut found = Vec::new();
+        let size = norm(a.unknowns()).max(norm(b.unknowns()));
+        let metric = Metric::along(size, &self.course.settings);
+        let width = metric.distance(&a.v, &b.v);
+        let slopes = [a, b].map(|p| p.slope * (width / metric.norm(&p.tangent)));
+        let difference = b.amplitude - a.amplitude;
+        let (c2, c3) = (
+            difference * 3.0 - slopes[0] * 2.0 - slopes[1],
+            slopes[0] + slopes[1] - difference * 2.0,
+        );
+        let growth = |s: f64| {
+            let z = a.amplitude + (slopes[0] + (c2 + c3 * s) * s) * s;
+            let dz = slopes[0] + (c2 * 2.0 + c3 * (3.0 * s)) * s;
+            (z.conj() * dz).re
+        };
+        let mut before = (0.0, growth(0.0));
+        for part in 1..=PARTS_OF_ARC {
+            let s = part as f64 / PARTS_OF_ARC as f64;
+            let here = (s, growth(s));
+            if before.1 > 0.0 && here.1 <= 0.0 {
+                try_push(&mut found, (before.0, here.0), "the peaks of a response")?;
+            }
+            before = here;
+        }
+        Ok(found)
+    }
+}
