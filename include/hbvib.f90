@@ -77,6 +77,11 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_PHASE_SETUP = 0, HBVIB_PHASE_MODES = 1, HBVIB_PHASE_CONDENSATION = 2, &
       HBVIB_PHASE_FIRST_POINT = 3, HBVIB_PHASE_CONTINUATION = 4, HBVIB_PHASE_ESTIMATE = 5, HBVIB_PHASE_TIME_INTEGRATION = 6, &
       HBVIB_PHASE_RESULTS = 7, HBVIB_PHASE_FACTORISATION = 8
+   ! hbvib_measure
+   integer(c_int32_t), parameter, public :: HBVIB_MEASURE_FUNDAMENTAL = 0, HBVIB_MEASURE_HARMONIC = 1, HBVIB_MEASURE_PEAK = 2, &
+      HBVIB_MEASURE_RMS = 3, HBVIB_MEASURE_RANGE = 4
+   ! hbvib_component
+   integer(c_int32_t), parameter, public :: HBVIB_DISPLACEMENT = 0, HBVIB_VELOCITY = 1, HBVIB_ACCELERATION = 2
    ! hbvib_field
    integer(c_int32_t), parameter, public :: HBVIB_OMEGA = 0, HBVIB_AMPLITUDE = 1, HBVIB_DAMPING_RATIO = 2, HBVIB_ENERGY = 3, &
       HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, HBVIB_ERROR_ESTIMATE = 7, &
@@ -84,6 +89,9 @@ module hbvib
       HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15, &
       HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17, HBVIB_PARAMETER_VALUE = 18, HBVIB_D_AMPLITUDE = 19, &
       HBVIB_D_DAMPING = 20
+   ! hbvib_reading
+   integer(c_int32_t), parameter, public :: HBVIB_READING_VALUE = 0, HBVIB_READING_COMPLEX = 1, HBVIB_READING_ERROR = 2, &
+      HBVIB_READING_INSTANT = 3
    ! hbvib_flexibility_way
    integer(c_int32_t), parameter, public :: HBVIB_FLEXIBILITY_WAY_SINGLE_FREQUENCY = 0, HBVIB_FLEXIBILITY_WAY_MODES = 1, &
       HBVIB_FLEXIBILITY_WAY_POLES = 2, HBVIB_FLEXIBILITY_WAY_NEAR_RIGID = 3, HBVIB_FLEXIBILITY_WAY_FEW = 4, &
@@ -223,14 +231,25 @@ module hbvib
       type(c_funptr) :: phase = c_null_funptr
    end type hbvib_hooks
 
+   !> A response: a gauge, the weighted sum of degrees of freedom of one sector, and what is read from it over a period.
+   type, bind(c) :: hbvib_response
+      integer(c_int32_t) :: struct_size = 56, measure = 0
+      integer(c_int64_t) :: harmonic = 1, n = 0
+      type(c_ptr) :: dofs = c_null_ptr, weights = c_null_ptr
+      integer(c_int64_t) :: sector = 0
+      integer(c_int32_t) :: component = 0, reserved = 0
+   end type hbvib_response
+
    !> Options of hbvib_forced_response.
    type, bind(c) :: hbvib_forced_options
-      integer(c_int32_t) :: struct_size = 56, reserved = 0
+      integer(c_int32_t) :: struct_size = 72, reserved = 0
       real(c_double) :: omega_start = 0, omega_stop = 0
       type(c_ptr) :: at = c_null_ptr
       integer(c_int64_t) :: at_len = 0
       type(c_ptr) :: guess = c_null_ptr
       integer(c_int64_t) :: guess_len = 0
+      type(c_ptr) :: responses = c_null_ptr
+      integer(c_int64_t) :: responses_len = 0
    end type hbvib_forced_options
 
    !> A borrowed array of results, valid until hbvib_branch_free.
@@ -896,6 +915,13 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_hooks_init
 
+      function hbvib_response_init(r, size_of_r) bind(c) result(status)
+         import
+         type(hbvib_response), intent(inout) :: r
+         integer(c_size_t), value :: size_of_r
+         integer(c_int32_t) :: status
+      end function hbvib_response_init
+
       function hbvib_forced_options_init(o, size_of_o) bind(c) result(status)
          import
          type(hbvib_forced_options), intent(inout) :: o
@@ -1034,6 +1060,31 @@ module hbvib
          integer(c_int64_t), intent(inout) :: count
          integer(c_int32_t) :: status
       end function hbvib_branch_at
+
+      function hbvib_branch_responses(branch) bind(c) result(answer)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t) :: answer
+      end function hbvib_branch_responses
+
+      function hbvib_branch_response(branch, response, reading, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: response
+         integer(c_int32_t), value :: reading
+         type(hbvib_view), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_branch_response
+
+      function hbvib_branch_response_peaks(branch, response, capacity, omega, value, point, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: response, capacity
+         real(c_double), intent(inout), optional :: omega(*), value(*)
+         integer(c_int64_t), intent(inout), optional :: point(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_response_peaks
 
       function hbvib_reduction_init(r, size_of_r) bind(c) result(status)
          import

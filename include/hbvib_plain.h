@@ -136,6 +136,18 @@ typedef enum {
   HBVIB_PHASE_FACTORISATION = 8
 } hbvib_phase;
 typedef enum {
+  HBVIB_MEASURE_FUNDAMENTAL = 0,
+  HBVIB_MEASURE_HARMONIC = 1,
+  HBVIB_MEASURE_PEAK = 2,
+  HBVIB_MEASURE_RMS = 3,
+  HBVIB_MEASURE_RANGE = 4
+} hbvib_measure;
+typedef enum {
+  HBVIB_DISPLACEMENT = 0,
+  HBVIB_VELOCITY = 1,
+  HBVIB_ACCELERATION = 2
+} hbvib_component;
+typedef enum {
   HBVIB_OMEGA = 0,
   HBVIB_AMPLITUDE = 1,
   HBVIB_DAMPING_RATIO = 2,
@@ -158,6 +170,12 @@ typedef enum {
   HBVIB_D_AMPLITUDE = 19,
   HBVIB_D_DAMPING = 20
 } hbvib_field;
+typedef enum {
+  HBVIB_READING_VALUE = 0,
+  HBVIB_READING_COMPLEX = 1,
+  HBVIB_READING_ERROR = 2,
+  HBVIB_READING_INSTANT = 3
+} hbvib_reading;
 typedef enum {
   HBVIB_FLEXIBILITY_WAY_SINGLE_FREQUENCY = 0,
   HBVIB_FLEXIBILITY_WAY_MODES = 1,
@@ -267,6 +285,7 @@ typedef struct hbvib_solver_options hbvib_solver_options;
 typedef struct hbvib_progress hbvib_progress;
 typedef struct hbvib_phase_report hbvib_phase_report;
 typedef struct hbvib_hooks hbvib_hooks;
+typedef struct hbvib_response hbvib_response;
 typedef struct hbvib_forced_options hbvib_forced_options;
 typedef struct hbvib_view hbvib_view;
 typedef struct hbvib_reduction hbvib_reduction;
@@ -426,6 +445,17 @@ struct hbvib_hooks {
   const hbvib_cancel_flag *cancel;
   hbvib_phase_fn phase;
 };
+struct hbvib_response {
+  uint32_t struct_size;
+  int32_t measure;
+  int64_t harmonic;
+  int64_t n;
+  const int64_t *dofs;
+  const double *weights;
+  int64_t sector;
+  int32_t component;
+  int32_t reserved;
+};
 struct hbvib_forced_options {
   uint32_t struct_size;
   int32_t reserved;
@@ -435,6 +465,8 @@ struct hbvib_forced_options {
   int64_t at_len;
   const double *guess;
   int64_t guess_len;
+  const hbvib_response *responses;
+  int64_t responses_len;
 };
 struct hbvib_view {
   uint32_t struct_size;
@@ -701,6 +733,7 @@ hbvib_status hbvib_check_jacobian(const hbvib_model *model, int64_t contact, dou
 hbvib_status hbvib_solver_options_init(hbvib_solver_options *o, size_t size_of_o);
 hbvib_status hbvib_cancel(hbvib_cancel_flag *flag, int32_t value);
 hbvib_status hbvib_hooks_init(hbvib_hooks *h, size_t size_of_h);
+hbvib_status hbvib_response_init(hbvib_response *r, size_t size_of_r);
 hbvib_status hbvib_forced_options_init(hbvib_forced_options *o, size_t size_of_o);
 hbvib_status hbvib_forced_response(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_forced_options *forced, const hbvib_hooks *hooks, hbvib_branch **out);
 hbvib_status hbvib_branch_free(hbvib_branch *branch);
@@ -718,6 +751,9 @@ hbvib_status hbvib_branch_slip_fraction(const hbvib_branch *branch, int64_t poin
 hbvib_status hbvib_branch_peaks(const hbvib_branch *branch, int64_t capacity, double *omega, double *amplitude, int64_t *point, int64_t *count);
 hbvib_status hbvib_branch_folds(const hbvib_branch *branch, int64_t capacity, double *omega, double *amplitude, int64_t *point, int64_t *count);
 hbvib_status hbvib_branch_at(const hbvib_branch *branch, int64_t wanted, int64_t capacity, double *amplitude, int64_t *point, int64_t *count);
+int64_t hbvib_branch_responses(const hbvib_branch *branch);
+hbvib_status hbvib_branch_response(const hbvib_branch *branch, int64_t response, int32_t reading, hbvib_view *out);
+hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch, int64_t response, int64_t capacity, double *omega, double *value, int64_t *point, int64_t *count);
 hbvib_status hbvib_reduction_init(hbvib_reduction *r, size_t size_of_r);
 hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
 hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);

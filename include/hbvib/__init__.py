@@ -46,6 +46,7 @@ from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
 from ._model import Model
 from ._results import *
+from ._responses import Response, WatchedResponse
 from ._sensitivity import Parameter, Sensitivities
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
@@ -56,7 +57,7 @@ __all__ = [
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Parameter", "Sensitivities", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
     "get_include",

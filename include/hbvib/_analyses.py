@@ -15,6 +15,7 @@ from ._convert import _array, _counted_array, _diameter, _member, _range
 from ._errors import StoppedEarly, _sentence
 from ._matrices import _Matrices
 from ._origin import Origin
+from ._responses import Response, Responses, described, listed
 from ._results import Progress, Residual
 from ._structs import _new, _options, _with_options
 from ._types import SolverOptions
@@ -41,7 +42,8 @@ def _solver_options(caller: str, given: Mapping[str, Any]) -> Any:
 class _Analyses(_Matrices):
     """Methods of Model that follow branches."""
 
-    def _solve(self, name: str, solver: Any, options: Any, at: Optional[ArrayLike], hooks: tuple[Any, ...]) -> Branch:
+    def _solve(self, name: str, solver: Any, options: Any, at: Optional[ArrayLike], hooks: tuple[Any, ...],
+               responses: Sequence[Response] = ()) -> Branch:
         settings = _solver_options(name[6:], solver)
         handle, kept = ctypes.c_void_p(), self._kept
         origin = None if name == "hbvib_parameter_response" else Origin.of(self.handle, settings.samples)
@@ -51,6 +53,7 @@ class _Analyses(_Matrices):
                 guard.branch = branch = Branch(handle.value, tuple(kept), _sentence(status) if status else "")
                 branch._at = np.array([] if at is None else at, float, ndmin=1)
                 branch._origin = origin
+                branch._responses = tuple(responses)
         if status > Status.STOPPED_BY_CALLER:
             try:
                 warnings.warn(StoppedEarly(branch.message, branch.status), stacklevel=3)
@@ -61,6 +64,7 @@ class _Analyses(_Matrices):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def forced_response(self, omega: ArrayLike, *, at: Optional[ArrayLike] = None, guess: Optional[ArrayLike] = None,
+                        responses: Optional[Responses] = None,
                         progress: Union[bool, Callable[[Progress], Any], None] = None,
                         log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                         cancel: Optional[CancelFlag] = None,
@@ -71,6 +75,8 @@ class _Analyses(_Matrices):
         at        frequencies within the range at which every solution is computed exactly: Branch.at.
         guess     start values, (H + 1, ndof) complex with an H of their own, such as Branch.harmonics gives. Harmonics that
                   forces and laws do not excite by themselves (a subharmonic, a mean) are carried where the guess has them.
+        responses what is watched, a list of Response or of degrees of freedom: Branch.responses. The first one leads
+                  amplitude and peaks of the branch, and a tolerance holds for each.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points. True
                   shows a bar of tqdm, or a line on stderr where that is not installed.
         log       log(LogLevel, text), lines up to log_level.
@@ -94,7 +100,9 @@ class _Analyses(_Matrices):
         start, stop = _range("omega", omega, "forced_response((0.8, 1.6), at=omega)", single=True)
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
-        return self._solve("hbvib_forced_response", solver, options, at, (progress, log, log_level, cancel, phase))
+        watched = listed(responses)
+        described(options, watched)
+        return self._solve("hbvib_forced_response", solver, options, at, (progress, log, log_level, cancel, phase), watched)
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,

@@ -13,6 +13,7 @@ from ._library import lib
 
 if TYPE_CHECKING:
     from ._origin import Origin
+    from ._responses import Response
 
 
 class Branch(_BranchFields, _BranchPoints):
@@ -39,6 +40,7 @@ class Branch(_BranchFields, _BranchPoints):
         self._handle, self._kept, self.message = handle, kept, message
         self._leases: Any = weakref.WeakSet()
         self._origin: Optional[Origin] = None
+        self._responses: tuple[Response, ...] = ()
 
     def free(self) -> None:
         """Frees the branch. BufferError while arrays look into its memory, BusyError while a call uses it, FreedError

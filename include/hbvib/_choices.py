@@ -3,11 +3,12 @@ from __future__ import annotations
 
 from typing import Literal, Union
 
-from ._c import (AeroForm, Block, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind, ParameterKind, Part,
-                 Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
+from ._c import (AeroForm, Block, Component, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind,
+                 Measure, ParameterKind, Part, Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
 
 AeroForms = Union[AeroForm, Literal["displacement", "velocity"], int]
 Blocks = Union[Block, Literal["own", "next", "previous"], int]
+Components = Union[Component, Literal["displacement", "velocity", "acceleration"], int]
 ContactKinds = Union[ContactKind, Literal["jenkins", "friction_2d", "friction_3d", "unilateral", "cubic", "regularised"], int]
 ContactStates = Union[ContactState, Literal["free", "stuck", "static"], int]
 DampingForms = Union[DampingForm, Literal["mass", "stiffness"], int]
@@ -22,6 +23,7 @@ Follows = Union[Follow, Literal["omega", "peak", "fold", "mode_max_damping"], in
 LogLevels = Union[LogLevel, Literal["none", "warn", "info", "debug"], int]
 MatrixKinds = Union[
     MatrixKind, Literal["mass", "damping", "stiffness", "structural", "gyroscopic", "stiffness_speed2"], int]
+Measures = Union[Measure, Literal["fundamental", "harmonic", "peak", "rms", "range"], int]
 ParameterKinds = Union[
     ParameterKind,
     Literal["force", "preload", "mu", "kt", "kn", "gap", "mass", "damping", "stiffness", "speed"], int]

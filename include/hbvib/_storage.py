@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, Callable, NoReturn, Optional, TypeVar
 import numpy as np
 
 from ._branch import Branch
-from ._c import Field, FlexibilityWay, ModeMultiple, Status
+from ._c import Field, FlexibilityWay, ModeMultiple, Reading, Status
 from ._errors import ArgumentError, OutOfRangeError, UnsupportedError
 from ._library import __version__
 from ._model import Model
 from ._recomputed import check, recomputed
+from ._responses import Response, WatchedResponse
+from ._responses import contents as response_contents
 from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Wanted
 from ._stored_point import requests
 from ._tables import fields
@@ -42,6 +44,10 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
     for found in requests(branch):
         lists[f"at/{about['at']}"] = found
         about["at"] += 1
+    about["responses"] = [response_contents(found.response) for found in branch.responses]
+    for r, found in enumerate(branch.responses):
+        lists[f"response/{r}/peaks"] = found.peaks()
+        arrays.update({f"response/{r}/{reading.name.lower()}": values for reading, values in zip(Reading, found._readings)})
     arrays["at_values"] = branch._at
     for name, values in lists.items():
         arrays.update({f"{name}/{key}": column for key, column in values._asdict().items()})
@@ -268,6 +274,14 @@ class SavedBranch(Branch):
 
     def peaks(self) -> Points:
         return self._list(Points, "peaks")
+
+    @property
+    def responses(self) -> tuple[WatchedResponse, ...]:
+        found = []
+        for r, about in enumerate(self._about.get("responses", [])):
+            readings = [self._arrays[f"response/{r}/{reading.name.lower()}"] for reading in Reading]
+            found.append(WatchedResponse(Response(**about), len(self), readings, self._list(Points, f"response/{r}/peaks")))
+        return tuple(found)
 
     def optima(self) -> Optima:
         return self._list(Optima, "optima")

@@ -39,6 +39,7 @@ def dataframe(branch: Branch) -> Any:
             columns[name] = values
         else:
             columns.update({f"{name}_{k}": values[:, k] for k in range(values.shape[1])})
+    columns.update({f"response_{r}": found.amplitude for r, found in enumerate(branch.responses)})
     table = pandas.DataFrame(columns)
     table.index.name = "point"
     table.attrs.update(attributes(branch))
@@ -55,4 +56,7 @@ def dataset(branch: Branch) -> Any:
     coordinate = "log10_amplitude" if branch.is_mode else "omega"
     dims = {1: ("point",), 2: ("point", "contact")}
     variables = {name: (dims[values.ndim], values) for name, values in found.items() if name != coordinate}
+    if watched := branch.responses:
+        variables["response"] = (("watched", "point"), np.array([found.amplitude for found in watched]))
+        variables["response_error"] = (("watched", "point"), np.array([found.error for found in watched]))
     return xarray.Dataset(variables, coords={coordinate: ("point", found[coordinate])}, attrs=attributes(branch))

@@ -24,9 +24,7 @@ impl BranchTracer<'_> {
                 locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
             })?;
         }
-        for response in analysis.further_responses() {
-            self.find_peaks_of(analysis, response, a, b)?;
-        }
+        self.find_peaks_of_responses(analysis, a, b)?;
         if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
             && level.between(a.0, b.0)
         {

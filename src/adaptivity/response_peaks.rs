@@ -7,33 +7,71 @@ use crate::adaptivity::branch_tracer::BranchTracer;
 use crate::adaptivity::discretised::Traceable;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Metric, Point, PointAt};
-use crate::error::{Result, try_push};
+use crate::error::{Error, Result, try_push};
 use crate::linalg::norm;
 use crate::results::SpecialKind;
+
+const CONTEXT: &str = "the peaks of a response";
 
 /// Parts of the cubic in which changes of sign are sought.
 const PARTS_OF_ARC: usize = 16;
 
 impl BranchTracer<'_> {
-    /// Records the peaks of a further response between two neighbours.
-    pub(super) fn find_peaks_of(
+    /// Records the peaks of all further responses between two neighbours. Each that is found divides the arc for the next ones:
+    /// the responses of a structure have their peaks near each other.
+    pub(super) fn find_peaks_of_responses(
         &mut self,
         analysis: &mut dyn Traceable,
-        response: usize,
         a: PointAt<'_>,
         b: PointAt<'_>,
     ) -> Result<()> {
+        if analysis.further_responses().is_empty() {
+            return Ok(());
+        }
         analysis.select(a.1.max(b.1))?;
         let resolution = analysis.resolution();
-        let (first, last) = (analysis.seen_by(response, a)?, analysis.seen_by(response, b)?);
-        let (first, last) = (analysis.transfer(&first, a.1)?, analysis.transfer(&last, b.1)?);
-        let brackets = self.predicted_brackets(&first, &last)?;
-        if SpecialPoint::Peak.between(&first, &last) && brackets.len() <= 1 {
-            return self.find_peak_of(analysis, response, (&first, resolution), (&last, resolution));
+        // Solutions along the arc in their order, each with its resolution.
+        let mut arc = Vec::new();
+        for (point, resolution) in [a, b] {
+            try_push(&mut arc, (point.try_clone()?, resolution), CONTEXT)?;
+        }
+        for response in analysis.further_responses() {
+            let mut k = 0;
+            while k + 1 < arc.len() {
+                analysis.select(resolution)?;
+                let mut ends = [None, None];
+                for (end, (point, of)) in ends.iter_mut().zip(&arc[k..]) {
+                    let seen = analysis.seen_by(response, (point, *of))?;
+                    *end = Some(analysis.transfer(&seen, *of)?);
+                }
+                k += 1;
+                let [Some(first), Some(last)] = &ends else { continue };
+                if let Some(found) = self.find_peaks_of(analysis, response, (first, last))? {
+                    arc.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+                    arc.insert(k, found);
+                    k += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Records the peaks of a further response between two solutions of the current resolution as it sees them; returns the
+    /// one, if it is one and has no other resolution.
+    fn find_peaks_of(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        response: usize,
+        (first, last): (&Point, &Point),
+    ) -> Result<Option<(Point, usize)>> {
+        let resolution = analysis.resolution();
+        let brackets = self.predicted_brackets(first, last)?;
+        if SpecialPoint::Peak.between(first, last) && brackets.len() <= 1 {
+            return self.find_peak_of(analysis, response, (first, resolution), (last, resolution));
         }
         for (low, high) in brackets {
             analysis.select(resolution)?;
-            let ends = [low, high].map(|s| self.solved_between(analysis, response, (&first, &last), s));
+            let ends = [low, high].map(|s| self.solved_between(analysis, response, (first, last), s));
             let [low, high] = ends;
             let (Some(low), Some(high)) = (low?, high?) else {
                 continue;
@@ -42,7 +80,7 @@ impl BranchTracer<'_> {
                 self.find_peak_of(analysis, response, (&low, resolution), (&high, resolution))?;
             }
         }
-        Ok(())
+        Ok(None)
     }
 
     /// The solution at a share of an arc as a response sees it; the ends as they are.
@@ -69,7 +107,7 @@ impl BranchTracer<'_> {
         response: usize,
         a: PointAt<'_>,
         b: PointAt<'_>,
-    ) -> Result<()> {
+    ) -> Result<Option<(Point, usize)>> {
         let interrupt = self.interrupt;
         self.find(
             analysis,
@@ -77,8 +115,7 @@ impl BranchTracer<'_> {
             a,
             b,
             |locator, problem, a, b| locator.locate(problem, SpecialPoint::Peak, a, b, interrupt),
-        )?;
-        Ok(())
+        )
     }
 
     /// Shares of the arc between which the cubic has a maximum.
@@ -103,7 +140,7 @@ impl BranchTracer<'_> {
             let s = part as f64 / PARTS_OF_ARC as f64;
             let here = (s, growth(s));
             if before.1 > 0.0 && here.1 <= 0.0 {
-                try_push(&mut found, (before.0, here.0), "the peaks of a response")?;
+                try_push(&mut found, (before.0, here.0), CONTEXT)?;
             }
             before = here;
         }

@@ -1,7 +1,7 @@
 //! The responses that a forced response watches, as they are read at its points.
 
 use crate::continuation::PointAt;
-use crate::error::{Result, try_push};
+use crate::error::{Error, Result, try_push};
 use crate::options::Response;
 use crate::problem::gauges::Seen;
 use crate::problem::harmonic_balance::HarmonicBalance;
@@ -9,6 +9,9 @@ use crate::results::SeenWithError;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the responses";
+
+/// Points whose readings are kept.
+const MOST_RECENT: usize = 6;
 
 /// A point by its frequency, its first unknown and its resolution.
 type Key = (u64, u64, usize);
@@ -21,8 +24,8 @@ pub(super) struct WatchedResponses<'a> {
     pub seen: Vec<SeenWithError>,
     /// Their values at the point that is estimated, in the caller's unit.
     pub watched: Vec<Complex64>,
-    /// The last two points that were recorded.
-    recent: [Option<(Key, Vec<Seen>)>; 2],
+    /// Points that were read lately, the last one first.
+    recent: Vec<(Key, Vec<Seen>)>,
     memory: Vec<Seen>,
 }
 
@@ -38,7 +41,7 @@ impl<'a> WatchedResponses<'a> {
             list,
             seen: Vec::new(),
             watched: Vec::new(),
-            recent: [None, None],
+            recent: Vec::new(),
             memory: Vec::new(),
         }
     }
@@ -70,23 +73,39 @@ impl<'a> WatchedResponses<'a> {
         if self.list.is_empty() {
             return Ok(());
         }
-        problem.see_all(&at.0.v, &at.0.tangent, &mut self.memory)?;
-        let mut kept = Vec::new();
-        for (r, seen) in self.memory.iter().enumerate() {
+        let mut found = Vec::new();
+        for (r, seen) in self.read_at(problem, at)?.iter().enumerate() {
             let error = errors.get(r).copied().unwrap_or(f64::NAN);
-            try_push(&mut self.seen, SeenWithError { seen: *seen, error }, CONTEXT)?;
-            try_push(&mut kept, *seen, CONTEXT)?;
+            try_push(&mut found, SeenWithError { seen: *seen, error }, CONTEXT)?;
         }
-        self.recent.swap(0, 1);
-        self.recent[1] = Some((key(at), kept));
+        self.seen = found;
         Ok(())
     }
 
-    /// A response and its derivative along the tangent of a point that was recorded lately.
-    pub fn recent(&self, response: usize, at: PointAt<'_>) -> Option<(Complex64, Complex64)> {
+    /// All responses at a point, which may have been read before.
+    pub fn read_at(&mut self, problem: &mut HarmonicBalance<'_>, at: PointAt<'_>) -> Result<&[Seen]> {
         let wanted = key(at);
-        let mut recent = self.recent.iter().flatten();
-        let (_, seen) = recent.find(|(key, _)| *key == wanted)?;
-        seen.get(response).map(Seen::observed)
+        let place = match self.recent.iter().position(|(key, _)| *key == wanted) {
+            Some(known) => known,
+            None => {
+                let mut seen = if self.recent.len() < MOST_RECENT {
+                    Vec::new()
+                } else {
+                    self.recent.pop().map_or_else(Vec::new, |(_, seen)| seen)
+                };
+                problem.see_all(&at.0.v, &at.0.tangent, &mut seen)?;
+                self.recent.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+                self.recent.insert(0, (wanted, seen));
+                0
+            }
+        };
+        self.recent[..=place].rotate_right(1);
+        Ok(&self.recent[0].1)
+    }
+
+    /// Whether a point was read lately.
+    pub fn has_read(&self, at: PointAt<'_>) -> bool {
+        let wanted = key(at);
+        self.recent.iter().any(|(key, _)| *key == wanted)
     }
 }

@@ -65,10 +65,16 @@ impl Bracket {
     /// distance, is rounding. Beside a kink, where interpolation converges slowly, distances do not fall as fast.
     #[must_use]
     pub fn is_last(&self) -> bool {
+        self.is_last_within(CLOSE)
+    }
+
+    /// The same for another distance, whose power 1.8 is the error that counts as rounding.
+    #[must_use]
+    pub fn is_last_within(&self, close: f64) -> bool {
         let guess = self.guess();
         let distance = (guess - self.last.0).abs();
         let falls = |before: (f64, f64)| distance <= FAST * (self.last.0 - before.0).abs();
-        guess.to_bits() != self.middle().to_bits() && distance < CLOSE && self.before.is_some_and(falls)
+        guess.to_bits() != self.middle().to_bits() && distance < close && self.before.is_some_and(falls)
     }
 
     /// The place where the root is expected.

@@ -77,6 +77,9 @@ pub struct Locator {
 
 const CONTEXT: &str = "the search for special points";
 
+/// Distance of the last place of a further response from the one before it.
+const CLOSE_FOR_RESPONSES: f64 = 1e-5;
+
 /// Maximum number of evaluations of one search.
 const MAX_EVALUATIONS: usize = 60;
 
@@ -110,6 +113,16 @@ impl Locator {
     pub fn with_response(mut self, response: Option<usize>) -> Self {
         self.response = response;
         self
+    }
+
+    /// Whether the next place is the last one. That of a further response, of which there may be many, errs by 1e-9 of the arc,
+    /// and its amplitude by the square.
+    fn is_last(&self, bracket: &Bracket) -> bool {
+        if self.response.is_some() {
+            bracket.is_last_within(CLOSE_FOR_RESPONSES)
+        } else {
+            bracket.is_last()
+        }
     }
 
     fn metric(&self, a: &Point, b: &Point) -> Metric {
@@ -174,7 +187,7 @@ impl Locator {
         }
         let (mut best, mut last) = (None, f64::INFINITY);
         for _ in 0..MAX_EVALUATIONS {
-            let (mut s, mut is_last) = (bracket.guess(), bracket.is_last());
+            let (mut s, mut is_last) = (bracket.guess(), self.is_last(&bracket));
             let mut found = self.solve_between(problem, metric, (a, b), s, None, interrupt)?;
             if found.is_none() {
                 // Beyond a corner interpolation, and the last departure, may lead away.

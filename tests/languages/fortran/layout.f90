@@ -16,6 +16,7 @@ program layout
    call progress()
    call phase_report()
    call hooks()
+   call response()
    call forced_options()
    call view()
    call reduction()
@@ -220,6 +221,20 @@ contains
       call field('phase', c_loc(s), c_loc(s%phase), c_sizeof(s%phase))
    end subroutine hooks
 
+   subroutine response()
+      type(hbvib_response), target :: s
+      call whole('hbvib_response', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('measure', c_loc(s), c_loc(s%measure), c_sizeof(s%measure))
+      call field('harmonic', c_loc(s), c_loc(s%harmonic), c_sizeof(s%harmonic))
+      call field('n', c_loc(s), c_loc(s%n), c_sizeof(s%n))
+      call field('dofs', c_loc(s), c_loc(s%dofs), c_sizeof(s%dofs))
+      call field('weights', c_loc(s), c_loc(s%weights), c_sizeof(s%weights))
+      call field('sector', c_loc(s), c_loc(s%sector), c_sizeof(s%sector))
+      call field('component', c_loc(s), c_loc(s%component), c_sizeof(s%component))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+   end subroutine response
+
    subroutine forced_options()
       type(hbvib_forced_options), target :: s
       call whole('hbvib_forced_options', c_sizeof(s))
@@ -231,6 +246,8 @@ contains
       call field('at_len', c_loc(s), c_loc(s%at_len), c_sizeof(s%at_len))
       call field('guess', c_loc(s), c_loc(s%guess), c_sizeof(s%guess))
       call field('guess_len', c_loc(s), c_loc(s%guess_len), c_sizeof(s%guess_len))
+      call field('responses', c_loc(s), c_loc(s%responses), c_sizeof(s%responses))
+      call field('responses_len', c_loc(s), c_loc(s%responses_len), c_sizeof(s%responses_len))
    end subroutine forced_options
 
    subroutine view()
