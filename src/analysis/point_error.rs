@@ -83,8 +83,8 @@ pub fn estimate_at_with(
         sticks: None,
         iterations: ITERATIONS,
     };
+    let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
-        let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
         return ForcedEstimator::new(model, solver, branch.response_dof(), models, interrupt).at(&solved);
     };
     let wave;
@@ -101,7 +101,7 @@ pub fn estimate_at_with(
         _ => DampingForm::Mass,
     };
     let start = (&data.linear, &data.gauge);
-    let mut estimator = ModeEstimator::new(model, solver, form, start, branch.response_dof(), interrupt);
+    let mut estimator = ModeEstimator::new((model, solver), form, start, branch.response_dof(), models, interrupt);
     estimator.at(&solved, at.log10_amplitude, at.damping_ratio)
 }
 

@@ -7,7 +7,8 @@
 
 use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::analysis::static_solution::{NEEDS_SPEED, static_state};
-use crate::condense::{Condensed, Resolution};
+use crate::condense::wave_cache::SharedWaves;
+use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status, fail, try_copy, try_vec};
@@ -315,12 +316,13 @@ impl Tracked for TrackedDamping<'_> {
         };
         let start = (&at.linear, self.gauge);
         let response = self.response_dof;
+        let (models, waves) = (ModelCache::for_estimates()?, SharedWaves::default());
         let mut estimator = ModeEstimator::new(
-            &at.model,
-            &self.solver,
+            (&at.model, &self.solver),
             DampingForm::Mass,
             start,
             response,
+            (&models, &waves),
             self.interrupt,
         );
         let estimate = estimator.at(&solved, log10, damping)?;

@@ -59,6 +59,8 @@ pub struct ModalRows {
     coordinates: usize,
     /// Rows of contacts, response and springs.
     rows: usize,
+    /// Whether it has rows of springs.
+    has_springs: bool,
     /// Φ seen by them, mode after mode, the stiffest first.
     left: Vec<Complex64>,
     /// The adjoint shapes seen by them; none where these are the shapes.
@@ -83,10 +85,25 @@ impl ModalRows {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new((condensed, i, response): (&Condensed, usize, usize), source: Source) -> Result<Self> {
+        let observed = condensed.motion_row(i, response)?;
+        // Without damping by stiffness their part of the low-rank term vanishes.
+        let has_springs = source.is_damped_by_stiffness();
+        Self::with_rows((condensed, i), &observed, source, has_springs)
+    }
+
+    /// The rows of the i-th carried harmonic with this row of the response, and with those of the springs or without them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn with_rows(
+        (condensed, i): (&Condensed, usize),
+        observed: &MotionRow,
+        source: Source,
+        has_springs: bool,
+    ) -> Result<Self> {
         let block = &condensed.blocks()[i];
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
-        let observed = condensed.motion_row(i, response)?;
-        let springs = springs(&source);
+        let springs = if has_springs { all_springs(&source) } else { &[] };
         let rows = coordinates + 1 + springs.len();
         let seen = |shapes: &[Complex64]| -> Result<Vec<Complex64>> {
             let mut seen = try_vec(rows * source.len(), Complex64::ZERO, CONTEXT)?;
@@ -111,6 +128,7 @@ impl ModalRows {
             matrices: (Arc::clone(&block.reference), Arc::clone(&block.mass)),
             coordinates,
             rows,
+            has_springs,
             left,
             adjoint,
             stiff: [const { [const { OnceLock::new() }; MOST_TERMS] }; SOFT.len()],
@@ -145,16 +163,12 @@ impl ModalRows {
         of_block && Arc::ptr_eq(&self.matrices.0, &block.reference) && Arc::ptr_eq(&self.matrices.1, &block.mass)
     }
 
-    /// Springs that count: without damping by stiffness their part of the low-rank term vanishes.
+    /// Springs with rows of their own.
     pub fn springs(&self) -> &[(MotionRow, f64)] {
-        springs(&self.source)
-    }
-
-    /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
-    pub fn is_damped_by_stiffness(&self) -> bool {
-        match &self.source {
-            Source::Modes(modes) => modes.is_damped_by_stiffness(),
-            Source::Poles(_) => false,
+        if self.has_springs {
+            all_springs(&self.source)
+        } else {
+            &[]
         }
     }
 
@@ -374,11 +388,11 @@ impl WithSimd for Series<'_> {
     }
 }
 
-/// Springs of modes that count.
-fn springs(source: &Source) -> &[(MotionRow, f64)] {
+/// Springs that modes leave out.
+fn all_springs(source: &Source) -> &[(MotionRow, f64)] {
     match source {
-        Source::Modes(modes) if modes.is_damped_by_stiffness() => &modes.springs,
-        _ => &[],
+        Source::Modes(modes) => &modes.springs,
+        Source::Poles(_) => &[],
     }
 }
 

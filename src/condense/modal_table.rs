@@ -100,7 +100,7 @@ impl ModalTable {
         let block = &condensed.blocks()[i];
         let force = rows.forced(&block.force)?;
         let unbalance = rows.forced(block.unbalance.as_deref().unwrap_or(&[]))?;
-        let coefficients = Coefficients::new(condensed, i, rows.springs(), rows.is_damped_by_stiffness())?;
+        let coefficients = Coefficients::new(condensed, i, rows.springs(), rows.source().is_damped_by_stiffness())?;
         let single = match rows.source() {
             Source::Modes(modes) if condensed.coordinates() == 1 && rows.count() == 2 && unbalance.is_empty() => {
                 Some(SingleContact::new(&modes.values, rows.left(), &force)?)

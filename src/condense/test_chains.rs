@@ -79,3 +79,26 @@ pub const DAMPED: [((f64, f64), f64); 6] = [
     ((0.0, 0.0), 0.03),
     ((0.03, 4e-2), 0.2),
 ];
+
+/// A chain of `n` unit masses between walls with sliders to the ground, as many as there is room for at every other mass.
+pub fn long_chain(n: usize, contacts: usize, (alpha, beta): (f64, f64)) -> Model {
+    let mut model = Model::new(n).unwrap();
+    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        (m[i * n + i], k[i * n + i]) = (1.0, 2.0);
+        if i > 0 {
+            (k[i * n + i - 1], k[(i - 1) * n + i]) = (-1.0, -1.0);
+        }
+    }
+    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
+        .unwrap();
+    model.set_rayleigh(alpha, beta).unwrap();
+    for dof in (1..n).step_by(2).take(contacts) {
+        model
+            .add_contact(&Contact::jenkins(dof, None, 0.5 + 0.01 * dof as f64, 0.3, 1.0))
+            .unwrap();
+    }
+    model
+}

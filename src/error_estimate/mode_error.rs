@@ -1,13 +1,15 @@
 //! The error of a point of a nonlinear mode, including those of its frequency and damping ratio.
 
-use crate::condense::Condensed;
-use crate::error::{Result, try_vec};
+use crate::condense::wave_cache::SharedWaves;
+use crate::condense::{Condensed, ModelCache, Resolution};
+use crate::error::{Result, boxed, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
     CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
 use crate::error_estimate::extended_newton::{FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::factored_harmonics::{factored, whole};
 use crate::error_estimate::work::{OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
@@ -19,11 +21,8 @@ use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Ratio of the harmonics of an extended model to those needed up to which the model is used again.
-const SPARE: f64 = 1.25;
-
-/// Newton iterations with the whole extended matrix for which the work must suffice.
-const ITERATIONS: f64 = 3.0;
+/// Evaluations, each with a product, for which the work must suffice.
+const EVALUATIONS: f64 = 6.0;
 
 /// Relative error of the damping ratio below which its last change need not be small against its whole change: along
 /// a backbone the latter passes through zero.
@@ -41,9 +40,11 @@ pub struct ModeEstimator<'a> {
     gauge: &'a Gauge,
     response: usize,
     interrupt: &'a Interrupt<'a>,
+    models: &'a ModelCache,
+    waves: &'a SharedWaves,
     cutoff: Option<CutoffHarmonic>,
-    /// The extended model used last.
-    extended: Option<Condensed>,
+    /// The problem extended last, with its slot in the cache.
+    extended: Option<(usize, Box<ExtendedSystem<Epmc<'a>>>)>,
 }
 
 impl<'a> ModeEstimator<'a> {
@@ -51,11 +52,11 @@ impl<'a> ModeEstimator<'a> {
     /// degree of freedom `response`.
     #[must_use]
     pub fn new(
-        model: &'a Model,
-        options: &SolverOptions,
+        (model, options): (&'a Model, &SolverOptions),
         form: DampingForm,
         (linear, gauge): (&'a LinearMode, &'a Gauge),
         response: usize,
+        (models, waves): (&'a ModelCache, &'a SharedWaves),
         interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
@@ -66,6 +67,8 @@ impl<'a> ModeEstimator<'a> {
             gauge,
             response,
             interrupt,
+            models,
+            waves,
             cutoff: None,
             extended: None,
         }
@@ -85,16 +88,24 @@ impl<'a> ModeEstimator<'a> {
         or_unknown(found, solved, damping)
     }
 
-    fn condensed(&self, highest: usize) -> Result<Condensed> {
-        let options = extended_options(&self.options, highest);
-        Ok(Condensed::for_mode(
-            self.model,
-            &options,
-            (self.form, self.linear.rest.is_loaded()),
-            &self.linear.shape,
-            self.interrupt,
-        )?
-        .0)
+    /// The model with harmonics up to one at least, and its slot; `None` where there is none.
+    fn model_with(&self, highest: usize) -> Result<Option<(usize, &'a Resolution)>> {
+        let slot = self.models.slot_with(highest);
+        if slot == self.models.slots() {
+            return Ok(None);
+        }
+        let resolution = self.models.model(slot, |highest| {
+            let options = extended_options(&self.options, highest);
+            let form = (self.form, self.linear.rest.is_loaded());
+            let (condensed, _) = Condensed::for_mode(self.model, &options, form, &self.linear.shape, self.interrupt)?;
+            let condensed = self.waves.attach(self.model, condensed, self.interrupt)?;
+            let carried = condensed.set().numbers().last().copied().unwrap_or(0);
+            Ok(Resolution {
+                samples: extended_options(&self.options, carried).samples,
+                condensed: Arc::new(condensed),
+            })
+        })?;
+        Ok(Some((slot, resolution)))
     }
 
     fn extend(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {
@@ -102,8 +113,8 @@ impl<'a> ModeEstimator<'a> {
         let own = set.numbers().last().copied().unwrap_or(0);
         let sizes = Sizes::new(solved.condensed, self.options.samples);
         let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START), self.options.memory_limit);
-        let most = work.highest((solved.condensed, usize::MAX), &self.options, ITERATIONS, |sizes| {
-            sizes.evaluation() + sizes.factors(sizes.packed(), 0.0)
+        let most = work.highest((solved.condensed, usize::MAX), &self.options, EVALUATIONS, |sizes| {
+            sizes.evaluation() + sizes.product(0.0, sizes.packed())
         });
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
         if least > most {
@@ -111,39 +122,81 @@ impl<'a> ModeEstimator<'a> {
         }
         if self.cutoff.is_none() {
             let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
-            self.cutoff = Some(CutoffHarmonic::new(Arc::new(self.condensed(waves)?), self.interrupt)?);
+            let Some((_, resolution)) = self.model_with(waves)? else {
+                return solved.unknown(damping, true).map(Some);
+            };
+            self.cutoff = Some(CutoffHarmonic::new(Arc::clone(&resolution.condensed), self.interrupt)?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
         let highest = cutoff.at(solved.omega, least, most, self.interrupt)?;
-        let spare = (highest as f64 * SPARE) as usize;
-        let carries = |c: &Condensed| c.set().numbers().last().is_some_and(|h| (highest..=spare).contains(h));
-        if !self.extended.as_ref().is_some_and(carries) {
-            self.extended = None;
-        }
-        let condensed = match self.extended.take() {
-            Some(condensed) => condensed,
-            None => self.condensed(highest)?,
+        let Some((slot, resolution)) = self.model_with(highest)? else {
+            return solved.unknown(damping, true).map(Some);
         };
-        let found = self.on(&condensed, solved, (log10_amplitude, damping), (highest >= most, work));
-        self.extended = Some(condensed);
-        found
+        let parameters = (log10_amplitude, damping);
+        let mut found = self.on((slot, resolution), solved, parameters, (highest >= most, work), false)?;
+        if found.is_none() && self.extended.as_ref().is_some_and(|(_, system)| system.stalled) {
+            found = self.on((slot, resolution), solved, parameters, (highest >= most, work), true)?;
+        }
+        Ok(found)
+    }
+
+    /// The extended problem of a slot at an amplitude, with the work that it may take.
+    fn system(
+        &mut self,
+        (slot, resolution): (usize, &'a Resolution),
+        p: f64,
+        work: Work,
+        is_whole: bool,
+    ) -> Result<Option<Box<ExtendedSystem<Epmc<'a>>>>> {
+        let condensed = &*resolution.condensed;
+        let sizes = Sizes::new(condensed, resolution.samples);
+        let factored = if is_whole {
+            match whole(&sizes, &work) {
+                Some(all) => all,
+                None => return Ok(None),
+            }
+        } else {
+            factored(&sizes, condensed.set().numbers().len(), &work)
+        };
+        if let Some((known, mut system)) = self.extended.take().filter(|(known, _)| *known == slot) {
+            debug_assert_eq!(known, slot);
+            system.set_point(p, factored, work)?;
+            return Ok(Some(system));
+        }
+        let (linear, gauge, interrupt) = (self.linear, self.gauge, self.interrupt);
+        let problem = boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt))?;
+        boxed(|| ExtendedSystem::iterative(*problem, p, factored, (sizes, work))).map(Some)
     }
 
     fn on(
-        &self,
-        condensed: &Condensed,
+        &mut self,
+        (slot, resolution): (usize, &'a Resolution),
         solved: &Solved<'_>,
         (p, damping): (f64, f64),
         (short, work): (bool, Work),
+        is_whole: bool,
+    ) -> Result<Option<Estimate>> {
+        let Some(mut system) = self.system((slot, resolution), p, work, is_whole)? else {
+            return Ok(None);
+        };
+        let found = self.extended_with(&mut system, &resolution.condensed, solved, (p, damping), short);
+        self.extended = Some((slot, system));
+        found
+    }
+
+    fn extended_with(
+        &self,
+        system: &mut ExtendedSystem<Epmc<'a>>,
+        condensed: &Condensed,
+        solved: &Solved<'_>,
+        (p, damping): (f64, f64),
+        short: bool,
     ) -> Result<Option<Estimate>> {
         let set = condensed.set();
         let highest = set.numbers().last().copied().unwrap_or(0);
-        let samples = extended_options(&self.options, highest).samples;
-        let problem = Epmc::new(condensed, self.gauge, self.linear, samples, self.interrupt)?;
-        let n = problem.size();
-        let mut system = ExtendedSystem::dense(problem, p, Sizes::new(condensed, samples), work)?;
+        let n = system.problem.size();
         let a = 10f64.powf(p);
         let mut start = solved.extended(condensed, n, 1.0 / a)?;
         Epmc::set_frequency_and_damping(self.linear, (solved.omega, damping), &mut start);
@@ -154,6 +207,7 @@ impl<'a> ModeEstimator<'a> {
         if omits_nothing(residual, set, solved.condensed.set(), self.options.tol_residual) {
             return solved.exact(damping).map(Some);
         }
+        system.measure_by_point(false);
         let of_damping = |u: &[f64]| Epmc::damping_of_change(u).abs();
         let enough = |_: &Epmc<'_>, _: &[f64], change: &[f64], next: &[f64]| {
             let (moved, last) = (norm(&change[..n - 2]), norm(&next[..n - 2]));
@@ -161,14 +215,7 @@ impl<'a> ModeEstimator<'a> {
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
-        let Some(extended) = extend(
-            &mut system,
-            (&start, &start),
-            enough,
-            FirstStep::Checked,
-            self.interrupt,
-        )?
-        else {
+        let Some(extended) = extend(system, (&start, &start), enough, FirstStep::Checked, self.interrupt)? else {
             return Ok(None);
         };
         let z = extended.corrected()?;

@@ -60,6 +60,19 @@ pub fn terms(a: &Csc, x: &[Complex64]) -> f64 {
     x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum()
 }
 
+/// The same for many motions of one matrix, whose moduli are given; `sizes` is memory for those of x.
+pub fn terms_of_moduli(a: &Csc, moduli: &[f64], x: &[Complex64], sizes: &mut [f64]) -> f64 {
+    for (size, x) in sizes.iter_mut().zip(x) {
+        *size = x.norm();
+    }
+    let mut sum = 0.0;
+    for (size, ends) in sizes.iter().zip(a.col_ptr.windows(2)) {
+        let entries = moduli[ends[0]..ends[1]].iter().zip(&a.row_idx[ends[0]..ends[1]]);
+        sum += size * entries.map(|(v, &i)| v * sizes[i]).sum::<f64>();
+    }
+    sum
+}
+
 /// xᴴ A x of a Hermitian matrix.
 #[must_use]
 pub fn quadratic(a: &Csc, x: &[Complex64]) -> f64 {
