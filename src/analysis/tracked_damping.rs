@@ -12,7 +12,7 @@ use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status, fail, try_copy, try_vec};
-use crate::error_estimate::mode_error::ModeEstimator;
+use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -325,7 +325,12 @@ impl Tracked for TrackedDamping<'_> {
             (&models, &waves),
             self.interrupt,
         );
-        let estimate = estimator.at(&solved, log10, damping)?;
+        let state = ModeState {
+            log10_amplitude: log10,
+            damping,
+            damping_unit: damping.abs().max(NO_DAMPING),
+        };
+        let estimate = estimator.at(&solved, state)?;
         let error = (estimate.damping / damping).abs().max(estimate.frequency);
         Ok(Some((error, estimate)))
     }

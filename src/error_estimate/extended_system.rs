@@ -4,7 +4,6 @@ use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
 use crate::error_estimate::work::{Sizes, Work};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::krylov::{KrylovSystem, Lengths};
 use crate::linalg::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
@@ -58,7 +57,7 @@ impl<P: Problem> ExtendedSystem<P> {
     /// A problem of these sizes at a parameter value with the dense backend, and the work that it may take.
     #[cfg(test)]
     pub fn dense(problem: P, parameter: f64, sizes: Sizes, work: Work) -> Result<Self> {
-        let system = Box::new(DenseSystem::new(problem.size())?);
+        let system = Box::new(crate::linalg::linear_system::dense::DenseSystem::new(problem.size())?);
         let harmonics = usize::MAX;
         let factored = Factored {
             block: harmonics,

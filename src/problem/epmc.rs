@@ -185,6 +185,12 @@ impl<'a> Epmc<'a> {
         DAMPING_UNIT * change.last().copied().unwrap_or(0.0)
     }
 
+    /// Relative change of the frequency that belongs to a small change of the unknowns.
+    #[must_use]
+    pub fn frequency_of_change(change: &[f64]) -> f64 {
+        OMEGA_UNIT * change[change.len() - 2]
+    }
+
     /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
     /// evaluated, in the solver's units.
     #[must_use]

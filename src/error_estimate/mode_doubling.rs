@@ -1,0 +1,117 @@
+//! Frequency and damping ratio of a point of a nonlinear mode as its harmonics are doubled; see
+//! [`crate::error_estimate::doubling`].
+//!
+//! Each is taken over the size to which its error is relative: that of the damping ratio is a unit of the branch, since along a
+//! backbone the ratio passes through zero.
+
+use crate::error_estimate::doubling::Doubling;
+use crate::error_estimate::estimate::Estimate;
+use crate::error_estimate::kept_ratio::KeptRatio;
+
+/// Frequency and damping ratio of a point and of its extensions.
+pub(super) struct ModeSeries {
+    /// Those of the point, and the unit of the damping ratio.
+    omega: f64,
+    damping: f64,
+    unit: f64,
+    tolerance: f64,
+    of: [Doubling; 2],
+}
+
+/// Ratios of the whole changes to the first ones that were found before.
+#[derive(Default)]
+pub(super) struct ModeRatios([KeptRatio; 2]);
+
+impl ModeSeries {
+    /// A point, the unit of its damping ratio, and the tolerance of both.
+    pub fn new((omega, damping): (f64, f64), unit: f64, tolerance: f64) -> Self {
+        let start = || Doubling::new(1.0.into());
+        Self {
+            omega,
+            damping,
+            unit,
+            tolerance,
+            of: [start(), start()],
+        }
+    }
+
+    /// Adds the next extension.
+    pub fn add(&mut self, estimate: &Estimate) {
+        let (omega, damping) = (estimate.corrected.omega, estimate.corrected.damping);
+        self.of[0].add((omega / self.omega).into());
+        self.of[1].add((1.0 + (damping - self.damping) / self.unit).into());
+    }
+
+    /// Number of extensions.
+    pub fn extensions(&self) -> usize {
+        self.of[0].extensions()
+    }
+
+    /// Whether both have settled, or one of them does not matter.
+    pub fn has_settled(&self) -> bool {
+        self.of
+            .iter()
+            .all(|of| of.has_settled() || of.is_harmless(self.tolerance))
+    }
+
+    /// Whether both are known well enough where no further extension is possible.
+    pub fn suffices(&self) -> bool {
+        self.of.iter().all(|of| of.suffices() || of.is_harmless(self.tolerance))
+    }
+
+    /// Whether one of them misses the tolerance: a further extension would not change what follows.
+    pub fn misses(&self) -> bool {
+        self.suffices() && self.of.iter().any(|of| of.misses(self.tolerance))
+    }
+
+    /// Whether both meet the tolerance with all that may be missing.
+    pub fn is_harmless(&self) -> bool {
+        self.of.iter().all(|of| of.is_harmless(self.tolerance))
+    }
+
+    /// The estimate of the last extension with the changes that are missing.
+    pub fn completed(&self, mut estimate: Estimate) -> Estimate {
+        let [of_frequency, of_damping] = &self.of;
+        let whole = |of: &Doubling| {
+            if of.suffices() {
+                of.whole() * (1.0 + of.next())
+            } else {
+                of.whole() + of.missing()
+            }
+        };
+        estimate.frequency = whole(of_frequency);
+        estimate.damping = whole(of_damping) * self.unit;
+        estimate
+    }
+
+    /// The estimate of the first extension with ratios found before, where it meets the tolerance surely.
+    pub fn scaled(&self, ratios: &mut ModeRatios, least: usize, estimate: &Estimate) -> Option<Estimate> {
+        let mut errors = [0.0; 2];
+        for ((error, of), kept) in errors.iter_mut().zip(&self.of).zip(&mut ratios.0) {
+            let (ratio, sure) = kept.at(least)?;
+            *error = of.scaled(ratio);
+            if *error > sure * self.tolerance {
+                return None;
+            }
+        }
+        Some(Estimate {
+            frequency: errors[0],
+            damping: errors[1] * self.unit,
+            ..estimate.clone()
+        })
+    }
+
+    /// Keeps the ratios for the following estimates.
+    pub fn note(&self, ratios: &mut ModeRatios, least: usize) {
+        for (kept, of) in ratios.0.iter_mut().zip(&self.of) {
+            let ratio = if of.suffices() {
+                Some(of.ratio())
+            } else {
+                of.bounded_ratio()
+            };
+            if let Some(ratio) = ratio.filter(|ratio| ratio.is_finite()) {
+                kept.note(least, ratio);
+            }
+        }
+    }
+}
