@@ -242,6 +242,10 @@ impl ModalRows {
             return Ok(0);
         };
         let first = n - SOFT[split];
+        // So many terms suffice at the end of the range of a series.
+        let ratio = size * self.source.value(first - 1).norm();
+        let enough = (terms as f64 * (STIFF.ln() / ratio.max(f64::MIN_POSITIVE).ln())).ceil() as usize;
+        let terms = terms.min(enough.max(1));
         let mut sums = [&[][..]; MOST_TERMS];
         let (mut factors, mut slopes) = ([Complex64::ZERO; MOST_TERMS], [Complex64::ZERO; MOST_TERMS]);
         // zʲ/a and its derivative, with ∂z = (∂b − z ∂a)/a.

@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub struct ModeFlexibility {
     coordinates: usize,
     reference_dof: usize,
+    /// Largest relative deviation of sums from a factorisation.
+    deviation: f64,
     /// Per harmonic its sums, where they are used, with the number of its wave.
     sums: Vec<Option<(ModeSums, usize)>>,
     /// Whether the sums of a wave agreed with a factorisation.
@@ -54,11 +56,12 @@ const BEYOND_ITS_ERROR: f64 = 10.0;
 const CONTEXT: &str = "the flexibility of a mode";
 
 impl ModeFlexibility {
-    /// Memory for a condensed model whose normalisation reads an independent degree of freedom.
+    /// Memory for a condensed model whose normalisation reads an independent degree of freedom; the flexibility within a relative
+    /// tolerance, 0: as exact as numbers are.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, reference_dof: usize) -> Result<Self> {
+    pub fn new(condensed: &Condensed, reference_dof: usize, tolerance: f64) -> Result<Self> {
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
         let (mut sums, mut agree, mut waves) = (Vec::new(), Vec::new(), Vec::<Arc<ModalRows>>::new());
@@ -77,7 +80,7 @@ impl ModeFlexibility {
                             waves.len() - 1
                         }
                     };
-                    ModeSums::new(condensed, i, Arc::clone(&waves[wave]))?.map(|sums| (sums, wave))
+                    ModeSums::new((condensed, i), Arc::clone(&waves[wave]), tolerance)?.map(|sums| (sums, wave))
                 }
                 _ => None,
             };
@@ -86,6 +89,7 @@ impl ModeFlexibility {
         Ok(Self {
             coordinates,
             reference_dof,
+            deviation: DEVIATION.max(tolerance),
             sums,
             agree,
             work: None,
@@ -164,11 +168,11 @@ impl ModeFlexibility {
         let parts = |of: &[Complex64], k: usize| of[k * coordinates..(k + 1) * coordinates].to_vec();
         for k in 0..3 {
             let (by_sums, plain) = (parts(&self.relative, k), parts(&relative, k));
-            if off(&by_sums, &plain) > DEVIATION {
+            if off(&by_sums, &plain) > self.deviation {
                 direct.refine((condensed, i), at, k, interrupt)?;
                 direct.read((condensed, i), &mut value, &mut relative);
                 let refined = parts(&relative, k);
-                if off(&by_sums, &refined) > DEVIATION.max(BEYOND_ITS_ERROR * off(&plain, &refined)) {
+                if off(&by_sums, &refined) > self.deviation.max(BEYOND_ITS_ERROR * off(&plain, &refined)) {
                     return Ok(false);
                 }
             }
@@ -177,12 +181,12 @@ impl ModeFlexibility {
         let Some(worst) = (0..coordinates).max_by(|a, b| deviation(*a).total_cmp(&deviation(*b))) else {
             return Ok(true);
         };
-        if deviation(worst) > DEVIATION {
+        if deviation(worst) > self.deviation {
             let plain = parts(&value, worst);
             direct.refine_column((condensed, i), at, worst, interrupt)?;
             direct.read((condensed, i), &mut value, &mut relative);
             let (by_sums, refined) = (parts(&self.value, worst), parts(&value, worst));
-            return Ok(off(&by_sums, &refined) <= DEVIATION.max(BEYOND_ITS_ERROR * off(&plain, &refined)));
+            return Ok(off(&by_sums, &refined) <= self.deviation.max(BEYOND_ITS_ERROR * off(&plain, &refined)));
         }
         Ok(true)
     }
@@ -397,7 +401,7 @@ mod tests {
             .attach(model, direct.clone(), &Interrupt::none())
             .unwrap();
         assert!(quick.blocks().iter().all(|b| b.source.is_some()), "{case}");
-        let [mut by_sums, mut exact] = [&quick, &direct].map(|c| ModeFlexibility::new(c, 4).unwrap());
+        let [mut by_sums, mut exact] = [&quick, &direct].map(|c| ModeFlexibility::new(c, 4, 0.0).unwrap());
         let w: Vec<Complex64> = (0..direct.coordinates())
             .map(|c| Complex64::new(1.0 - c as f64, 0.4))
             .collect();

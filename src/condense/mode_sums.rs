@@ -20,8 +20,9 @@ use crate::condense::wave_modes::{NEAR_MODE, WaveModes};
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::{complex_columns, expand, inner};
+use crate::linalg::{complex_columns, dot, inner};
 use num_complex::Complex64;
+use pulp::bytemuck::cast_slice;
 use std::sync::Arc;
 
 const CONTEXT: &str = "the flexibility of a mode";
@@ -36,6 +37,8 @@ pub(super) struct ModeSums {
     number: f64,
     is_mass_type: bool,
     coefficients: Coefficients,
+    /// Terms of the series over stiff modes.
+    terms: usize,
 }
 
 /// Products of the normalisation of a nonlinear mode with its fundamental: of (B x)ᴴ, and the motion of the reference degree of freedom.
@@ -67,6 +70,9 @@ pub(super) struct SumWork {
     memory: Vec<Complex64>,
     /// A motion of each row of B.
     inner: Vec<Complex64>,
+    /// Memory for a product with all degrees of freedom, and for the numbers of a force turned by a quarter.
+    whole: Vec<Complex64>,
+    turned: Vec<Complex64>,
 }
 
 /// a and b or their derivatives by one variable.
@@ -77,11 +83,11 @@ struct Pair {
 }
 
 impl ModeSums {
-    /// The i-th carried harmonic with the rows of its wave; `None` where these belong to poles, which would follow the damping ratio.
+    /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None` where these belong to poles, which would follow the damping ratio.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, i: usize, rows: Arc<ModalRows>) -> Result<Option<Self>> {
+    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>, tolerance: f64) -> Result<Option<Self>> {
         let Source::Modes(modes) = rows.source() else {
             return Ok(None);
         };
@@ -94,6 +100,11 @@ impl ModeSums {
             number: block.number as f64,
             is_mass_type,
             modes,
+            terms: if rows.count() < SERIES_FROM {
+                0
+            } else {
+                terms_within(tolerance.max(f64::EPSILON))
+            },
             rows,
         }))
     }
@@ -124,6 +135,8 @@ impl ModeSums {
             seen: zeros(rows)?,
             memory: zeros(rows)?,
             inner: zeros(self.coefficients.len())?,
+            whole: zeros(n)?,
+            turned: zeros(rows)?,
         })
     }
 
@@ -158,7 +171,8 @@ impl ModeSums {
         interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
         self.flexibility(work, interrupt)?;
         self.motion(work, w);
-        expand(&self.modes.vectors, &work.motion, x);
+        let memory = &mut work.whole[..x.len()];
+        complex_columns::multiply(&self.modes.vectors, memory.len(), &work.motion, x, memory);
         let coordinates = self.rows.coordinates();
         for (variable, slope) in [by_omega, by_damping].into_iter().enumerate() {
             let to = &mut relative[(1 + variable) * coordinates..(2 + variable) * coordinates];
@@ -229,12 +243,7 @@ impl ModeSums {
     /// T′ and, with the low-rank term, the flexibility.
     fn flexibility(&self, work: &mut SumWork, interrupt: &Interrupt<'_>) -> Result<()> {
         let (rows, outputs) = (self.rows.count(), self.rows.coordinates() + 1);
-        let terms = if rows < SERIES_FROM {
-            0
-        } else {
-            terms_within(f64::EPSILON)
-        };
-        let soft = self.rows.add_stiff(work.at, terms, &mut work.plain, None)?;
+        let soft = self.rows.add_stiff(work.at, self.terms, &mut work.plain, None)?;
         self.rows.add(soft, &work.inverse, &mut work.weighted, &mut work.plain);
         for (to, from) in work
             .table
@@ -269,7 +278,7 @@ impl ModeSums {
                 }
             }
         }
-        self.multiply_adjoint(&work.force, &mut work.motion);
+        multiply_adjoint(self.rows.left(), &work.force, &mut work.turned, &mut work.motion);
         for (xi, inverse) in work.motion.iter_mut().zip(&work.inverse) {
             *xi *= -inverse;
         }
@@ -295,7 +304,7 @@ impl ModeSums {
             }
         }
         let rate = &mut work.rates[variable];
-        self.multiply_adjoint(&work.force, rate);
+        multiply_adjoint(self.rows.left(), &work.force, &mut work.turned, rate);
         let values = work.motion.iter().zip(&self.modes.values);
         for ((rate, inverse), (xi, mu)) in rate.iter_mut().zip(&work.inverse).zip(values) {
             *rate = (*rate - (slope.a - slope.b * mu) * xi) * inverse;
@@ -310,7 +319,7 @@ impl ModeSums {
             for (b, z) in work.inner.iter().enumerate() {
                 work.memory[of.row_of(b)] = of.entry(b, work.at.a - 1.0) * z;
             }
-            self.multiply_adjoint(&work.memory, &mut work.of_modes);
+            multiply_adjoint(self.rows.left(), &work.memory, &mut work.turned, &mut work.of_modes);
             for ((rate, inverse), force) in rate.iter_mut().zip(&work.inverse).zip(&work.of_modes) {
                 *rate += inverse * force;
             }
@@ -319,12 +328,21 @@ impl ModeSums {
             relative.copy_from_slice(&work.force[..relative.len()]);
         }
     }
+}
 
-    /// out = Eᴴ f
-    fn multiply_adjoint(&self, force: &[Complex64], out: &mut [Complex64]) {
-        for (out, left) in out.iter_mut().zip(self.rows.left().chunks_exact(force.len())) {
-            *out = inner(left, force);
-        }
+/// out = Eᴴ f for the rows E, mode after mode; `turned` is memory for −i f.
+fn multiply_adjoint(left: &[Complex64], force: &[Complex64], turned: &mut [Complex64], out: &mut [Complex64]) {
+    for (to, f) in turned.iter_mut().zip(force) {
+        *to = Complex64::new(f.im, -f.re);
+    }
+    // The products of numbers as they lie in memory: Re a* f, and Im a* f with f turned.
+    let (force, turned) = (
+        cast_slice::<Complex64, f64>(force),
+        cast_slice::<Complex64, f64>(turned),
+    );
+    for (out, left) in out.iter_mut().zip(left.chunks_exact((force.len() / 2).max(1))) {
+        let left = cast_slice::<Complex64, f64>(left);
+        *out = Complex64::new(dot(left, force), dot(left, turned));
     }
 }
 

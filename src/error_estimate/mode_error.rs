@@ -10,6 +10,7 @@ use crate::error_estimate::estimate::{
 use crate::error_estimate::extended_newton::{FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::factored_harmonics::{factored, whole};
+use crate::error_estimate::forced_response_error::tables_within;
 use crate::error_estimate::mode_doubling::{ModeRatios, ModeSeries};
 use crate::error_estimate::work::{OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
@@ -268,7 +269,9 @@ impl<'a> ModeEstimator<'a> {
             system
         } else {
             let (linear, gauge, interrupt) = (self.linear, self.gauge, self.interrupt);
-            let problem = boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt))?;
+            let tolerance = tables_within(self.options.tolerance);
+            let problem =
+                boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt)?.within(tolerance))?;
             boxed(|| ExtendedSystem::iterative(*problem, state.log10_amplitude, chosen, (sizes, work)))?
         };
         let mut found = self.extended_with(&mut system, condensed, (solved, from), state, stage);

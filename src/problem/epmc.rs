@@ -133,7 +133,7 @@ impl<'a> Epmc<'a> {
         Ok(Self {
             condensed,
             forces,
-            structure: ModeFlexibility::new(condensed, gauge.reference_dof)?,
+            structure: ModeFlexibility::new(condensed, gauge.reference_dof, 0.0)?,
             gauge,
             linear,
             x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
@@ -155,6 +155,15 @@ impl<'a> Epmc<'a> {
             products: mode_products::ModeProducts::default(),
             guess: None,
         })
+    }
+
+    /// The same with the flexibility within a relative tolerance, as exactly as an estimate of an error needs it.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn within(mut self, tolerance: f64) -> Result<Self> {
+        self.structure = ModeFlexibility::new(self.condensed, self.gauge.reference_dof, tolerance)?;
+        Ok(self)
     }
 
     /// Gives the unknowns near which the first point is sought.
