@@ -185,28 +185,54 @@ impl Workspace {
         Ok(&self.table)
     }
 
-    /// H as [`Self::evaluate`] left it, its columns improved until only the rounding of the matrices is left.
+    /// The k-th column of H and of its slope after [`Self::evaluate`], improved until only the rounding of the matrices is left; the
+    /// slope where it is `wanted`.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
-    pub(super) fn refined(
+    pub(super) fn refined_column(
         &mut self,
-        condensed: &Condensed,
-        i: usize,
+        (condensed, i, k): (&Condensed, usize, usize),
         omega: f64,
+        wanted: bool,
         interrupt: &Interrupt<'_>,
-    ) -> Result<&[Complex64]> {
+    ) -> Result<[Vec<Complex64>; 2]> {
         let block = &condensed.blocks()[i];
-        let (n, outputs) = (condensed.ndof(), condensed.coordinates() + 1);
+        let n = condensed.ndof();
         let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
-        let tables = self.table.value.chunks_exact_mut(outputs);
+        let outputs = || try_vec(condensed.coordinates() + 1, Complex64::ZERO, CONTEXT);
+        let [mut value, mut slope] = [outputs()?, outputs()?];
         let dynamic = made(&mut self.dynamic, condensed)?;
-        for (k, (x, table)) in self.columns.chunks_exact_mut(n).zip(tables).enumerate() {
-            fill_load(block, k, omega, &mut self.load);
-            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
-            read(rows.clone(), x, table);
+        let at = (omega, self.damping);
+        let x = &mut self.columns[k * n..(k + 1) * n];
+        fill_load(block, k, omega, &mut self.load);
+        dynamic.refine(condensed, i, at, &self.load, x, interrupt)?;
+        read(rows.clone(), x, &mut value);
+        if wanted {
+            self.load.fill(Complex64::ZERO);
+            add_slope_product(
+                condensed,
+                i,
+                (omega.into(), self.damping),
+                Variable::Omega,
+                false,
+                x,
+                &mut self.load,
+            );
+            for load in &mut self.load {
+                *load = -*load;
+            }
+            if let Some(unbalance) = block.unbalance.as_ref().filter(|_| k == condensed.coordinates()) {
+                for (load, u) in self.load.iter_mut().zip(unbalance) {
+                    *load += 2.0 * omega * u;
+                }
+            }
+            self.product.copy_from_slice(&self.load);
+            dynamic.solve(condensed, i, omega, &mut self.product, false, interrupt)?;
+            dynamic.refine(condensed, i, at, &self.load, &mut self.product, interrupt)?;
+            read(rows, &self.product, &mut slope);
         }
-        Ok(&self.table.value)
+        Ok([value, slope])
     }
 
     /// Motion under the excitation, after [`Self::evaluate`].

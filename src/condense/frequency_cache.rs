@@ -17,7 +17,9 @@ const FACTORISED_UP_TO: usize = 100;
 /// Relative error of sums.
 const TOLERANCE: f64 = 1e-11;
 
-/// Deviation of a sum from a refined solution, or of its slope from one by factorisation, over the error of that factorisation.
+const CONTEXT: &str = "the contact flexibility";
+
+/// Deviation of a sum from a refined solution over the error of a factorisation.
 const BEYOND_FACTORS: f64 = 10.0;
 
 /// Tables of all carried harmonics.
@@ -59,7 +61,6 @@ impl FrequencyCache {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn new(condensed: &Condensed, response: usize, range: (f64, f64), interrupt: &Interrupt<'_>) -> Result<Self> {
-        const CONTEXT: &str = "the contact flexibility";
         let coordinates = condensed.coordinates();
         let (start, end) = range;
         let sweep = start.to_bits() != end.to_bits();
@@ -233,36 +234,49 @@ fn agreement(
         return Ok(Some(0.0));
     }
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;
-    let slope = if *checks_slope {
-        deviation(&table.slope, &exact.slope, outputs)
-    } else {
-        0.0
-    };
-    let value = deviation(&table.value, &exact.value, outputs);
-    *checks_slope = false;
-    if value.max(slope) <= TOLERANCE {
-        return Ok(Some(0.0));
+    let parts = [(&table.value, &exact.value), (&table.slope, &exact.slope)];
+    let checked = if core::mem::replace(checks_slope, false) { 2 } else { 1 };
+    let mut own = 0.0_f64;
+    let mut off = Vec::new();
+    for (part, (by_modes, exact)) in parts.into_iter().take(checked).enumerate() {
+        let (column, deviation) = worst_column(by_modes, exact, outputs);
+        // A factorisation of a stiff structure may be no better: that column shows.
+        if deviation.is_nan() || deviation > TOLERANCE {
+            let of_column = column * outputs..(column + 1) * outputs;
+            try_push(&mut off, (part, column, try_copy(&exact[of_column], CONTEXT)?), CONTEXT)?;
+        }
     }
-    // A factorisation of a stiff structure may be no better.
-    let factorised = try_copy(&exact.value, "the contact flexibility")?;
-    let refined = workspace.refined(condensed, i, omega, interrupt)?;
-    let own = deviation(&factorised, refined, outputs);
-    let by_modes = deviation(&table.value, refined, outputs);
-    let are_close = by_modes.max(slope) <= TOLERANCE.max(BEYOND_FACTORS * own);
-    Ok((are_close && (slope + by_modes).is_finite()).then_some(own))
+    for (part, column, factorised) in off {
+        let refined = workspace.refined_column((condensed, i, column), omega, part == 1, interrupt)?;
+        let by_modes = [&table.value, &table.slope][part];
+        let of_factors = worst_column(&factorised, &refined[part], outputs).1;
+        let of_modes = worst_column(
+            &by_modes[column * outputs..(column + 1) * outputs],
+            &refined[part],
+            outputs,
+        )
+        .1;
+        if !(of_modes <= TOLERANCE.max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
+            return Ok(None);
+        }
+        if part == 0 {
+            own = of_factors;
+        }
+    }
+    Ok(Some(own))
 }
 
-/// Largest relative deviation of a column of a table of so many rows from that of another one.
-fn deviation(a: &[Complex64], b: &[Complex64], outputs: usize) -> f64 {
-    let mut largest = 0.0_f64;
-    for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
+/// The column of a table of so many rows with the largest relative deviation from that of another one, and the deviation.
+fn worst_column(a: &[Complex64], b: &[Complex64], outputs: usize) -> (usize, f64) {
+    let mut largest = (0, 0.0_f64);
+    for (k, (a, b)) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)).enumerate() {
         let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
         let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
-        if off > 0.0 || off.is_nan() {
-            largest = largest.max((off / size).sqrt());
-            if off.is_nan() || size == 0.0 {
-                return f64::INFINITY;
-            }
+        if off.is_nan() || (off > 0.0 && size == 0.0) {
+            return (k, f64::INFINITY);
+        }
+        if off > 0.0 && (off / size).sqrt() > largest.1 {
+            largest = (k, (off / size).sqrt());
         }
     }
     largest
