@@ -14,6 +14,7 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products;
 use crate::linalg::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
@@ -97,6 +98,9 @@ pub struct LowRank {
     d_inner: Vec<Complex64>,
     force: Vec<Complex64>,
     d_force: Vec<Complex64>,
+    /// e X and ∂e X at all rows of T′, of which that of the response has no force, and products with them.
+    forces: [Vec<Complex64>; 2],
+    products: [Vec<Complex64>; 2],
 }
 
 impl LowRank {
@@ -106,6 +110,7 @@ impl LowRank {
     /// `OutOfMemory`.
     pub fn new(coordinates: usize, order: usize) -> Result<Self> {
         let columns = || try_vec(order * (coordinates + 1), Complex64::ZERO, CONTEXT);
+        let wide = || try_vec((order + 1) * (coordinates + 1), Complex64::ZERO, CONTEXT);
         Ok(Self {
             coordinates,
             lu: Lu::new(order, coordinates + 1)?,
@@ -113,6 +118,8 @@ impl LowRank {
             d_inner: columns()?,
             force: columns()?,
             d_force: columns()?,
+            forces: [wide()?, wide()?],
+            products: [wide()?, wide()?],
         })
     }
 
@@ -152,7 +159,12 @@ impl LowRank {
         if slopes {
             self.differentiate(of, plain, at, interrupt)?;
             self.copy_rows(&self.d_inner, &mut table.slope);
-            self.add_response(of, (plain.slope, plain.rows), &self.force, &mut table.slope);
+            // ∂T′_B e X of the response is made with the others.
+            let outputs = self.coordinates + 1;
+            let made = self.products[0].chunks_exact(plain.rows);
+            for (to, product) in table.slope.chunks_exact_mut(outputs).zip(made) {
+                to[self.coordinates] += product[self.coordinates];
+            }
             self.add_response(of, (plain.value, plain.rows), &self.d_force, &mut table.slope);
         }
         Ok(())
@@ -192,19 +204,25 @@ impl LowRank {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
-        for k in 0..=self.coordinates {
-            interrupt.check_before((2 * order * order) as u64)?;
-            let sums = &mut self.d_inner[k * order..(k + 1) * order];
-            for (p, sum) in sums.iter_mut().enumerate() {
-                *sum = plain.slope[k * rows + of.row_of(p)];
+        let [forces, d_forces] = &mut self.forces;
+        let columns = self.force.chunks_exact(order).zip(self.inner.chunks_exact(order));
+        let wide = forces.chunks_exact_mut(rows).zip(d_forces.chunks_exact_mut(rows));
+        for ((force, x), (forces, d_forces)) in columns.zip(wide) {
+            for (p, (force, x)) in force.iter().zip(x).enumerate() {
+                forces[of.row_of(p)] = *force;
+                d_forces[of.row_of(p)] = of.d_entry(p, at.d_c) * x;
             }
-            for q in 0..order {
-                let d_e_x = of.d_entry(q, at.d_c) * self.inner[k * order + q];
-                let (force, from) = (self.force[k * order + q], of.row_of(q) * rows);
-                for (p, sum) in sums.iter_mut().enumerate() {
-                    let entry = from + of.row_of(p);
-                    *sum += plain.slope[entry] * force + plain.value[entry] * d_e_x;
-                }
+        }
+        let [by_slope, by_value] = &mut self.products;
+        for (table, forces, out) in [(plain.slope, &*forces, by_slope), (plain.value, &*d_forces, by_value)] {
+            interrupt.check_before((2 * rows * forces.len()) as u64)?;
+            complex_products::multiply(table, forces, out, rows);
+        }
+        let [by_slope, by_value] = &self.products;
+        for (k, sums) in self.d_inner.chunks_exact_mut(order).enumerate() {
+            for (p, sum) in sums.iter_mut().enumerate() {
+                let at = k * rows + of.row_of(p);
+                *sum = plain.slope[at] + by_slope[at] + by_value[at];
             }
         }
         self.lu.solve_columns(&mut self.d_inner, false, interrupt)?;

@@ -1,5 +1,6 @@
 //! The form xᴴ A x and the product A x, accurate under cancellation: for a motion that hardly strains a stiff
 //! structure they are smaller than the rounding error of their largest term.
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
 use crate::linalg::sparse::Csc;
 use num_complex::Complex64;
