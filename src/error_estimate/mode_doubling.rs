@@ -81,6 +81,9 @@ impl ModeSeries {
         };
         estimate.frequency = whole(of_frequency);
         estimate.damping = whole(of_damping) * self.unit;
+        // The response follows both.
+        let missing = |of: &Doubling| if of.suffices() { of.next() } else { 0.0 };
+        estimate.response *= 1.0 + missing(of_frequency).max(missing(of_damping));
         estimate
     }
 
@@ -111,6 +114,70 @@ impl ModeSeries {
             };
             if let Some(ratio) = ratio.filter(|ratio| ratio.is_finite()) {
                 kept.note(least, ratio);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error_estimate::Corrected;
+    use crate::fourier::HarmonicSet;
+
+    fn estimate(omega: f64, damping: f64) -> Estimate {
+        Estimate {
+            certified: true,
+            too_large: false,
+            motion: 0.0,
+            response: 1e-3,
+            frequency: f64::NAN,
+            damping: f64::NAN,
+            harmonics: 1,
+            steps: 1,
+            change: 0.0,
+            tail: Vec::new(),
+            corrected: Corrected {
+                set: HarmonicSet::all(1).unwrap(),
+                motion: Vec::new(),
+                response: 1.0.into(),
+                omega,
+                damping,
+            },
+        }
+    }
+
+    /// A frequency whose error falls to a third with each doubling, and a damping ratio whose error falls to a fifth and passes
+    /// through zero.
+    #[test]
+    fn the_errors_of_falling_series_are_those_to_their_limits() {
+        let (omega, damping, unit) = (3.0, 1e-4, 2e-3);
+        let (d_omega, d_damping) = (1e-4, -3e-4);
+        let at = |k: i32| {
+            let (a, b) = (d_omega * 3f64.powi(-k), d_damping * 5f64.powi(-k));
+            estimate(omega + d_omega - a, damping + d_damping - b)
+        };
+        let mut series = ModeSeries::new((omega, damping), unit, 0.0);
+        let mut extensions = 0;
+        while !series.has_settled() {
+            extensions += 1;
+            series.add(&at(extensions));
+            assert!(extensions < 6);
+        }
+        assert!(series.extensions() == extensions && extensions > 1);
+        let found = series.completed(at(extensions));
+        assert!((found.frequency / (d_omega / omega) - 1.0).abs() < 0.1, "{found:?}");
+        assert!((found.damping / d_damping.abs() - 1.0).abs() < 0.1, "{found:?}");
+        // The ratios then tell both errors from the first extension of the next point, which is not used where it is no sure thing.
+        let mut ratios = ModeRatios::default();
+        series.note(&mut ratios, 3);
+        for (tolerance, serves) in [(0.5, true), (1e-3, false)] {
+            let mut next = ModeSeries::new((omega, damping), unit, tolerance);
+            next.add(&at(1));
+            let scaled = next.scaled(&mut ratios, 3, &at(1));
+            assert_eq!(scaled.is_some(), serves);
+            if let Some(scaled) = scaled {
+                assert!((scaled.damping / d_damping.abs() - 1.0).abs() < 0.1, "{scaled:?}");
             }
         }
     }

@@ -59,8 +59,11 @@ pub struct ModeEstimator<'a> {
 /// A point of a mode: log₁₀ of its amplitude, its damping ratio, and the size to which the error of that is relative.
 #[derive(Clone, Copy)]
 pub struct ModeState {
+    /// log₁₀ of the amplitude.
     pub log10_amplitude: f64,
+    /// Damping ratio.
     pub damping: f64,
+    /// Size to which its error is relative.
     pub damping_unit: f64,
 }
 
@@ -354,10 +357,15 @@ impl<'a> ModeEstimator<'a> {
         let row = condensed.motion_row(i, self.response)?;
         let response = |shape: &[Complex64]| row.along(&shape[i * dofs..(i + 1) * dofs]) * unit;
         let before = response(system.problem.shape());
-        if !system.evaluate(&z)? {
-            return Ok(None);
-        }
-        let response = response(system.problem.shape());
+        // One of several extensions tells frequency and damping ratio; the response may lack the last step.
+        let response = if stage.by_doubling {
+            before
+        } else {
+            if !system.evaluate(&z)? {
+                return Ok(None);
+            }
+            response(system.problem.shape())
+        };
         let motion = &z[..n - 2];
         let size = norm(motion);
         let mut change = try_vec(n - 2, 0.0, CONTEXT)?;
