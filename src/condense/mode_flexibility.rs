@@ -68,18 +68,15 @@ impl ModeFlexibility {
         for (i, block) in condensed.blocks().iter().enumerate() {
             let of_harmonic = match &block.source {
                 Some(source @ Source::Modes(_)) if !matches!(block.artificial, Artificial::None) => {
-                    let wave = match waves.iter().position(|rows| rows.source().is(source)) {
-                        Some(known) => known,
-                        None => {
-                            let row =
-                                block.row(&[Some((reference_dof, Complex64::ONE)), None, None, None, None, None])?;
-                            let springs = ModeSums::damps_springs(&block.artificial) || source.is_damped_by_stiffness();
-                            let rows = ModalRows::with_rows((condensed, i), &row, source.clone(), springs)?;
-                            try_push(&mut waves, Arc::new(rows), CONTEXT)?;
-                            try_push(&mut agree, false, CONTEXT)?;
-                            waves.len() - 1
-                        }
-                    };
+                    let known = waves.iter().position(|rows| rows.source().is(source));
+                    let wave = known.unwrap_or(waves.len());
+                    if known.is_none() {
+                        let row = block.row(&[Some((reference_dof, Complex64::ONE)), None, None, None, None, None])?;
+                        let springs = ModeSums::damps_springs(&block.artificial) || source.is_damped_by_stiffness();
+                        let rows = ModalRows::with_rows((condensed, i), &row, source.clone(), springs)?;
+                        try_push(&mut waves, Arc::new(rows), CONTEXT)?;
+                        try_push(&mut agree, false, CONTEXT)?;
+                    }
                     ModeSums::new((condensed, i), Arc::clone(&waves[wave]), tolerance)?.map(|sums| (sums, wave))
                 }
                 _ => None,
@@ -127,7 +124,7 @@ impl ModeFlexibility {
             let work = self.work.insert(work);
             if sums.solve(work, at, w, (&mut self.x, &mut self.relative), interrupt)? {
                 let outputs = self.coordinates + 1;
-                let columns = sums.table(work).chunks_exact(outputs);
+                let columns = work.table().chunks_exact(outputs);
                 for (to, from) in self.value.chunks_exact_mut(self.coordinates.max(1)).zip(columns) {
                     to.copy_from_slice(&from[..outputs - 1]);
                 }

@@ -70,7 +70,7 @@ pub(super) struct SumWork {
     memory: Vec<Complex64>,
     /// A motion of each row of B.
     inner: Vec<Complex64>,
-    /// Memory for a product with all degrees of freedom, and for the numbers of a force turned by a quarter.
+    /// Memory for a product with all degrees of freedom, and for a force turned by a quarter.
     whole: Vec<Complex64>,
     turned: Vec<Complex64>,
 }
@@ -80,6 +80,13 @@ pub(super) struct SumWork {
 struct Pair {
     a: Complex64,
     b: Complex64,
+}
+
+impl SumWork {
+    /// The flexibility of the contacts, column after column with one more row, that of the reference degree of freedom.
+    pub fn table(&self) -> &[Complex64] {
+        &self.table.value
+    }
 }
 
 impl ModeSums {
@@ -182,18 +189,10 @@ impl ModeSums {
         Ok(true)
     }
 
-    /// The flexibility of the contacts, column after column with one more row, that of the reference degree of freedom.
-    pub fn table<'w>(&self, work: &'w SumWork) -> &'w [Complex64] {
-        &work.table.value
-    }
-
     /// Products of the normalisation with the solution of [`Self::solve`]: B x, and the row of the reference degree of freedom.
     pub fn gauge(&self, work: &mut SumWork, weighted: &[Complex64], out: &mut GaugeProducts) {
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
-        let n = weighted.len();
-        for (v, shape) in work.of_modes.iter_mut().zip(self.modes.vectors.chunks_exact(n)) {
-            *v = inner(shape, weighted);
-        }
+        multiply_adjoint(&self.modes.vectors, weighted, &mut work.whole, &mut work.of_modes);
         for (rate, out) in work.rates.iter().zip(&mut out.of_rates) {
             let left = self.rows.left().chunks_exact(rows);
             let moved: Complex64 = left.zip(rate).map(|(left, xi)| left[coordinates] * xi).sum();

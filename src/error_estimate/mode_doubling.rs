@@ -164,7 +164,7 @@ mod tests {
             series.add(&at(extensions));
             assert!(extensions < 6);
         }
-        assert!(series.extensions() == extensions && extensions > 1);
+        assert!(series.extensions() as i32 == extensions && extensions > 1);
         let found = series.completed(at(extensions));
         assert!((found.frequency / (d_omega / omega) - 1.0).abs() < 0.1, "{found:?}");
         assert!((found.damping / d_damping.abs() - 1.0).abs() < 0.1, "{found:?}");

@@ -225,7 +225,7 @@ impl Form<'_> {
                 }
                 re.add_products::<FUSED>(&a_re, &b_re);
                 im.add_products::<FUSED>(&a_re, &b_im);
-                if a_im != [0.0; LANES] {
+                if a_im.iter().any(|a| *a != 0.0) {
                     im.add_products::<FUSED>(&a_im, &b_re);
                     re.add_products::<FUSED>(&a_im.map(|a| -a), &b_im);
                 }
