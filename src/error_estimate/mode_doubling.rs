@@ -7,6 +7,7 @@
 use crate::error_estimate::doubling::Doubling;
 use crate::error_estimate::estimate::Estimate;
 use crate::error_estimate::kept_ratio::KeptRatio;
+use num_complex::Complex64;
 
 /// Frequency and damping ratio of a point and of its extensions.
 pub(super) struct ModeSeries {
@@ -38,8 +39,10 @@ impl ModeSeries {
     /// Adds the next extension.
     pub fn add(&mut self, estimate: &Estimate) {
         let (omega, damping) = (estimate.corrected.omega, estimate.corrected.damping);
-        self.of[0].add((omega / self.omega).into());
-        self.of[1].add((1.0 + (damping - self.damping) / self.unit).into());
+        // A change across 1 leaves the size to which it is relative.
+        let across = |change: f64| Complex64::new(1.0, change);
+        self.of[0].add(across(omega / self.omega - 1.0));
+        self.of[1].add(across((damping - self.damping) / self.unit));
     }
 
     /// Number of extensions.
