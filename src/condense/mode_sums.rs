@@ -20,7 +20,7 @@ use crate::condense::wave_modes::{NEAR_MODE, WaveModes};
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::{complex_columns, dot, inner};
+use crate::linalg::{complex_columns, dot, expand, inner};
 use num_complex::Complex64;
 use pulp::bytemuck::cast_slice;
 use std::sync::Arc;
@@ -175,6 +175,11 @@ impl ModeSums {
             return Ok(false);
         }
         work.at = denominator(at, by_omega);
+        if let ([w], 1) = (w, self.coefficients.len()) {
+            self.solve_single(work, [at, by_omega, by_damping], *w, relative);
+            expand(&self.modes.vectors, &work.motion, x);
+            return Ok(true);
+        }
         interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
         self.flexibility(work, interrupt)?;
         self.motion(work, w);
@@ -207,7 +212,10 @@ impl ModeSums {
         let columns = work.table.value.chunks_exact(coordinates + 1);
         for (c, (out, column)) in out.of_columns.iter_mut().zip(columns).enumerate() {
             let mut size = work.seen[c].conj();
-            if self.coefficients.counts {
+            if coordinates == 1 && order == 1 {
+                let force = self.coefficients.entry(0, work.at.a - 1.0) * column[0];
+                size += work.seen[0].conj() * force;
+            } else if self.coefficients.counts {
                 let force = &work.low_rank.force()[c * order..(c + 1) * order];
                 for (b, force) in force.iter().enumerate() {
                     size += work.seen[row_of(b)].conj() * force;
@@ -237,6 +245,49 @@ impl ModeSums {
                 b: imaginary(2.0 * mass * h * omega * omega),
             },
         ]
+    }
+
+    /// The same for one contact without springs in closed form, the inner loop of every mode with one contact: with q its motion in each
+    /// mode, S = Σ |q|²/d and p = 1/(1 − S e) the flexibility is G = S p, and
+    ///
+    /// > ξ = −p q*/d w,  ∂S = −Σ |q|² ∂d/d²,  ∂p = p² (∂S e + S ∂e),  ∂G = p² (∂S + S² ∂e).
+    fn solve_single(&self, work: &mut SumWork, [at, rates @ ..]: [Pair; 3], w: Complex64, relative: &mut [Complex64]) {
+        let (sums, values) = (self.rows.left().as_chunks::<2>().0, &self.modes.values);
+        let (mut sum, mut squares, mut weighted) = (Complex64::ZERO, Complex64::ZERO, Complex64::ZERO);
+        for ((inverse, [q, _]), mu) in work.inverse.iter().zip(sums).zip(values) {
+            let size = q.norm_sqr();
+            let square = inverse * inverse * size;
+            sum += inverse * size;
+            squares += square;
+            weighted += square * *mu;
+        }
+        let e = self.coefficients.entry(0, at.a - 1.0);
+        let pivot = (1.0 - sum * e).inv();
+        work.table.value[0] = sum * pivot;
+        relative[0] = -sum * pivot * w;
+        for (xi, (inverse, [q, _])) in work.motion.iter_mut().zip(work.inverse.iter().zip(sums)) {
+            *xi = -pivot * inverse * q.conj() * w;
+        }
+        let is_fundamental = self.number < 1.5;
+        if is_fundamental {
+            let columns = work.inverse.iter().zip(sums);
+            let moved: Complex64 = columns
+                .map(|(inverse, [q, response])| response * inverse * q.conj())
+                .sum();
+            work.table.value[1] = moved * pivot;
+        }
+        for ((slope, rate), to) in rates.into_iter().zip(&mut work.rates).zip(&mut relative[1..]) {
+            let d_sum = slope.b * weighted - slope.a * squares;
+            let d_e = self.coefficients.d_entry(0, slope.a);
+            *to = -pivot * pivot * (d_sum + sum * sum * d_e) * w;
+            if is_fundamental {
+                let d_pivot = pivot * pivot * (d_sum * e + sum * d_e);
+                for ((xi, (inverse, [q, _])), mu) in rate.iter_mut().zip(work.inverse.iter().zip(sums)).zip(values) {
+                    let d_inverse = (slope.b * mu - slope.a) * inverse * inverse;
+                    *xi = -(d_inverse * pivot + inverse * d_pivot) * q.conj() * w;
+                }
+            }
+        }
     }
 
     /// T′ and, with the low-rank term, the flexibility.
