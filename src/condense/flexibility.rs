@@ -6,12 +6,17 @@
 
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply};
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, boxed, try_push, try_vec};
+use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products::multiply_adjoint;
+use crate::linalg::inner;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the contact flexibility";
+
+/// Columns of Z′ Z⁻¹ B at a time.
+const PRODUCTS: usize = 8;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
 /// the unit force of contact j, the last one the excitation; the last row is the response degree
@@ -56,7 +61,8 @@ pub struct Workspace {
     columns: Vec<Complex64>,
     /// Z⁻ᵀ Rᵀ, ndof rows.
     rows: Vec<Complex64>,
-    product: Vec<Complex64>,
+    /// Z′ Z⁻¹ B, some columns at a time.
+    products: Vec<Complex64>,
     /// Entries of Z′, made when slopes are first wanted.
     slope: Vec<Complex64>,
     load: Vec<Complex64>,
@@ -81,7 +87,7 @@ impl Workspace {
             responses,
             columns: Vec::new(),
             rows: Vec::new(),
-            product: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            products: Vec::new(),
             slope: Vec::new(),
             load: try_vec(n, Complex64::ZERO, CONTEXT)?,
             table: Table::new(condensed.coordinates())?,
@@ -149,6 +155,7 @@ impl Workspace {
         }
         if self.rows.is_empty() {
             self.rows = try_vec(self.columns.len(), Complex64::ZERO, CONTEXT)?;
+            self.products = try_vec(n * PRODUCTS.min(outputs), Complex64::ZERO, CONTEXT)?;
         }
         self.rows.fill(Complex64::ZERO);
         for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
@@ -162,24 +169,24 @@ impl Workspace {
             self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
         }
         fill_slope(block, (omega, self.damping), &mut self.slope[..entries]);
-        for (column, table) in self
-            .columns
-            .chunks_exact(n)
-            .zip(self.table.slope.chunks_exact_mut(outputs))
-        {
-            interrupt.check()?;
-            multiply(block, &self.slope[..entries], column, &mut self.product);
-            for (slope, solved) in table.iter_mut().zip(self.rows.chunks_exact(n)) {
-                let sum: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
-                *slope = -sum;
+        // −Rᵀ as the adjoint of −conj R.
+        for z in &mut self.rows {
+            *z = -z.conj();
+        }
+        let columns = self.columns.chunks(PRODUCTS * n);
+        for (columns, table) in columns.zip(self.table.slope.chunks_mut(PRODUCTS * outputs)) {
+            interrupt.check_before(8 * (outputs * columns.len()) as u64)?;
+            let products = &mut self.products[..columns.len()];
+            for (column, product) in columns.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
+                multiply(block, &self.slope[..entries], column, product);
             }
+            multiply_adjoint(&self.rows, products, table, n);
         }
         if let Some(unbalance) = &block.unbalance {
             // The last column is that of the excitation, whose own derivative is 2ω times the unbalance.
             let last = self.table.slope.len() - outputs;
             for (slope, solved) in self.table.slope[last..].iter_mut().zip(self.rows.chunks_exact(n)) {
-                let sum: Complex64 = solved.iter().zip(unbalance).map(|(a, b)| a * b).sum();
-                *slope += 2.0 * omega * sum;
+                *slope -= 2.0 * omega * inner(solved, unbalance);
             }
         }
         Ok(&self.table)
@@ -227,17 +234,17 @@ impl Workspace {
                     *load += 2.0 * omega * u;
                 }
             }
-            self.product.copy_from_slice(&self.load);
-            dynamic.solve(condensed, i, omega, &mut self.product, false, interrupt)?;
-            dynamic.refine(condensed, i, at, &self.load, &mut self.product, interrupt)?;
-            read(rows, &self.product, &mut slope);
+            let mut change = try_copy(&self.load, CONTEXT)?;
+            dynamic.solve(condensed, i, omega, &mut change, false, interrupt)?;
+            dynamic.refine(condensed, i, at, &self.load, &mut change, interrupt)?;
+            read(rows, &change, &mut slope);
         }
         Ok([value, slope])
     }
 
     /// Motion under the excitation, after [`Self::evaluate`].
     pub(super) fn excited(&self) -> &[Complex64] {
-        &self.columns[self.columns.len() - self.product.len()..]
+        &self.columns[self.columns.len() - self.load.len()..]
     }
 
     /// Factors Z_κ of the i-th carried harmonic at `omega`, and replaces b by Z_κ⁻ᴴ b: the adjoint motion of a functional

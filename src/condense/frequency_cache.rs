@@ -1,11 +1,11 @@
 //! The flexibility tables of all carried harmonics at a frequency: sums over modes or poles where a sweep has them, by
 //! factorisation elsewhere.
 
-use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::single_contact_lanes::SingleContactLanes;
+use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use num_complex::Complex64;
@@ -14,8 +14,9 @@ use std::sync::Arc;
 /// Degrees of freedom up to which a table by factorisation has all digits, and takes little time.
 const FACTORISED_UP_TO: usize = 100;
 
-/// Relative error of sums.
+/// Relative error of sums, and of their slopes, which lead steps and change no solution.
 const TOLERANCE: f64 = 1e-11;
+const OF_SLOPES: f64 = 1e-9;
 
 const CONTEXT: &str = "the contact flexibility";
 
@@ -35,6 +36,8 @@ pub struct FrequencyCache {
     modal_slopes: bool,
     /// Whether a sweep uses other tables than those by factorisation.
     is_quicker: bool,
+    /// How the table of the lowest vibrating harmonic is made along it.
+    told: FlexibilityWay,
     /// Whether the structure is so stiff that factorisations lose the digits that sums have.
     is_stiff: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
@@ -68,6 +71,7 @@ impl FrequencyCache {
         let mut tables = Vec::new();
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
         let (mut is_quicker, mut is_stiff) = (false, false);
+        let mut told = None;
         let (mut waves, mut modal_work) = (Vec::new(), ModalWork::default());
         let count = condensed.blocks().len();
         for i in 0..count {
@@ -81,6 +85,13 @@ impl FrequencyCache {
                 None
             };
             is_quicker |= from_modes.is_some();
+            if condensed.blocks()[i].number > 0 && told.is_none() {
+                told = Some(match (condensed.blocks()[i].flexibility_way(), &from_modes) {
+                    _ if !sweep => FlexibilityWay::SingleFrequency,
+                    (FlexibilityWay::Modes | FlexibilityWay::Poles, None) => FlexibilityWay::Disagreement,
+                    (known, _) => known,
+                });
+            }
             let from_modes = from_modes.map(|(table, error)| {
                 is_stiff |= error > TOLERANCE;
                 table
@@ -95,6 +106,7 @@ impl FrequencyCache {
             modal_work,
             modal_slopes: true,
             is_quicker,
+            told: told.unwrap_or_default(),
             is_stiff,
             constant,
             tabulated: None,
@@ -105,6 +117,12 @@ impl FrequencyCache {
                 Way::Quick
             },
         })
+    }
+
+    /// How the table of the lowest vibrating harmonic is made along a sweep, and why so.
+    #[must_use]
+    pub fn flexibility_way(&self) -> FlexibilityWay {
+        self.told
     }
 
     /// Selects tables by factorisation from now on, without slopes if these are expensive.
@@ -236,12 +254,13 @@ fn agreement(
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;
     let parts = [(&table.value, &exact.value), (&table.slope, &exact.slope)];
     let checked = if core::mem::replace(checks_slope, false) { 2 } else { 1 };
+    let allowed = [TOLERANCE, OF_SLOPES];
     let mut own = 0.0_f64;
     let mut off = Vec::new();
     for (part, (by_modes, exact)) in parts.into_iter().take(checked).enumerate() {
         let (column, deviation) = worst_column(by_modes, exact, outputs);
         // A factorisation of a stiff structure may be no better: that column shows.
-        if deviation.is_nan() || deviation > TOLERANCE {
+        if deviation.is_nan() || deviation > allowed[part] {
             let of_column = column * outputs..(column + 1) * outputs;
             try_push(&mut off, (part, column, try_copy(&exact[of_column], CONTEXT)?), CONTEXT)?;
         }
@@ -256,7 +275,7 @@ fn agreement(
             outputs,
         )
         .1;
-        if !(of_modes <= TOLERANCE.max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
+        if !(of_modes <= allowed[part].max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
             return Ok(None);
         }
         if part == 0 {

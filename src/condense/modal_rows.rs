@@ -56,6 +56,8 @@ pub struct ModalRows {
     source: Source,
     /// Z_κ at rest and M of the block for which they were made.
     matrices: (Arc<Csc>, Arc<Vec<Complex64>>),
+    /// Motion of the next sector over that of this one: waves of real matrices may have one source and different rows.
+    next: Complex64,
     coordinates: usize,
     /// Rows of contacts, response and springs.
     rows: usize,
@@ -126,6 +128,7 @@ impl ModalRows {
         };
         Ok(Self {
             matrices: (Arc::clone(&block.reference), Arc::clone(&block.mass)),
+            next: block.next,
             coordinates,
             rows,
             has_springs,
@@ -141,12 +144,17 @@ impl ModalRows {
     /// # Errors
     /// `OutOfMemory`.
     pub fn shared(at: (&Condensed, usize, usize), source: Source, known: &mut Vec<Arc<Self>>) -> Result<Arc<Self>> {
-        if let Some(rows) = known.iter().find(|rows| rows.source.is(&source)) {
+        if let Some(rows) = known.iter().find(|rows| rows.are_of(&at.0.blocks()[at.1], &source)) {
             return Ok(Arc::clone(rows));
         }
         let rows = Arc::new(Self::new(at, source)?);
         try_push(known, Arc::clone(&rows), CONTEXT)?;
         Ok(rows)
+    }
+
+    /// Whether these are the rows of a block in these terms.
+    pub fn are_of(&self, block: &HarmonicBlock, source: &Source) -> bool {
+        self.source.is(source) && self.next == block.next
     }
 
     /// The terms.
@@ -160,7 +168,10 @@ impl ModalRows {
             Source::Modes(_) => true,
             Source::Poles(poles) => poles.key.tied.is_none_or(|number| number == block.number),
         };
-        of_block && Arc::ptr_eq(&self.matrices.0, &block.reference) && Arc::ptr_eq(&self.matrices.1, &block.mass)
+        of_block
+            && self.next == block.next
+            && Arc::ptr_eq(&self.matrices.0, &block.reference)
+            && Arc::ptr_eq(&self.matrices.1, &block.mass)
     }
 
     /// Springs with rows of their own.
@@ -445,7 +456,7 @@ mod tests {
 
     fn table(model: &Model, condensed: &Condensed, i: usize, tolerance: f64) -> ModalTable {
         let modes = WaveCache::default().of(model, condensed, i, &Interrupt::none());
-        let rows = ModalRows::new((condensed, i, RESPONSE), modes.unwrap().unwrap());
+        let rows = ModalRows::new((condensed, i, RESPONSE), modes.unwrap().ok().unwrap());
         ModalTable::new((condensed, i), Arc::new(rows.unwrap()), tolerance).unwrap()
     }
 

@@ -70,6 +70,38 @@ pub fn chain(sectors: usize, damping: (f64, f64)) -> Model {
     model
 }
 
+/// A wheel of five sectors whose matrices are real in every wave, so that a wave and the one that travels the other way have the same,
+/// with sliders and a spring within and across sectors. Harmonics 1, 2 travel forward, 3, 4 backward.
+pub fn real_wheel((alpha, beta): (f64, f64)) -> Model {
+    let mut model = Model::cyclic(3, 5).unwrap();
+    model.set_wave(1);
+    let m = [1.0, 0.0, 0.0, 0.0, 1.3, 0.0, 0.0, 0.0, 0.8];
+    let k = [2.3, -1.0, 0.0, -1.0, 2.9, -0.9, 0.0, -0.9, 1.7];
+    let to_next = [-0.15, 0.0, 0.0, 0.0, -0.4, 0.0, 0.0, 0.0, 0.0];
+    for (kind, values) in [(MatrixKind::Mass, m), (MatrixKind::Stiffness, k)] {
+        model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
+    }
+    model
+        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(3, &to_next))
+        .unwrap();
+    model.set_rayleigh(alpha, beta).unwrap();
+    model.add_force(0, 1, Complex64::new(0.7, -0.2)).unwrap();
+    for (a, b, offset, kt) in [(0, Some(1), 0, 0.7), (2, Some(2), 1, 0.9), (2, None, 0, 0.2)] {
+        let mut contact = Contact::jenkins(a, b, kt, 0.3, 1.0);
+        contact.sector_offset = offset;
+        model.add_contact(&contact).unwrap();
+    }
+    model
+        .add_spring(&Spring {
+            dof_a: Some(2),
+            dof_b: Some(2),
+            sector_offset: 2,
+            stiffness: 0.3,
+        })
+        .unwrap();
+    model
+}
+
 /// Damping αM + βK and loss factor.
 pub const DAMPED: [((f64, f64), f64); 6] = [
     ((0.0, 1e-3), 0.0),

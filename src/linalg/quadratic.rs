@@ -65,17 +65,39 @@ pub fn terms(a: &Csc, x: &[Complex64]) -> f64 {
     x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum()
 }
 
-/// The same for many motions of one matrix, whose moduli are given; `sizes` is memory for those of x.
-pub fn terms_of_moduli(a: &Csc, moduli: &[f64], x: &[Complex64], sizes: &mut [f64]) -> f64 {
-    for (size, x) in sizes.iter_mut().zip(x) {
-        *size = x.norm();
-    }
+/// The same from the moduli of A, on a pattern, and of x, where many motions are asked for.
+#[must_use]
+pub fn terms_of_moduli(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f64 {
     let mut sum = 0.0;
-    for (size, ends) in sizes.iter().zip(a.col_ptr.windows(2)) {
-        let entries = moduli[ends[0]..ends[1]].iter().zip(&a.row_idx[ends[0]..ends[1]]);
-        sum += size * entries.map(|(v, &i)| v * sizes[i]).sum::<f64>();
+    for (j, x) in of_vector.iter().enumerate() {
+        let column = pattern.col_ptr[j]..pattern.col_ptr[j + 1];
+        let column = of_matrix[column.clone()].iter().zip(&pattern.row_idx[column]);
+        sum += x * column.map(|(a, &i)| a * of_vector[i]).sum::<f64>();
     }
     sum
+}
+
+/// Terms of xᴴ A x over its value up to which plain sums have the digits of a size.
+const CANCELLED: f64 = 1e4;
+
+/// xᴴ A x of a Hermitian matrix to a dozen digits, which costs a quarter of all of them where the terms do not cancel.
+#[must_use]
+pub fn about_quadratic(a: &Csc, x: &[Complex64]) -> f64 {
+    let (mut form, mut size) = (0.0, 0.0);
+    for (j, xj) in x.iter().enumerate() {
+        let (mut column, mut largest) = (Complex64::ZERO, 0.0);
+        for (i, v) in a.column(j) {
+            let term = v.conj() * x[i];
+            column += term;
+            largest += term.re.abs() + term.im.abs();
+        }
+        form += xj.re * column.re + xj.im * column.im;
+        size += (xj.re.abs() + xj.im.abs()) * largest;
+    }
+    if size <= CANCELLED * form.abs() {
+        return form;
+    }
+    quadratic(a, x)
 }
 
 /// xᴴ A x of a Hermitian matrix.
