@@ -211,6 +211,7 @@ fn on_wave(
     let begin = LinearStart {
         linear,
         gauge,
+        is_repeated: start.is_repeated(),
         interrupt,
     };
     let mut mode = boxed(|| ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator))?;

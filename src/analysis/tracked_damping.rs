@@ -371,6 +371,7 @@ impl Tracked for TrackedDamping<'_> {
         let start = LinearStart {
             linear: &linear,
             gauge: self.gauge,
+            is_repeated: false,
             interrupt: self.interrupt,
         };
         let settings = Settings {

@@ -9,7 +9,7 @@ use crate::condense::modal_rows::ModalRows;
 use crate::condense::mode_sums::{GaugeProducts, ModeSums, SumWork};
 use crate::condense::sum_terms::Source;
 use crate::condense::{Artificial, Condensed};
-use crate::error::{Result, boxed, try_push, try_vec};
+use crate::error::{Result, Status, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
 use num_complex::Complex64;
@@ -52,6 +52,9 @@ struct Direct {
 /// Largest relative deviation of sums from a solution by factorisation, and over the error of that solution.
 const DEVIATION: f64 = 1e-11;
 const BEYOND_ITS_ERROR: f64 = 10.0;
+
+/// Relative distance from an undamped resonance that moves no contact at which a motion is that at the resonance, but for rounding.
+const BESIDE: f64 = 64.0 * f64::EPSILON;
 
 const CONTEXT: &str = "the flexibility of a mode";
 
@@ -260,7 +263,14 @@ impl Direct {
     ) -> Result<()> {
         let n = self.x.len();
         let rows = &condensed.blocks()[i].rows;
-        self.dynamic.factor(condensed, i, omega.into(), damping, interrupt)?;
+        match self.dynamic.factor(condensed, i, omega.into(), damping, interrupt) {
+            // A body that moves no contact may have the frequency of the mode: at rest it is beside that, too.
+            Err(e) if e.status == Status::Singular => {
+                let beside = omega * (1.0 + BESIDE);
+                self.dynamic.factor(condensed, i, beside.into(), damping, interrupt)?;
+            }
+            factored => factored?,
+        }
         self.columns.fill(Complex64::ZERO);
         for (column, row) in self.columns.chunks_exact_mut(n).zip(rows) {
             for &(p, a) in row.terms() {

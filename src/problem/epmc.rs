@@ -103,6 +103,8 @@ pub struct Epmc<'a> {
     products: mode_products::ModeProducts,
     /// Unknowns given for the first point.
     guess: Option<Vec<f64>>,
+    /// Whether the linear mode is one of several of its frequency.
+    is_repeated: bool,
 }
 
 impl<'a> Epmc<'a> {
@@ -154,6 +156,7 @@ impl<'a> Epmc<'a> {
             gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
             products: mode_products::ModeProducts::default(),
             guess: None,
+            is_repeated: false,
         })
     }
 
@@ -164,6 +167,12 @@ impl<'a> Epmc<'a> {
     pub fn within(mut self, tolerance: f64) -> Result<Self> {
         self.structure = ModeFlexibility::new(self.condensed, self.gauge.reference_dof, tolerance)?;
         Ok(self)
+    }
+
+    /// Tells that the linear mode is one of several of its frequency. Nonlinear modes may then lie in a continuum: bodies that nothing
+    /// couples vibrate in any phase to each other.
+    pub fn set_repeated(&mut self, is_repeated: bool) {
+        self.is_repeated = is_repeated;
     }
 
     /// Gives the unknowns near which the first point is sought.
@@ -426,6 +435,10 @@ impl<'a> Epmc<'a> {
 }
 
 impl Jacobian for Epmc<'_> {
+    fn has_continuum(&self) -> bool {
+        self.is_repeated
+    }
+
     fn size(&self) -> usize {
         self.condensed.coordinates() * self.condensed.set().packed_len() + 2
     }

@@ -10,6 +10,7 @@
 //! coupling of those beyond it.
 
 pub mod automatic;
+mod continuum;
 pub mod dense;
 pub mod krylov;
 
@@ -35,6 +36,11 @@ pub trait Jacobian {
     /// `StoppedByCaller`.
     fn multiply_here(&mut self, _d: &[f64], _out: &mut [f64]) -> Result<bool> {
         Ok(false)
+    }
+
+    /// Whether solutions may lie in a continuum besides the branch, so that the matrix is singular at each of them.
+    fn has_continuum(&self) -> bool {
+        false
     }
 
     /// The same Jacobian by products, where the problem has them.
