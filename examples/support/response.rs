@@ -106,6 +106,7 @@ impl Response {
             omega_stop: range.to * TAU,
             at: &at,
             guess: None,
+            responses: &[],
         };
         let begin = Instant::now();
         let mut first = None;

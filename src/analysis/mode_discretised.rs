@@ -12,7 +12,7 @@ use crate::condense::Reduction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, boxed, try_copy};
-use crate::error_estimate::mode_error::{ModeEstimator, NO_DAMPING};
+use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -170,7 +170,12 @@ impl<'a> ModeDiscretised<'a> {
             sticks: Some(equations.problem.forces().all_stuck()),
             iterations: 0,
         };
-        estimator.at(&solved, point.parameter(), damping).map(Some)
+        let state = ModeState {
+            log10_amplitude: point.parameter(),
+            damping,
+            damping_unit: self.damping.max(damping.abs()).max(NO_DAMPING),
+        };
+        estimator.at(&solved, state).map(Some)
     }
 
     /// Quantities of the point evaluated last. Its errors are unknown at a fold, where no solution is isolated.

@@ -21,6 +21,8 @@ const CONTEXT: &str = "the nonlinear mode";
 pub(super) struct LinearStart<'a> {
     pub linear: &'a LinearMode,
     pub gauge: &'a Gauge,
+    /// Whether it is one of several of its frequency.
+    pub is_repeated: bool,
     pub interrupt: &'a Interrupt<'a>,
 }
 
@@ -45,13 +47,14 @@ impl<'a> Equations<'a> {
     /// Memory for a resolution.
     pub fn new(resolution: &'a Resolution, start: &LinearStart<'a>, settings: &Settings) -> Result<Self> {
         let condensed = &*resolution.condensed;
-        let problem = Epmc::new(
+        let mut problem = Epmc::new(
             condensed,
             start.gauge,
             start.linear,
             resolution.samples,
             start.interrupt,
         )?;
+        problem.set_repeated(start.is_repeated);
         let unknowns = problem.size();
         Ok(Self {
             corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,

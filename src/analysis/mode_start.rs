@@ -52,6 +52,11 @@ impl ModeStart {
         Ok(Self { linear, gauge, chosen })
     }
 
+    /// Whether several modes have its frequency.
+    pub fn is_repeated(&self) -> bool {
+        self.chosen.multiplicity > 1
+    }
+
     /// Refuses a mode that moves no contact.
     pub fn check_motion(&self, condensed: &Condensed) -> Result<()> {
         let i = condensed.set().fundamental();

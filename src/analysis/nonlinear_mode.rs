@@ -12,8 +12,8 @@ use crate::analysis::mode_path::{Onset, course, trace};
 use crate::analysis::mode_start::ModeStart;
 use crate::analysis::odd_laws;
 use crate::analysis::sampling::{Sampled, required, with_samples};
-use crate::condense::Condensed;
 use crate::condense::wave_cache::SharedWaves;
+use crate::condense::{Condensed, ModelCache};
 use crate::continuation::Settings;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, boxed, fail};
@@ -186,10 +186,19 @@ fn on_wave(
         Branch::new(resolution, reduction, reported, response)
     })?;
     let estimates = solver.estimate_error || levels.is_automatic();
+    let extended = ModelCache::for_estimates()?;
     let make = || {
         let start = (linear, gauge);
         let form = range.damping_form;
-        Ok(ModeEstimator::new(model, solver, form, start, response, interrupt))
+        let models = (&extended, &waves);
+        Ok(ModeEstimator::new(
+            (model, solver),
+            form,
+            start,
+            response,
+            models,
+            interrupt,
+        ))
     };
     let estimator = estimates.then(|| boxed(make)).transpose()?;
     let settings = Settings {
@@ -202,6 +211,7 @@ fn on_wave(
     let begin = LinearStart {
         linear,
         gauge,
+        is_repeated: start.is_repeated(),
         interrupt,
     };
     let mut mode = boxed(|| ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator))?;

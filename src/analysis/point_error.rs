@@ -4,7 +4,7 @@ use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Artificial, Condensed, ModelCache};
 use crate::error::{Result, fail};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
-use crate::error_estimate::mode_error::ModeEstimator;
+use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -84,8 +84,8 @@ pub fn estimate_at_with(
         sticks: None,
         iterations: ITERATIONS,
     };
+    let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
-        let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
         return ForcedEstimator::new(model, solver, branch.response_dof(), models, interrupt).at(&solved);
     };
     let wave;
@@ -102,8 +102,15 @@ pub fn estimate_at_with(
         _ => DampingForm::Mass,
     };
     let start = (&data.linear, &data.gauge);
-    let mut estimator = ModeEstimator::new(model, solver, form, start, branch.response_dof(), interrupt);
-    estimator.at(&solved, at.log10_amplitude, at.damping_ratio)
+    let mut estimator = ModeEstimator::new((model, solver), form, start, branch.response_dof(), models, interrupt);
+    estimator.at(
+        &solved,
+        ModeState {
+            log10_amplitude: at.log10_amplitude,
+            damping: at.damping_ratio,
+            damping_unit: at.damping_ratio.abs().max(NO_DAMPING),
+        },
+    )
 }
 
 /// Position of the harmonic whose amplitude a forced response reports: the lowest above zero.

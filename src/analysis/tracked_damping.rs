@@ -7,11 +7,12 @@
 
 use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::analysis::static_solution::{NEEDS_SPEED, static_state};
-use crate::condense::{Condensed, Resolution};
+use crate::condense::wave_cache::SharedWaves;
+use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status, fail, try_copy, try_vec};
-use crate::error_estimate::mode_error::ModeEstimator;
+use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -316,15 +317,21 @@ impl Tracked for TrackedDamping<'_> {
         };
         let start = (&at.linear, self.gauge);
         let response = self.response_dof;
+        let (models, waves) = (ModelCache::for_estimates()?, SharedWaves::default());
         let mut estimator = ModeEstimator::new(
-            &at.model,
-            &self.solver,
+            (&at.model, &self.solver),
             DampingForm::Mass,
             start,
             response,
+            (&models, &waves),
             self.interrupt,
         );
-        let estimate = estimator.at(&solved, log10, damping)?;
+        let state = ModeState {
+            log10_amplitude: log10,
+            damping,
+            damping_unit: damping.abs().max(NO_DAMPING),
+        };
+        let estimate = estimator.at(&solved, state)?;
         let error = (estimate.damping / damping).abs().max(estimate.frequency);
         Ok(Some((error, estimate)))
     }
@@ -365,6 +372,7 @@ impl Tracked for TrackedDamping<'_> {
         let start = LinearStart {
             linear: &linear,
             gauge: self.gauge,
+            is_repeated: false,
             interrupt: self.interrupt,
         };
         let settings = Settings {

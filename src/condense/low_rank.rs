@@ -128,6 +128,16 @@ impl LowRank {
         self.lu.order()
     }
 
+    /// e X, column after column, after [`Self::add`].
+    pub fn force(&self) -> &[Complex64] {
+        &self.force
+    }
+
+    /// Replaces motions z of the rows of B by (1 − G′ e)⁻¹ z, after [`Self::add`].
+    pub fn solve_rows(&self, z: &mut [Complex64]) {
+        self.lu.solve(z);
+    }
+
     /// Adds the term to a table that holds T′, and to its slope if `slopes`.
     ///
     /// # Errors

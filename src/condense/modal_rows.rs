@@ -56,9 +56,13 @@ pub struct ModalRows {
     source: Source,
     /// Z_κ at rest and M of the block for which they were made.
     matrices: (Arc<Csc>, Arc<Vec<Complex64>>),
+    /// Motion of the next sector over that of this one: waves of real matrices may have one source and different rows.
+    next: Complex64,
     coordinates: usize,
     /// Rows of contacts, response and springs.
     rows: usize,
+    /// Whether it has rows of springs.
+    has_springs: bool,
     /// Φ seen by them, mode after mode, the stiffest first.
     left: Vec<Complex64>,
     /// The adjoint shapes seen by them; none where these are the shapes.
@@ -83,10 +87,25 @@ impl ModalRows {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new((condensed, i, response): (&Condensed, usize, usize), source: Source) -> Result<Self> {
+        let observed = condensed.motion_row(i, response)?;
+        // Without damping by stiffness their part of the low-rank term vanishes.
+        let has_springs = source.is_damped_by_stiffness();
+        Self::with_rows((condensed, i), &observed, source, has_springs)
+    }
+
+    /// The rows of the i-th carried harmonic with this row of the response, and with those of the springs or without them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn with_rows(
+        (condensed, i): (&Condensed, usize),
+        observed: &MotionRow,
+        source: Source,
+        has_springs: bool,
+    ) -> Result<Self> {
         let block = &condensed.blocks()[i];
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
-        let observed = condensed.motion_row(i, response)?;
-        let springs = springs(&source);
+        let springs = if has_springs { all_springs(&source) } else { &[] };
         let rows = coordinates + 1 + springs.len();
         let seen = |shapes: &[Complex64]| -> Result<Vec<Complex64>> {
             let mut seen = try_vec(rows * source.len(), Complex64::ZERO, CONTEXT)?;
@@ -109,8 +128,10 @@ impl ModalRows {
         };
         Ok(Self {
             matrices: (Arc::clone(&block.reference), Arc::clone(&block.mass)),
+            next: block.next,
             coordinates,
             rows,
+            has_springs,
             left,
             adjoint,
             stiff: [const { [const { OnceLock::new() }; MOST_TERMS] }; SOFT.len()],
@@ -123,12 +144,17 @@ impl ModalRows {
     /// # Errors
     /// `OutOfMemory`.
     pub fn shared(at: (&Condensed, usize, usize), source: Source, known: &mut Vec<Arc<Self>>) -> Result<Arc<Self>> {
-        if let Some(rows) = known.iter().find(|rows| rows.source.is(&source)) {
+        if let Some(rows) = known.iter().find(|rows| rows.are_of(&at.0.blocks()[at.1], &source)) {
             return Ok(Arc::clone(rows));
         }
         let rows = Arc::new(Self::new(at, source)?);
         try_push(known, Arc::clone(&rows), CONTEXT)?;
         Ok(rows)
+    }
+
+    /// Whether these are the rows of a block in these terms.
+    pub fn are_of(&self, block: &HarmonicBlock, source: &Source) -> bool {
+        self.source.is(source) && self.next == block.next
     }
 
     /// The terms.
@@ -142,19 +168,18 @@ impl ModalRows {
             Source::Modes(_) => true,
             Source::Poles(poles) => poles.key.tied.is_none_or(|number| number == block.number),
         };
-        of_block && Arc::ptr_eq(&self.matrices.0, &block.reference) && Arc::ptr_eq(&self.matrices.1, &block.mass)
+        of_block
+            && self.next == block.next
+            && Arc::ptr_eq(&self.matrices.0, &block.reference)
+            && Arc::ptr_eq(&self.matrices.1, &block.mass)
     }
 
-    /// Springs that count: without damping by stiffness their part of the low-rank term vanishes.
+    /// Springs with rows of their own.
     pub fn springs(&self) -> &[(MotionRow, f64)] {
-        springs(&self.source)
-    }
-
-    /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
-    pub fn is_damped_by_stiffness(&self) -> bool {
-        match &self.source {
-            Source::Modes(modes) => modes.is_damped_by_stiffness(),
-            Source::Poles(_) => false,
+        if self.has_springs {
+            all_springs(&self.source)
+        } else {
+            &[]
         }
     }
 
@@ -228,6 +253,10 @@ impl ModalRows {
             return Ok(0);
         };
         let first = n - SOFT[split];
+        // So many terms suffice at the end of the range of a series.
+        let ratio = size * self.source.value(first - 1).norm();
+        let enough = (terms as f64 * (STIFF.ln() / ratio.max(f64::MIN_POSITIVE).ln())).ceil() as usize;
+        let terms = terms.min(enough.max(1));
         let mut sums = [&[][..]; MOST_TERMS];
         let (mut factors, mut slopes) = ([Complex64::ZERO; MOST_TERMS], [Complex64::ZERO; MOST_TERMS]);
         // zʲ/a and its derivative, with ∂z = (∂b − z ∂a)/a.
@@ -374,11 +403,11 @@ impl WithSimd for Series<'_> {
     }
 }
 
-/// Springs of modes that count.
-fn springs(source: &Source) -> &[(MotionRow, f64)] {
+/// Springs that modes leave out.
+fn all_springs(source: &Source) -> &[(MotionRow, f64)] {
     match source {
-        Source::Modes(modes) if modes.is_damped_by_stiffness() => &modes.springs,
-        _ => &[],
+        Source::Modes(modes) => &modes.springs,
+        Source::Poles(_) => &[],
     }
 }
 

@@ -101,7 +101,7 @@ impl ModalTable {
         let block = &condensed.blocks()[i];
         let force = rows.forced(&block.force)?;
         let unbalance = rows.forced(block.unbalance.as_deref().unwrap_or(&[]))?;
-        let coefficients = Coefficients::new(condensed, i, rows.springs(), rows.is_damped_by_stiffness())?;
+        let coefficients = Coefficients::new(condensed, i, rows.springs(), rows.source().is_damped_by_stiffness())?;
         let single = match rows.source() {
             Source::Modes(modes) if condensed.coordinates() == 1 && rows.count() == 2 && unbalance.is_empty() => {
                 Some(SingleContact::new(&modes.values, rows.left(), &force)?)
@@ -271,8 +271,8 @@ fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
 mod tests {
     use super::*;
     use crate::condense::flexibility::Workspace;
-    use crate::condense::test_chains::{DAMPED, chain, structure};
-    use crate::condense::wave_cache::WaveCache;
+    use crate::condense::test_chains::{DAMPED, chain, real_wheel, structure};
+    use crate::condense::wave_cache::{SharedWaves, WaveCache};
     use crate::condense::{Condensed, Reference};
     use crate::contact::Contact;
     use crate::model::Model;
@@ -336,6 +336,37 @@ mod tests {
                     _ => 4,
                 };
                 assert_eq!(cache.count(), waves, "{sectors} sectors");
+            }
+        }
+    }
+
+    /// Rows that harmonics share are those of the direction in which their wave travels.
+    #[test]
+    fn shared_rows_of_waves_with_the_same_real_matrices_are_their_own() {
+        for (damping, loss_factor) in DAMPED {
+            let mut model = real_wheel(damping);
+            model.set_loss_factor(loss_factor).unwrap();
+            let condensed = condensed(&model, Reference::Stuck);
+            let waves = SharedWaves::default();
+            let mut direct = Workspace::new(&condensed, Some(1)).unwrap();
+            for i in 0..condensed.blocks().len() {
+                let modes = waves.of(&model, &condensed, i, &Interrupt::none()).unwrap().unwrap();
+                let rows = waves.rows((&condensed, i, 1), modes).unwrap();
+                let by_modes = ModalTable::new((&condensed, i), rows, 0.0).unwrap();
+                let mut table = Table::new(condensed.coordinates()).unwrap();
+                let work = &mut ModalWork::default();
+                assert!(
+                    by_modes
+                        .evaluate((0.9, false), work, &mut table, &Interrupt::none())
+                        .unwrap()
+                );
+                let exact = direct.evaluate(&condensed, i, 0.9, false, &Interrupt::none()).unwrap();
+                for (a, b) in table.value.iter().zip(&exact.value) {
+                    assert!(
+                        (a - b).norm() <= 1e-12,
+                        "{damping:?}, {loss_factor}, block {i}: {a} {b}"
+                    );
+                }
             }
         }
     }

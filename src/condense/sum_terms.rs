@@ -32,6 +32,14 @@ impl Source {
         }
     }
 
+    /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
+    pub fn is_damped_by_stiffness(&self) -> bool {
+        match self {
+            Self::Modes(modes) => modes.is_damped_by_stiffness(),
+            Self::Poles(_) => false,
+        }
+    }
+
     /// Number of terms.
     pub fn len(&self) -> usize {
         match self {

@@ -185,7 +185,7 @@ impl WaveCache {
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
         let reference = condensed.stiffness_with_real_kappa(i)?;
-        let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass);
+        let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass, block.next);
         if let Some(known) = self.waves.iter().find(is_known) {
             return Ok(Some(Arc::clone(known)));
         }
@@ -274,6 +274,7 @@ fn modes_of(
     Ok(Some(WaveModes {
         reference,
         mass,
+        next: block.next,
         values,
         vectors,
         proportional,

@@ -18,9 +18,11 @@ const PROPORTIONAL: f64 = 1e-12;
 /// The modes of one wave.
 #[derive(Debug)]
 pub struct WaveModes {
-    /// K_κ and M, by which the wave is known again.
+    /// K_κ, M and the motion of the next sector over that of this one, by which the wave is known again: without the last a wave of
+    /// real matrices would be the one that travels the other way, whose rows of springs are other ones.
     pub(super) reference: Csc,
     pub(super) mass: Vec<Complex64>,
+    pub(super) next: Complex64,
     /// μ
     pub(super) values: Vec<f64>,
     /// φ, column after column.
@@ -62,12 +64,15 @@ impl WaveModes {
         self.proportional.1 != 0.0 || self.loss_factor != 0.0
     }
 
-    /// Whether these are the modes of a wave with this K_κ and M.
-    pub(super) fn is_of(&self, reference: &Csc, mass: &[Complex64]) -> bool {
-        self.has_pattern(reference) && self.reference.values == reference.values && self.mass == mass
+    /// Whether these are the modes of a wave with this K_κ and M, and this motion of the next sector.
+    pub(super) fn is_of(&self, reference: &Csc, mass: &[Complex64], next: Complex64) -> bool {
+        self.next == next
+            && self.has_pattern(reference)
+            && self.reference.values == reference.values
+            && self.mass == mass
     }
 
-    /// Whether the wave with this K_κ and M travels the other way.
+    /// Whether the shapes of the wave with this K_κ and M are conjugate.
     pub(super) fn is_conjugate_of(&self, reference: &Csc, mass: &[Complex64]) -> bool {
         let are_conjugate =
             |a: &[Complex64], b: &[Complex64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| *a == b.conj());

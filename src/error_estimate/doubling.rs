@@ -61,12 +61,12 @@ impl Doubling {
     }
 
     /// Size of the whole change so far, relative to the response.
-    fn whole(&self) -> f64 {
+    pub fn whole(&self) -> f64 {
         largest(&self.last, &self.point, &self.last)
     }
 
     /// The next change, relative to the whole one; infinite where it is not known.
-    fn next(&self) -> f64 {
+    pub fn next(&self) -> f64 {
         let [before, last] = self.changes;
         if self.extensions < 2 || before == 0.0 {
             return f64::INFINITY;
@@ -90,7 +90,7 @@ impl Doubling {
     }
 
     /// The change that may be missing: d q/(1 − q) with q as found last, all further changes falling like the last one.
-    fn missing(&self) -> f64 {
+    pub fn missing(&self) -> f64 {
         let [before, last] = self.changes;
         let q = last / before;
         let share = if q < 1.0 { q / (1.0 - q) } else { f64::INFINITY };

@@ -4,12 +4,10 @@ use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
 use crate::error_estimate::work::{Sizes, Work};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::dense::DenseSystem;
-use crate::linalg::linear_system::krylov::KrylovSystem;
+use crate::linalg::linear_system::krylov::{KrylovSystem, Lengths};
 use crate::linalg::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
-use crate::problem::harmonic_balance::HarmonicBalance;
-use crate::problem::newton_products::packed_up_to;
+use crate::problem::newton_products::{PackedHarmonics, packed_up_to};
 use crate::problem::{Problem, Residual};
 
 /// Residual of steps that are found by iteration over that of the point: a hundredth of the share that decides; and the same
@@ -57,8 +55,9 @@ pub(super) struct ExtendedSystem<P> {
 
 impl<P: Problem> ExtendedSystem<P> {
     /// A problem of these sizes at a parameter value with the dense backend, and the work that it may take.
+    #[cfg(test)]
     pub fn dense(problem: P, parameter: f64, sizes: Sizes, work: Work) -> Result<Self> {
-        let system = Box::new(DenseSystem::new(problem.size())?);
+        let system = Box::new(crate::linalg::linear_system::dense::DenseSystem::new(problem.size())?);
         let harmonics = usize::MAX;
         let factored = Factored {
             block: harmonics,
@@ -185,22 +184,17 @@ impl<P: Problem> ExtendedSystem<P> {
     }
 }
 
-impl<'a> ExtendedSystem<HarmonicBalance<'a>> {
-    /// A forced response of these sizes at an angular frequency, with the work that it may take.
-    pub fn iterative(
-        problem: HarmonicBalance<'a>,
-        omega: f64,
-        factored: Factored,
-        (sizes, work): (Sizes, Work),
-    ) -> Result<Self> {
+impl<P: PackedHarmonics> ExtendedSystem<P> {
+    /// A problem of these sizes at a parameter value, with the work that it may take.
+    pub fn iterative(problem: P, parameter: f64, factored: Factored, (sizes, work): (Sizes, Work)) -> Result<Self> {
         let factored = factored_of(&problem, factored);
         let system = krylov(&problem, factored)?;
-        Self::new(problem, omega, (Box::new(system), factored), (sizes, work))
+        Self::new(problem, parameter, (Box::new(system), factored), (sizes, work))
     }
 
-    /// Selects another frequency, the harmonics that are factored, and the work for this point.
-    pub fn set_point(&mut self, omega: f64, factored: Factored, work: Work) -> Result<()> {
-        self.parameter = omega;
+    /// Selects another parameter value, the harmonics that are factored, and the work for this point.
+    pub fn set_point(&mut self, parameter: f64, factored: Factored, work: Work) -> Result<()> {
+        self.parameter = parameter;
         self.work = work;
         let factored = factored_of(&self.problem, factored);
         if factored != self.factored {
@@ -212,9 +206,9 @@ impl<'a> ExtendedSystem<HarmonicBalance<'a>> {
 }
 
 /// All harmonics in one block for a small problem.
-fn factored_of(problem: &HarmonicBalance<'_>, factored: Factored) -> Factored {
-    let whole = problem.set().numbers().len();
-    if problem.unknowns() <= DENSE_UP_TO {
+fn factored_of(problem: &impl PackedHarmonics, factored: Factored) -> Factored {
+    let whole = problem.harmonics().numbers().len();
+    if problem.size() <= DENSE_UP_TO {
         Factored {
             block: whole,
             each: whole,
@@ -224,11 +218,16 @@ fn factored_of(problem: &HarmonicBalance<'_>, factored: Factored) -> Factored {
     }
 }
 
-fn krylov(problem: &HarmonicBalance<'_>, factored: Factored) -> Result<KrylovSystem> {
-    let set = problem.set();
+fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<KrylovSystem> {
+    let set = problem.harmonics();
     let part = packed_up_to(set, factored.block);
-    let lengths = (set.packed_len(), part, packed_up_to(set, factored.each).max(part));
-    KrylovSystem::new(problem.unknowns(), lengths, MOST_PRODUCTS)
+    let lengths = Lengths {
+        group: set.packed_len(),
+        part,
+        middle: packed_up_to(set, factored.each).max(part),
+        behind: problem.behind(),
+    };
+    KrylovSystem::new(problem.size(), lengths, MOST_PRODUCTS)
 }
 
 #[cfg(test)]

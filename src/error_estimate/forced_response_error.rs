@@ -43,6 +43,11 @@ const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
 
+/// Relative error of tables for an estimate whose tolerance is given.
+pub(super) fn tables_within(tolerance: f64) -> f64 {
+    (OF_TABLES * tolerance).clamp(EXACTEST.0, EXACTEST.1)
+}
+
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
     model: &'a Model,
@@ -394,7 +399,7 @@ impl<'a> ForcedEstimator<'a> {
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
         if by_modes && !system.problem.has_modes() {
-            let tolerance = (OF_TABLES * self.options.tolerance).clamp(EXACTEST.0, EXACTEST.1);
+            let tolerance = tables_within(self.options.tolerance);
             let modal = self.modal_tables(condensed, tolerance)?;
             system.problem.set_modes(modal);
         }

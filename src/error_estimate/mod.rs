@@ -9,6 +9,7 @@ mod factored_harmonics;
 pub mod forced_response_error;
 mod kept_changes;
 mod kept_ratio;
+mod mode_doubling;
 pub mod mode_error;
 mod one_extension;
 mod work;

@@ -172,13 +172,20 @@ struct Lanes {
 
 impl Lanes {
     #[inline(always)]
-    fn add_products(&mut self, a: &[f64; LANES], b: &[f64; LANES]) {
+    fn add_products<const FUSED: bool>(&mut self, a: &[f64; LANES], b: &[f64; LANES]) {
         for k in 0..LANES {
+            let product = a[k] * b[k];
+            // Both are exact; a fused operation that the processor has is far quicker.
+            let lost = if FUSED {
+                a[k].mul_add(b[k], -product)
+            } else {
+                rounding_of(a[k], b[k], product)
+            };
             let mut sum = Sum {
                 value: self.value[k],
-                error: self.error[k],
+                error: self.error[k] + lost,
             };
-            sum.add_product(a[k], b[k]);
+            sum.add(product);
             (self.value[k], self.error[k]) = (sum.value, sum.error);
         }
     }
@@ -212,15 +219,25 @@ impl WithSimd for Form<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Complex64 {
+        if S::F64_LANES > 1 {
+            self.sum::<true>()
+        } else {
+            self.sum::<false>()
+        }
+    }
+}
+
+impl Form<'_> {
+    #[inline(always)]
+    fn sum<const FUSED: bool>(self) -> Complex64 {
         let Self { pattern, values, x } = self;
         let mut form = ComplexSum::default();
         for (j, &xj) in x.iter().enumerate() {
             let column = pattern.col_ptr[j]..pattern.col_ptr[j + 1];
             let (entries, rows) = (&values[column.clone()], &pattern.row_idx[column]);
-            // A pattern may hold several matrices; the mass matrix among them is often diagonal.
-            let mut sum = ComplexSum::default();
             let (mut re, mut im) = (Lanes::default(), Lanes::default());
             for (entries, rows) in entries.chunks(LANES).zip(rows.chunks(LANES)) {
+                // A pattern may hold several matrices; the mass matrix among them is often diagonal.
                 if entries.iter().all(|a| *a == Complex64::ZERO) {
                     continue;
                 }
@@ -228,14 +245,17 @@ impl WithSimd for Form<'_> {
                 for (k, (a, &row)) in entries.iter().zip(rows).enumerate() {
                     (a_re[k], a_im[k], b_re[k], b_im[k]) = (a.re, a.im, x[row].re, -x[row].im);
                 }
-                re.add_products(&a_re, &b_re);
-                im.add_products(&a_re, &b_im);
-                if a_im.iter().any(|x| *x != 0.0) {
-                    im.add_products(&a_im, &b_re);
-                    re.add_products(&a_im.map(|a| -a), &b_im);
+                re.add_products::<FUSED>(&a_re, &b_re);
+                im.add_products::<FUSED>(&a_re, &b_im);
+                if a_im.iter().any(|a| *a != 0.0) {
+                    im.add_products::<FUSED>(&a_im, &b_re);
+                    re.add_products::<FUSED>(&a_im.map(|a| -a), &b_im);
                 }
             }
-            (sum.re, sum.im) = (re.sum(), im.sum());
+            let sum = ComplexSum {
+                re: re.sum(),
+                im: im.sum(),
+            };
             form.add_multiple(sum, xj);
         }
         form.total()

@@ -12,13 +12,14 @@
 //! with B = M, or rᴴr where a contact measures the amplitude.
 
 mod functional;
+mod mode_products;
 
 use crate::condense::Condensed;
-use crate::condense::modal_flexibility::Modal;
+use crate::condense::mode_flexibility::ModeFlexibility;
 use crate::contact::onset::Onset;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::{inner, norm};
 use crate::model::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;
@@ -81,7 +82,7 @@ pub struct LinearMode {
 pub struct Epmc<'a> {
     condensed: &'a Condensed,
     forces: Box<ContactForces<'a>>,
-    modal: Modal,
+    structure: ModeFlexibility,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
     /// x̂ of all carried harmonics at the point last evaluated.
@@ -90,15 +91,20 @@ pub struct Epmc<'a> {
     w: Vec<Complex64>,
     /// A packed signal, for a column of the Jacobian.
     change: Vec<f64>,
-    /// G, harmonic after harmonic for each coordinate, force after force.
+    /// G of each harmonic, column after column.
+    tables: Vec<Vec<Complex64>>,
+    /// The same in the layout of [`ContactForces::couple_all`].
     flexibility: Vec<Complex64>,
     /// Columns of the Jacobian that belong to the unknowns of ω and D, and the parts of its last two rows that belong
     /// to contact forces: amplitude and phase per force.
     by_omega: Vec<f64>,
     by_damping: Vec<f64>,
     gauge_rows: Vec<[Complex64; 2]>,
+    products: mode_products::ModeProducts,
     /// Unknowns given for the first point.
     guess: Option<Vec<f64>>,
+    /// Whether the linear mode is one of several of its frequency.
+    is_repeated: bool,
 }
 
 impl<'a> Epmc<'a> {
@@ -121,16 +127,22 @@ impl<'a> Epmc<'a> {
             let rest = linear.rest.in_units(condensed.length())?;
             forces.set_rest(&rest, linear.omega)?;
         }
+        let mut tables = Vec::new();
+        for _ in condensed.blocks() {
+            let table = try_vec(condensed.coordinates().saturating_pow(2), Complex64::ZERO, CONTEXT)?;
+            try_push(&mut tables, table, CONTEXT)?;
+        }
         Ok(Self {
             condensed,
             forces,
-            modal: Modal::new(condensed)?,
+            structure: ModeFlexibility::new(condensed, gauge.reference_dof, 0.0)?,
             gauge,
             linear,
             x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
             weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             change: try_vec(condensed.set().packed_len(), 0.0, CONTEXT)?,
+            tables,
             flexibility: try_vec(
                 condensed
                     .coordinates()
@@ -142,8 +154,25 @@ impl<'a> Epmc<'a> {
             by_omega: try_vec(unknowns, 0.0, CONTEXT)?,
             by_damping: try_vec(unknowns, 0.0, CONTEXT)?,
             gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
+            products: mode_products::ModeProducts::default(),
             guess: None,
+            is_repeated: false,
         })
+    }
+
+    /// The same with the flexibility within a relative tolerance, as exactly as an estimate of an error needs it.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn within(mut self, tolerance: f64) -> Result<Self> {
+        self.structure = ModeFlexibility::new(self.condensed, self.gauge.reference_dof, tolerance)?;
+        Ok(self)
+    }
+
+    /// Tells that the linear mode is one of several of its frequency. Nonlinear modes may then lie in a continuum: bodies that nothing
+    /// couples vibrate in any phase to each other.
+    pub fn set_repeated(&mut self, is_repeated: bool) {
+        self.is_repeated = is_repeated;
     }
 
     /// Gives the unknowns near which the first point is sought.
@@ -172,6 +201,12 @@ impl<'a> Epmc<'a> {
     #[must_use]
     pub fn damping_of_change(change: &[f64]) -> f64 {
         DAMPING_UNIT * change.last().copied().unwrap_or(0.0)
+    }
+
+    /// Relative change of the frequency that belongs to a small change of the unknowns.
+    #[must_use]
+    pub fn frequency_of_change(change: &[f64]) -> f64 {
+        OMEGA_UNIT * change[change.len() - 2]
     }
 
     /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
@@ -280,7 +315,7 @@ impl<'a> Epmc<'a> {
     /// B x̂ of the fundamental, times L².
     fn weigh(&mut self) {
         let i = self.condensed.set().fundamental();
-        let x = self.modal.x();
+        let x = self.structure.x();
         let length = self.condensed.length();
         self.weighted.fill(Complex64::ZERO);
         if let Some(row) = &self.gauge.contact {
@@ -305,14 +340,15 @@ impl<'a> Epmc<'a> {
         let i = self.condensed.set().fundamental();
         let dof = self.gauge.reference_dof;
         let scale = self.phase_scale();
-        let x = self.modal.x();
+        let x = self.structure.x();
         out.values[amplitude] = inner(&self.weighted, x).re - 1.0;
         out.values[phase] = scale * x[dof].im;
+        self.structure.fix_gauge(&self.weighted);
         for c in 0..self.condensed.coordinates() {
-            let column = self.modal.column(c);
+            let [product, moved] = self.structure.gauge_of_column(c);
             // x̂ changes by −column·dw; Im z = Re(−i z).
-            let size = -2.0 * inner(&self.weighted, column);
-            let turn = Complex64::I * scale * column[dof];
+            let size = -2.0 * product;
+            let turn = Complex64::I * scale * moved;
             self.gauge_rows[c] = [size, turn];
             let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
             for (row, g) in [(amplitude, size), (phase, turn)] {
@@ -320,12 +356,13 @@ impl<'a> Epmc<'a> {
                 self.by_omega[row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
             }
         }
-        for (column, rate, dx) in [
-            (&mut self.by_omega, rates.0, self.modal.by_omega()),
-            (&mut self.by_damping, rates.1, self.modal.by_damping()),
+        let [of_omega, of_damping] = self.structure.gauge_of_rates();
+        for (column, rate, [product, moved]) in [
+            (&mut self.by_omega, rates.0, of_omega),
+            (&mut self.by_damping, rates.1, of_damping),
         ] {
-            column[amplitude] += 2.0 * rate * inner(&self.weighted, dx).re;
-            column[phase] += rate * scale * dx[dof].im;
+            column[amplitude] += 2.0 * rate * product.re;
+            column[phase] += rate * scale * moved.im;
         }
     }
 
@@ -347,7 +384,7 @@ impl<'a> Epmc<'a> {
         out.d_parameter.fill(0.0);
         self.by_omega.fill(0.0);
         self.by_damping.fill(0.0);
-        let (dofs, harmonics) = (self.condensed.ndof(), self.condensed.blocks().len());
+        let dofs = self.condensed.ndof();
         let (mut largest, mut rounding) = (0.0_f64, 0.0_f64);
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mean = block.number == 0;
@@ -357,15 +394,16 @@ impl<'a> Epmc<'a> {
             }
             let interrupt = self.forces.interrupt();
             interrupt.check()?;
-            self.modal
+            self.structure
                 .solve(self.condensed, i, (omega, damping), &self.w, interrupt)?;
-            self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
+            self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.structure.x());
+            self.tables[i].copy_from_slice(self.structure.value());
             let share = if mean { MEAN_SHARE } else { 1.0 };
-            let squared = self.modal.x().iter().fold(0.0_f64, |m, z| m.max(z.norm_sqr()));
+            let squared = self.structure.x().iter().fold(0.0_f64, |m, z| m.max(z.norm_sqr()));
             largest = largest.max(share * squared.sqrt());
             for row in 0..coordinates {
                 let position = row * m + at;
-                let [x, by_omega, by_damping] = self.modal.relative(row);
+                let [x, by_omega, by_damping] = self.structure.relative(row);
                 put(&mut out.values, position, mean, -x);
                 put(&mut self.by_omega, position, mean, -rates.0 * by_omega);
                 put(&mut self.by_damping, position, mean, -rates.1 * by_damping);
@@ -374,10 +412,12 @@ impl<'a> Epmc<'a> {
                 let lost = self.forces.rounding(c);
                 let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
                 let by_omega = rates.0 * self.forces.by_omega(c, i);
-                for (row, &g) in self.modal.relative_column(c).iter().enumerate() {
+                for (row, &g) in self.tables[i][c * coordinates..(c + 1) * coordinates]
+                    .iter()
+                    .enumerate()
+                {
                     let position = row * m + at;
                     rounding += lost * lost * g.norm_sqr();
-                    self.flexibility[(c * coordinates + row) * harmonics + i] = g;
                     put(&mut out.d_parameter, position, mean, g * d_scale);
                     put(&mut self.by_omega, position, mean, g * by_omega);
                 }
@@ -395,6 +435,10 @@ impl<'a> Epmc<'a> {
 }
 
 impl Jacobian for Epmc<'_> {
+    fn has_continuum(&self) -> bool {
+        self.is_repeated
+    }
+
     fn size(&self) -> usize {
         self.condensed.coordinates() * self.condensed.set().packed_len() + 2
     }
@@ -403,6 +447,12 @@ impl Jacobian for Epmc<'_> {
         let n = active.len();
         let set = self.condensed.set();
         let m = set.packed_len();
+        let harmonics = set.numbers().len();
+        for (i, table) in self.tables.iter().enumerate() {
+            for (to, g) in self.flexibility[i..].iter_mut().step_by(harmonics).zip(table) {
+                *to = *g;
+            }
+        }
         active.fill(true);
         matrix.fill(0.0);
         for diagonal in matrix[..n * (n - 2)].iter_mut().step_by(n + 1) {
@@ -421,6 +471,10 @@ impl Jacobian for Epmc<'_> {
         matrix[(n - 2) * n..(n - 1) * n].copy_from_slice(&self.by_omega);
         matrix[(n - 1) * n..].copy_from_slice(&self.by_damping);
         Ok(())
+    }
+
+    fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
+        Some(self)
     }
 }
 

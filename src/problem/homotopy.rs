@@ -75,6 +75,10 @@ impl Jacobian for PathHomotopy<'_> {
         self.problem.fill(matrix, active)
     }
 
+    fn has_continuum(&self) -> bool {
+        self.problem.has_continuum()
+    }
+
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
         self.problem.matrix_free()
     }

@@ -6,10 +6,22 @@ use crate::fourier::HarmonicSet;
 use crate::linalg::complex_columns;
 use crate::linalg::linear_system::MatrixFree;
 use crate::problem::harmonic_balance::HarmonicBalance;
-use crate::problem::parametric_problem::put;
+use crate::problem::parametric_problem::{Problem, put};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the products of the forced response";
+
+/// Equations on packed harmonics of the relative motions, with products.
+pub trait PackedHarmonics: Problem + MatrixFree {
+    /// The carried harmonics.
+    fn harmonics(&self) -> &HarmonicSet;
+}
+
+impl PackedHarmonics for HarmonicBalance<'_> {
+    fn harmonics(&self) -> &HarmonicSet {
+        self.condensed.set()
+    }
+}
 
 impl MatrixFree for HarmonicBalance<'_> {
     fn group(&self) -> usize {

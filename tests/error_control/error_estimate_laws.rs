@@ -24,6 +24,7 @@ fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: 
         omega_stop: omega,
         at: &[],
         guess: Some(&guess),
+        responses: &[],
     };
     let truth = forced_response(model, truth, &range, &mut Hooks::default()).unwrap();
     let fundamental = |b: &hbvib::results::Branch| {

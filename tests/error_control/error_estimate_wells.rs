@@ -51,6 +51,7 @@ fn solve(model: &Model, options: &SolverOptions, side: f64, until: f64) -> Branc
         omega_stop: until,
         at: &[],
         guess: Some(&guess),
+        responses: &[],
     };
     forced_response(model, options, &range, &mut Hooks::default()).unwrap()
 }

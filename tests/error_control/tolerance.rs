@@ -35,6 +35,7 @@ fn truth_of(model: &Model, branch: &Branch, point: usize, highest: usize) -> Bra
         omega_stop: omega,
         at: &[],
         guess: Some(&guess),
+        responses: &[],
     };
     let solver = SolverOptions {
         response_dof: Some(branch.response_dof()),
@@ -400,6 +401,7 @@ fn a_guess_starts_a_response_with_a_tolerance() {
         omega_stop: 1312.0,
         at: &[],
         guess: Some(&guess),
+        responses: &[],
     };
     let solver = SolverOptions {
         harmonics: first.harmonics(),

@@ -245,6 +245,7 @@ fn balanced(model: &Model, solver: &SolverOptions, branch: &Branch, (omega, poin
         omega_stop: omega,
         at: &[],
         guess: Some(&guess),
+        responses: &[],
     };
     let answer = forced_response(&forced, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);

@@ -375,6 +375,7 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                     omega_stop: omega,
                     at: &[],
                     guess: Some(&motion),
+                    responses: &[],
                 };
                 let one = forced_response(&model, &options, &single, &mut Hooks::default())
                     .unwrap_or_else(|e| panic!("{named}: {omega} alone: {e}"));

@@ -5,6 +5,7 @@
 mod common;
 
 mod derivatives_of_modes;
+mod equal_pairs;
 mod mode_about_static;
 mod mode_balance;
 mod mode_closed_forms;

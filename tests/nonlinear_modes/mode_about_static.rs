@@ -53,6 +53,7 @@ pub fn answer(
         omega_stop: omega,
         at: &[],
         guess: Some(guess),
+        responses: &[],
     };
     let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);

@@ -71,6 +71,7 @@ fn compare(
             omega_stop: omega,
             at: &[],
             guess: Some(&guess),
+            responses: &[],
         };
         let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
         assert_eq!(answer.status(), Status::Ok, "point {point}");

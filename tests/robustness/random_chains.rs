@@ -96,6 +96,7 @@ fn truth(case: &Case, branch: &Branch, point: usize) -> Option<Complex64> {
         omega_stop: omega,
         at: &[],
         guess: Some(&guess),
+        responses: &[],
     };
     let solver = SolverOptions {
         response_dof: Some(case.response),

@@ -224,6 +224,7 @@ mod tests {
             omega_stop: 1.4,
             at: &[0.8, 1.05, 1.3],
             guess: None,
+            responses: &[],
         };
         (
             forced_response(&model, &options, &range, &mut Hooks::default()).unwrap(),

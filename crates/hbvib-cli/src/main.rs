@@ -259,6 +259,7 @@ fn forced(part: &ForcedPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Br
         omega_stop: TAU * part.to_hz,
         at: &at,
         guess: None,
+        responses: &[],
     };
     let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
     let solver = SolverOptions {

@@ -7,7 +7,7 @@
 use crate::error::{Result, boxed};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::dense::DenseSystem;
-use crate::linalg::linear_system::krylov::KrylovSystem;
+use crate::linalg::linear_system::krylov::{KrylovSystem, Lengths};
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
 
 /// Columns up to which a direct solution is quicker.
@@ -65,8 +65,8 @@ impl AutomaticSystem {
         !self.iterates
     }
 
-    /// Length of the groups and of their part in the block, where an iteration is quicker.
-    fn lengths(&self, jacobian: &mut dyn Jacobian) -> Option<(usize, usize)> {
+    /// Lengths of the groups and of their parts, where an iteration is quicker.
+    fn lengths(&self, jacobian: &mut dyn Jacobian) -> Option<Lengths> {
         if self.direct > 0 || self.n <= DIRECT_UP_TO {
             return None;
         }
@@ -74,10 +74,17 @@ impl AutomaticSystem {
         let group = operator.group();
         // The mean is one number, each harmonic a pair.
         let first = group % 2 + 2;
-        let groups = self.n / group.max(1);
+        let behind = operator.behind();
+        let groups = (self.n - behind) / group.max(1);
         let pairs = (BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
         let part = first.max(group % 2 + 2 * pairs);
-        (part < group && operator.coupled() > DIRECT_UP_TO).then_some((group, part))
+        let lengths = Lengths {
+            group,
+            part,
+            middle: group,
+            behind,
+        };
+        (part < group && operator.coupled() > DIRECT_UP_TO).then_some(lengths)
     }
 
     fn attainable(&self, tolerance: f64) -> f64 {
@@ -109,10 +116,8 @@ impl LinearSystem for AutomaticSystem {
         let lengths = self.lengths(jacobian);
         self.direct = self.direct.saturating_sub(1);
         self.iterates = lengths.is_some();
-        if let (Some((group, part)), None) = (lengths, &self.krylov) {
-            self.krylov = Some(boxed(|| {
-                KrylovSystem::new(self.n, (group, part, group), MOST_PRODUCTS)
-            })?);
+        if let (Some(lengths), None) = (lengths, &self.krylov) {
+            self.krylov = Some(boxed(|| KrylovSystem::new(self.n, lengths, MOST_PRODUCTS))?);
         }
         self.backend()?.update(jacobian, border, interrupt)
     }

@@ -1,9 +1,10 @@
 //! The dense backend: all of J, factored by LU with the columns of the identity eliminated.
 
-use crate::error::{Result, try_vec};
+use crate::error::{Result, Status, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::add_product;
 use crate::linalg::bordered::{Bordered, Parts};
+use crate::linalg::linear_system::continuum::Completed;
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
 use crate::linalg::small_lu;
 
@@ -18,6 +19,7 @@ pub struct DenseSystem {
     scales: (f64, f64),
     row: Vec<f64>,
     scaled: Vec<f64>,
+    completed: Option<Box<Completed>>,
 }
 
 impl DenseSystem {
@@ -37,6 +39,7 @@ impl DenseSystem {
             scales: (1.0, 1.0),
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             scaled: try_vec(n + 1, 0.0, CONTEXT)?,
+            completed: None,
         })
     }
 
@@ -103,8 +106,29 @@ impl LinearSystem for DenseSystem {
         Ok(())
     }
 
-    fn factor(&mut self, _jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
-        self.factor_memory(interrupt)
+    fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
+        let factored = self.factor_memory(interrupt);
+        if !jacobian.has_continuum() {
+            return factored;
+        }
+        let factored = match factored {
+            Err(e) if e.status != Status::Singular => return Err(e),
+            factored => factored.is_ok(),
+        };
+        let mut completed = match self.completed.take() {
+            Some(known) => known,
+            None => boxed(|| Ok(Completed::default()))?,
+        };
+        let matrix = Parts {
+            jacobian: &self.matrix,
+            column: &self.column,
+            active: &self.active,
+            scales: self.scales,
+            row: &self.row,
+        };
+        let outcome = completed.factor(&mut self.factors, &matrix, factored, interrupt);
+        self.completed = Some(completed);
+        outcome
     }
 
     fn solve(

@@ -41,14 +41,16 @@ pub struct KrylovSystem {
 }
 
 /// Lengths within the groups of unknowns.
-#[derive(Clone, Copy)]
-struct Lengths {
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths {
     /// Length of a group.
-    group: usize,
+    pub group: usize,
     /// Numbers of each group that are in the block.
-    part: usize,
+    pub part: usize,
     /// End of the pairs behind the block whose mean coupling is factored.
-    middle: usize,
+    pub middle: usize,
+    /// Unknowns behind the groups, which are in the block.
+    pub behind: usize,
 }
 
 impl Lengths {
@@ -107,17 +109,14 @@ impl Pairs {
 }
 
 impl KrylovSystem {
-    /// Memory for `n` unknowns in groups of equal length. `lengths`: that length; how many of its first numbers are in
-    /// the block; and the end of the pairs behind them whose mean coupling is factored. A solution that takes more
+    /// Memory for `n` unknowns in groups of equal length and those behind them. A solution that takes more
     /// products than `most_products` fails.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(n: usize, lengths: (usize, usize, usize), most_products: usize) -> Result<Self> {
-        let (group, part, middle) = lengths;
-        let lengths = Lengths { group, part, middle };
-        let groups = n / group.max(1);
-        let order = groups * part;
+    pub fn new(n: usize, lengths: Lengths, most_products: usize) -> Result<Self> {
+        let groups = (n - lengths.behind) / lengths.group.max(1);
+        let order = groups * lengths.part + lengths.behind;
         Ok(Self {
             block: DenseSystem::new(order)?,
             pairs: Pairs::new(groups, lengths)?,
@@ -136,13 +135,13 @@ impl KrylovSystem {
         })
     }
 
-    /// Numbers of the block among those of all groups, the last one, of the parameter, included.
+    /// Numbers of the block among those of all groups, with those behind the groups; the last one, of the parameter, included.
     fn of_block(v: &[f64], lengths: Lengths) -> impl Iterator<Item = f64> {
-        let (u, p) = v.split_at(v.len() - 1);
+        let (u, behind) = v.split_at(v.len() - 1 - lengths.behind);
         let inner = u
             .chunks_exact(lengths.group.max(1))
             .flat_map(move |y| y[..lengths.part].iter().copied());
-        inner.chain(p.iter().copied())
+        inner.chain(behind.iter().copied())
     }
 
     /// v ← M⁻¹ v
@@ -156,16 +155,17 @@ impl KrylovSystem {
             *to = from;
         }
         block.solve_by_factors(reduced);
-        let (n, unit, part) = (v.len() - 1, block.unit(), lengths.part);
-        pairs.solve(lengths, &mut v[..n]);
+        let (unit, part) = (block.unit(), lengths.part);
+        let (groups, behind) = v.split_at_mut(v.len() - 1 - lengths.behind);
+        pairs.solve(lengths, groups);
         let solved = reduced.chunks_exact(part.max(1));
-        for (to, from) in v[..n].chunks_exact_mut(lengths.group.max(1)).zip(solved) {
+        for (to, from) in groups.chunks_exact_mut(lengths.group.max(1)).zip(solved) {
             to[..part].copy_from_slice(&from[..part]);
             for weak in &mut to[part..] {
                 *weak /= unit;
             }
         }
-        v[n] = reduced[reduced.len() - 1];
+        behind.copy_from_slice(&reduced[reduced.len() - behind.len()..]);
     }
 
     /// Solves by GMRES with the factors made last, in at most so many products.
@@ -252,8 +252,10 @@ impl LinearSystem for KrylovSystem {
             operator.keep()?;
         }
         let lengths = self.lengths;
-        let groups = border.column.chunks_exact(lengths.group.max(1));
+        let (groups, behind) = border.column.split_at(border.column.len() - lengths.behind);
+        let groups = groups.chunks_exact(lengths.group.max(1));
         let column = groups.flat_map(|y| y[..lengths.part].iter().copied());
+        let column = column.chain(behind.iter().copied());
         self.block
             .set_border(column, border.scales, Self::of_block(border.row, lengths));
         Ok(())

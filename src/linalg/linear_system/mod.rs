@@ -10,6 +10,7 @@
 //! coupling of those beyond it.
 
 pub mod automatic;
+mod continuum;
 pub mod dense;
 pub mod krylov;
 
@@ -37,21 +38,32 @@ pub trait Jacobian {
         Ok(false)
     }
 
+    /// Whether solutions may lie in a continuum besides the branch, so that the matrix is singular at each of them.
+    fn has_continuum(&self) -> bool {
+        false
+    }
+
     /// The same Jacobian by products, where the problem has them.
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
         None
     }
 }
 
-/// A Jacobian J by products. The unknowns are groups of equal length, packed signals, whose first numbers couple most.
+/// A Jacobian J by products. The unknowns are groups of equal length, packed signals, whose first numbers couple most, and
+/// behind them few that couple with all.
 pub trait MatrixFree {
     /// Length of one group.
     fn group(&self) -> usize;
 
+    /// Number of unknowns behind the groups; they are always in the block.
+    fn behind(&self) -> usize {
+        0
+    }
+
     /// Number of columns that differ from those of the identity.
     fn coupled(&self) -> usize;
 
-    /// Fills the block of J between the first `part` numbers of each group, column-major, and tells of each of its
+    /// Fills the block of J between the first `part` numbers of each group and those behind, column-major, and tells of each of its
     /// columns whether it differs from that of the identity.
     ///
     /// # Errors
@@ -162,7 +174,7 @@ pub trait LinearSystem {
 #[cfg(test)]
 mod tests {
     use super::dense::DenseSystem;
-    use super::krylov::KrylovSystem;
+    use super::krylov::{KrylovSystem, Lengths};
     use super::{Border, Jacobian, LinearSystem, MatrixFree};
     use crate::error::{Result, Status};
     use crate::interrupt::Interrupt;
@@ -172,22 +184,25 @@ mod tests {
     struct Toy {
         n: usize,
         group: usize,
+        behind: usize,
         matrix: Vec<f64>,
         kept: Vec<f64>,
     }
 
     impl Toy {
-        fn new(n: usize, group: usize, seed: f64) -> Self {
+        fn new(n: usize, (group, behind): (usize, usize), seed: f64) -> Self {
             let mut matrix = vec![0.0; n * n];
             for (k, a) in matrix.iter_mut().enumerate() {
                 let (row, column) = (k % n, k / n);
-                let weak = |i: usize| if i % group < 2 { 1.0 } else { 0.05 };
+                let is_strong = |i: usize| i % group < 2 || i >= n - behind;
+                let weak = |i: usize| if is_strong(i) { 1.0 } else { 0.05 };
                 let noise = (k as f64 * 0.37 + seed).sin() * weak(row) * weak(column);
                 *a = f64::from(u8::from(row == column)) * 1.5 + 0.3 * noise;
             }
             Self {
                 n,
                 group,
+                behind,
                 matrix,
                 kept: Vec::new(),
             }
@@ -215,12 +230,17 @@ mod tests {
             self.group
         }
 
+        fn behind(&self) -> usize {
+            self.behind
+        }
+
         fn coupled(&self) -> usize {
             self.n
         }
 
         fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
-            let inner: Vec<usize> = (0..self.n).filter(|i| i % self.group < part).collect();
+            let groups = self.n - self.behind;
+            let inner: Vec<usize> = (0..self.n).filter(|&i| i >= groups || i % self.group < part).collect();
             for (k, &column) in inner.iter().enumerate() {
                 for (r, &row) in inner.iter().enumerate() {
                     matrix[k * inner.len() + r] = self.matrix[column * self.n + row];
@@ -231,7 +251,7 @@ mod tests {
         }
 
         fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]) {
-            let groups = self.n / self.group;
+            let groups = (self.n - self.behind) / self.group;
             for (k, to) in matrix.iter_mut().enumerate() {
                 let (row, column) = (k % groups * self.group + at, k / groups * self.group + at);
                 let a = |i: usize, j: usize| self.matrix[(column + j) * self.n + row + i];
@@ -278,14 +298,19 @@ mod tests {
 
     #[test]
     fn both_backends_solve_the_same_bordered_system() {
-        for (groups, group) in [(4, 7), (60, 3)] {
+        for (groups, group, behind) in [(4, 7, 0), (60, 3, 0), (4, 7, 2), (20, 3, 1)] {
             for scales in [(1.0, 1.0), (0.7, 3.0)] {
-                let n = groups * group;
-                let mut toy = Toy::new(n, group, 0.3);
+                let n = groups * group + behind;
+                let mut toy = Toy::new(n, (group, behind), 0.3);
                 let (gap, dense) = solved(&mut DenseSystem::new(n).unwrap(), &mut toy, scales);
                 assert!(gap < 1e-12, "{gap:e}");
                 for (part, middle) in [(2, 2), (1, 3), (3, 7), (group, group)] {
-                    let lengths = (group, part.min(group), middle.min(group));
+                    let lengths = Lengths {
+                        group,
+                        part: part.min(group),
+                        middle: middle.min(group),
+                        behind,
+                    };
                     let mut krylov = KrylovSystem::new(n, lengths, 200).unwrap();
                     let (gap, x) = solved(&mut krylov, &mut toy, scales);
                     assert!(gap < 1e-11, "{gap:e}");
@@ -300,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_is_refused() {
-        let mut toy = Toy::new(6, 3, 0.3);
+        let mut toy = Toy::new(6, (3, 0), 0.3);
         toy.matrix.fill(0.0);
         let border = Border {
             column: &[0.0; 6],
