@@ -110,7 +110,9 @@ impl BranchTracer<'_> {
     pub fn record_special(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<bool> {
         let mut point = point.try_clone()?;
         analysis.sharpen(kind, &mut point)?;
-        if !self.controller.meets_tolerance(analysis, kind, &point)? {
+        // Each of many responses has peaks; their errors are those of the points beside them.
+        let is_further = kind.response().is_some_and(|response| response > 0);
+        if !is_further && !self.controller.meets_tolerance(analysis, kind, &point)? {
             return Ok(false);
         }
         self.record_sharpened(analysis, kind, &point)?;

@@ -463,7 +463,10 @@ impl Recorder for ForcedDiscretised<'_> {
 
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
         let mut error = f64::NAN;
-        if !kind.is_fold() {
+        if kind.response().is_some_and(|response| response > 0) {
+            // That of the point of the curve before it.
+            error = self.estimator.as_ref().map_or(f64::NAN, |_| self.last_error);
+        } else if !kind.is_fold() {
             error = self.error(point)?;
             self.recorder.note_error(error);
         }

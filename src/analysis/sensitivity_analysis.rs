@@ -3,7 +3,7 @@
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::results::Branch;
+use crate::results::{Branch, ResponseSeries};
 use crate::sensitivity::{
     Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, TotalDerivative, contact_at_onset,
     peak_shift,
@@ -20,6 +20,10 @@ pub enum Quantity {
     PeakAmplitude,
     /// Angular frequency of a peak.
     PeakOmega,
+    /// A response that was asked for, at a fixed frequency or at a peak of it, which moves with the parameters.
+    Response(usize),
+    /// Angular frequency of a peak of a response.
+    ResponsePeakOmega(usize),
     /// Angular frequency of a nonlinear mode at a fixed amplitude.
     ModeOmega,
     /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of that.
@@ -100,7 +104,7 @@ pub fn sensitivity_with(
             reasons: try_vec(parameters.len(), reason, CONTEXT)?,
         })
     };
-    if branch.folds().iter().any(|fold| fold.point == point) && of != Quantity::PeakOmega {
+    if branch.folds().iter().any(|fold| fold.point == point) && !is_frequency(of) {
         return absent(Reason::Fold);
     }
     let mut forced = None;
@@ -121,14 +125,15 @@ pub fn sensitivity_with(
             },
             interrupt,
         )?,
-        None => forced
-            .insert(ForcedPoint::new(
-                solution.0,
-                (branch.response_dof(), solution.1),
-                omega,
-                interrupt,
-            )?)
-            .adjoint(motion, omega)?,
+        None => {
+            let responses = (branch.response_dof(), solution.1);
+            let at = ForcedPoint::new(solution.0, responses, omega, interrupt)?;
+            let at = match watched(branch, of) {
+                Some(series) => at.watching(&series.response(), solution.1)?,
+                None => at,
+            };
+            forced.insert(at).adjoint(motion, omega)?
+        }
     };
     let Some(adjoint) = adjoint else {
         return absent(Reason::Fold);
@@ -145,9 +150,9 @@ pub fn sensitivity_with(
         Ok(())
     };
     match &mut forced {
-        Some(at) if of == Quantity::PeakOmega => {
+        Some(at) if is_frequency(of) => {
             let mut reasons = try_copy(&found.reasons, CONTEXT)?;
-            let amplitude = peak_amplitude(branch, point);
+            let amplitude = peak_amplitude(branch, of, point);
             found.values = peak_shift(at, (motion, omega, amplitude), parameters.len(), |adjoint, values| {
                 derivatives(adjoint, values, &mut reasons)
             })?;
@@ -158,8 +163,26 @@ pub fn sensitivity_with(
     Ok(found)
 }
 
-fn peak_amplitude(branch: &Branch, point: usize) -> f64 {
-    let mut peaks = branch.peaks().iter();
+/// Whether a result is the frequency of a peak.
+fn is_frequency(of: Quantity) -> bool {
+    matches!(of, Quantity::PeakOmega | Quantity::ResponsePeakOmega(_))
+}
+
+/// The response that is differentiated, where it is not the amplitude of the response degree of freedom.
+fn watched(branch: &Branch, of: Quantity) -> Option<&ResponseSeries> {
+    match of {
+        Quantity::Response(r) | Quantity::ResponsePeakOmega(r) => branch.responses().get(r),
+        // The first response leads the amplitude and the peaks of the branch.
+        _ => branch.responses().first().filter(|first| !first.response().is_plain()),
+    }
+}
+
+fn peak_amplitude(branch: &Branch, of: Quantity, point: usize) -> f64 {
+    let peaks = match of {
+        Quantity::ResponsePeakOmega(r) => branch.responses()[r].peaks(),
+        _ => branch.peaks(),
+    };
+    let mut peaks = peaks.iter();
     peaks.find(|p| p.point == point).map_or(f64::NAN, |p| p.amplitude)
 }
 
@@ -172,6 +195,16 @@ fn check_quantity(branch: &Branch, point: usize, of: Quantity) -> Result<()> {
                 Argument,
                 "the branch is a forced response, which has no frequency or damping of a mode"
             )
+        }
+        Quantity::Response(r) | Quantity::ResponsePeakOmega(r) if r >= branch.responses().len() => {
+            fail!(
+                Argument,
+                "response {r} of a branch that was asked for {}",
+                branch.responses().len()
+            )
+        }
+        Quantity::ResponsePeakOmega(r) if !branch.responses()[r].peaks().iter().any(|p| p.point == point) => {
+            fail!(Argument, "point = {point} is no peak of response {r}")
         }
         Quantity::Amplitude | Quantity::PeakAmplitude | Quantity::PeakOmega if is_mode => {
             fail!(

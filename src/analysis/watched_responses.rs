@@ -10,8 +10,8 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the responses";
 
-/// Points whose readings are kept.
-const MOST_RECENT: usize = 6;
+/// Points whose readings are kept: the ends of a step, and the peaks between them.
+const MOST_RECENT: usize = 64;
 
 /// A point by its frequency, its first unknown and its resolution.
 type Key = (u64, u64, usize);

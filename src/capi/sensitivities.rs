@@ -116,6 +116,11 @@ pub enum hbvib_quantity {
     /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of
     /// the largest damping ratio.
     HBVIB_OF_MODE_DAMPING = 4,
+    /// Plus the number of a response of hbvib_forced_options: that response, at a fixed frequency or
+    /// at a peak of it, which moves with the parameter.
+    HBVIB_OF_RESPONSE = 1_000_000,
+    /// Plus the number of a response: angular frequency of a peak of it.
+    HBVIB_OF_RESPONSE_PEAK_OMEGA = 2_000_000,
 }
 
 /// Reasons of derivatives.
@@ -347,6 +352,13 @@ unsafe fn describe(p: &hbvib_parameter, ndof: usize) -> Result<Parameter<'_>> {
 
 fn quantity(of: i32) -> Result<Quantity> {
     use hbvib_quantity as q;
+    let (first, second) = (q::HBVIB_OF_RESPONSE as i32, q::HBVIB_OF_RESPONSE_PEAK_OMEGA as i32);
+    if of >= first && of < second {
+        return Ok(Quantity::Response((of - first) as usize));
+    }
+    if of >= second && of < second + (second - first) {
+        return Ok(Quantity::ResponsePeakOmega((of - second) as usize));
+    }
     for (number, quantity) in [
         (q::HBVIB_OF_AMPLITUDE as i32, Quantity::Amplitude),
         (q::HBVIB_OF_PEAK_AMPLITUDE as i32, Quantity::PeakAmplitude),

@@ -214,4 +214,48 @@ impl<'a> Gauges<'a> {
         }
         Ok(())
     }
+
+    /// A gauge at `v` = (u, ω) with the derivatives of its measure by the motion and by ω at a fixed motion.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn derivatives(&mut self, v: &[f64], r: usize) -> Result<Derivatives> {
+        let mut seen = Vec::new();
+        let zero = try_vec(v.len(), 0.0, CONTEXT)?;
+        self.read(v, &zero, Some(r), &mut seen)?;
+        let (condensed, omega) = (self.condensed, v[v.len() - 1]);
+        let (set, n) = (condensed.set(), condensed.ndof());
+        let m = set.packed_len();
+        let mut by_motion = try_vec(n.saturating_mul(set.numbers().len()), Complex64::ZERO, CONTEXT)?;
+        let mut by_omega = 0.0;
+        let gauge = &self.gauges[r];
+        for (i, (&number, c)) in set.numbers().iter().zip(self.reader.weights()).enumerate() {
+            let (factor, d_factor) = gauge.factor(number, omega);
+            if factor == Complex64::ZERO {
+                continue;
+            }
+            let value = set.get(&self.signals[r * m..(r + 1) * m], i) / factor;
+            by_omega += (c.conj() * d_factor * value).re;
+            for (weight, row) in &gauge.rows[i] {
+                for &(p, a) in row.terms() {
+                    by_motion[i * n + p] += (weight * a * factor).conj() * c;
+                }
+            }
+        }
+        Ok(Derivatives {
+            value: seen.first().map_or(f64::NAN, |seen| seen.reading.value),
+            by_motion,
+            by_omega,
+        })
+    }
+}
+
+/// The derivatives of a measure m, dm = Σ Re(gₕᴴ dxₕ) + (∂m/∂ω) dω.
+pub struct Derivatives {
+    /// m
+    pub value: f64,
+    /// gₕ over the coordinates of the condensed model, harmonic after harmonic of those carried.
+    pub by_motion: Vec<Complex64>,
+    /// ∂m/∂ω at a fixed motion: only velocities and accelerations have it.
+    pub by_omega: f64,
 }

@@ -5,12 +5,14 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::condense::near_rigid_motion;
-use crate::error::{Result, Status, try_copy, try_vec};
+use crate::error::{Result, Status, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
+use crate::options::Response;
+use crate::problem::gauges::{Derivatives, Gauges};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::{Problem, Residual};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
@@ -33,6 +35,8 @@ pub(crate) struct ForcedPoint<'a> {
     w: Vec<Complex64>,
     /// ∂F/∂ω − ∂Z/∂ω x − Wᴴ ∂f/∂ω, harmonic after harmonic.
     by_omega: Vec<Complex64>,
+    /// A response in place of the amplitude, with its derivatives at the point linearised last.
+    watched: Option<(Box<Gauges<'a>>, Option<Derivatives>)>,
 }
 
 impl<'a> ForcedPoint<'a> {
@@ -62,7 +66,20 @@ impl<'a> ForcedPoint<'a> {
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             by_omega: try_vec(dofs, Complex64::ZERO, CONTEXT)?,
             problem,
+            watched: None,
         })
+    }
+
+    /// Differentiates a response instead of the amplitude.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn watching(mut self, response: &Response<'_>, samples: usize) -> Result<Self> {
+        let (condensed, interrupt) = (self.condensed, self.interrupt);
+        let one = (core::slice::from_ref(response), 0);
+        let gauges = boxed(|| Gauges::new(condensed, one, samples, interrupt))?;
+        self.watched = Some((gauges, None));
+        Ok(self)
     }
 
     /// Evaluates the equations and Newton's matrix at `u`, and writes the derivative of the amplitude by the motions.
@@ -71,7 +88,37 @@ impl<'a> ForcedPoint<'a> {
         self.active.fill(true);
         self.problem.fill(self.system.matrix(), &mut self.active)?;
         self.matrix.copy_from_slice(self.system.matrix());
+        if self.watched.is_some() {
+            return self.response_gradient(u, omega, gradient);
+        }
         Ok(self.problem.amplitude_gradient(u, gradient))
+    }
+
+    /// The response at the point evaluated last, and its derivative by the motions of the contacts.
+    fn response_gradient(&mut self, u: &[f64], omega: f64, gradient: &mut [f64]) -> Result<Complex64> {
+        gradient.fill(0.0);
+        let Some((gauges, known)) = &mut self.watched else {
+            return Ok(Complex64::ZERO);
+        };
+        let mut v = try_copy(u, CONTEXT)?;
+        try_push(&mut v, omega, CONTEXT)?;
+        let found = gauges.derivatives(&v, 0)?;
+        let value = found.value;
+        let n = self.condensed.ndof();
+        for (i, block) in self.condensed.blocks().iter().enumerate() {
+            let mut field = try_copy(&found.by_motion[i * n..(i + 1) * n], CONTEXT)?;
+            if field.iter().all(|z| *z == Complex64::ZERO) {
+                continue;
+            }
+            self.workspace
+                .adjoint(self.condensed, i, omega, &mut field, self.interrupt)?;
+            for (c, row) in block.rows.iter().enumerate() {
+                let g = -row.along(&field).conj();
+                self.problem.forces().couple_scalar(i, (0, c), g, gradient, 1);
+            }
+        }
+        *known = Some(found);
+        Ok(value.into())
     }
 
     /// The adjoint of the amplitude at the solution `u`; `None` where Newton's matrix is singular, as in a fold.
@@ -143,7 +190,9 @@ impl<'a> ForcedPoint<'a> {
         let mut adjoint = Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?;
         let set = condensed.set();
         let (m, n) = (set.packed_len(), condensed.ndof());
-        let observes = amplitude != Complex64::ZERO;
+        let observes = amplitude != Complex64::ZERO && self.watched.is_none();
+        let watched = self.watched.as_ref().and_then(|(_, known)| known.as_ref());
+        let watched = watched.filter(|_| amplitude != Complex64::ZERO);
         let turn = amplitude / amplitude.norm();
         let independent = condensed.degrees().independent();
         let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
@@ -168,6 +217,12 @@ impl<'a> ForcedPoint<'a> {
                 for &(p, a) in self.response.terms() {
                     field[p] += a.conj() * turn;
                 }
+            }
+            for (z, g) in field
+                .iter_mut()
+                .zip(watched.iter().flat_map(|of| &of.by_motion[i * n..(i + 1) * n]))
+            {
+                *z += g;
             }
             self.workspace
                 .adjoint(condensed, i, omega, &mut field, self.interrupt)?;
@@ -204,6 +259,7 @@ impl<'a> ForcedPoint<'a> {
             condensed.expand(i, &x, &mut adjoint.motion[range.clone()])?;
             condensed.expand(i, &field, &mut adjoint.field[range])?;
         }
+        adjoint.by_omega += condensed.length() * watched.map_or(0.0, |of| of.by_omega);
         adjoint.amplitude = condensed.length() * amplitude.norm();
         Ok(adjoint)
     }

@@ -5,6 +5,11 @@ use hbvib::{Contact, MatrixKind, MatrixView, Model};
 /// A chain of n masses of 1 between springs of 1, held at both ends, C = 0.02 K, a force on the first mass, and two sliders against
 /// the ground. A `preload` adds a stop with that load at rest; with an infinite one nothing slips.
 pub fn chain(n: usize, preload: f64) -> Model {
+    chain_with(n, preload, [1.5, 0.3, 1.0])
+}
+
+/// The same with stiffness and slip limit of the first slider, and the force.
+pub fn chain_with(n: usize, preload: f64, [kt, limit, force]: [f64; 3]) -> Model {
     let mut k = vec![0.0; n * n];
     for i in 0..n {
         k[i * n + i] = 2.0;
@@ -23,9 +28,9 @@ pub fn chain(n: usize, preload: f64) -> Model {
         .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
         .unwrap();
     model.set_rayleigh(0.0, 0.02).unwrap();
-    model.add_force(0, 1, 1.0.into()).unwrap();
+    model.add_force(0, 1, force.into()).unwrap();
     if preload.is_finite() {
-        model.add_contact(&Contact::jenkins(1, None, 1.5, 0.3, 1.0)).unwrap();
+        model.add_contact(&Contact::jenkins(1, None, kt, limit, 1.0)).unwrap();
         model
             .add_contact(&Contact::jenkins(n - 1, Some(n - 2), 2.0, 0.5, 1.0))
             .unwrap();

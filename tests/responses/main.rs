@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod derivatives;
 mod peaks;
 mod readings;
 mod refused;
