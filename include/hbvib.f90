@@ -129,7 +129,7 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_SCALING_ADDITIVE = 0, HBVIB_SCALING_FACTOR = 1
    ! hbvib_quantity
    integer(c_int32_t), parameter, public :: HBVIB_OF_AMPLITUDE = 0, HBVIB_OF_PEAK_AMPLITUDE = 1, HBVIB_OF_PEAK_OMEGA = 2, &
-      HBVIB_OF_MODE_OMEGA = 3, HBVIB_OF_MODE_DAMPING = 4
+      HBVIB_OF_MODE_OMEGA = 3, HBVIB_OF_MODE_DAMPING = 4, HBVIB_OF_RESPONSE = 1000000, HBVIB_OF_RESPONSE_PEAK_OMEGA = 2000000
    ! hbvib_derivative
    integer(c_int32_t), parameter, public :: HBVIB_DERIVATIVE_EXISTS = 0, HBVIB_DERIVATIVE_ONSET_OF_SLIP = 1, &
       HBVIB_DERIVATIVE_ONE_SIDED = 2, HBVIB_DERIVATIVE_FOLD = 3
@@ -1076,15 +1076,28 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_response
 
-      function hbvib_branch_response_peaks(branch, response, capacity, omega, value, point, count) bind(c) result(status)
+      function hbvib_branch_response_peaks(branch, response, capacity, omega, value, point, peaks) bind(c) result(status)
          import
          type(c_ptr), value :: branch
          integer(c_int64_t), value :: response, capacity
          real(c_double), intent(inout), optional :: omega(*), value(*)
          integer(c_int64_t), intent(inout), optional :: point(*)
-         integer(c_int64_t), intent(inout) :: count
+         integer(c_int64_t), intent(inout) :: peaks
          integer(c_int32_t) :: status
       end function hbvib_branch_response_peaks
+
+      function hbvib_response_of(r, ndof, omega, x, x_len, value, amplitude, instant) bind(c) result(status)
+         import
+         type(hbvib_response), intent(in) :: r
+         integer(c_int64_t), value :: ndof
+         real(c_double), value :: omega
+         complex(c_double_complex), intent(in) :: x(*)
+         integer(c_int64_t), value :: x_len
+         real(c_double), intent(inout) :: value(*)
+         complex(c_double_complex), intent(inout), optional :: amplitude(*)
+         real(c_double), intent(inout), optional :: instant(*)
+         integer(c_int32_t) :: status
+      end function hbvib_response_of
 
       function hbvib_reduction_init(r, size_of_r) bind(c) result(status)
          import

@@ -2044,7 +2044,7 @@ hbvib_status hbvib_branch_response(const hbvib_branch *branch,
 /// omega      receives their angular frequencies, or NULL.
 /// value      receives the measures there, or NULL.
 /// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
-/// count      receives how many there are, also when `capacity` is too small.
+/// peaks      receives how many there are, also when `capacity` is too small.
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity too small: the arrays are
 /// untouched), HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any number on one branch.
@@ -2055,7 +2055,32 @@ hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch,
                                          double *omega,
                                          double *value,
                                          int64_t *point,
-                                         int64_t *count);
+                                         int64_t *peaks);
+
+/// Reads a response from any periodic motion: of a nonlinear mode, a synthesis, an integration in
+/// time. The fundamental is harmonic 1, and the sector must be 0.
+///
+/// r          the response; it needs degrees of freedom of its own.
+/// ndof       degrees of freedom of the motion, at least 1.
+/// omega      angular frequency, for velocities and accelerations.
+/// x          complex harmonics 0 .. H of the motion, (H + 1) x ndof, harmonic after harmonic.
+/// x_len      complex numbers in it.
+/// value      receives the measure; untouched on error.
+/// amplitude  receives the complex amplitude, re and im, NaN where the measure has none; or NULL.
+/// instant    receives the phase omega t of the largest magnitude of a peak, or of the largest
+///            value of a range, else NaN; or NULL.
+/// Errors: HBVIB_E_DIMENSION (ndof, x_len, weights), HBVIB_E_INDEX (dofs, sector),
+/// HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_response_of(const hbvib_response *r,
+                               int64_t ndof,
+                               double omega,
+                               const double *x,
+                               int64_t x_len,
+                               double *value,
+                               double *amplitude,
+                               double *instant);
 
 /// Ways to the flexibility of the contacts along a branch, told by hbvib_branch_reduction with the
 /// reason.
@@ -3411,6 +3436,11 @@ typedef enum {
   /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of
   /// the largest damping ratio.
   HBVIB_OF_MODE_DAMPING = 4,
+  /// Plus the number of a response of hbvib_forced_options: that response, at a fixed frequency or
+  /// at a peak of it, which moves with the parameter.
+  HBVIB_OF_RESPONSE = 1000000,
+  /// Plus the number of a response: angular frequency of a peak of it.
+  HBVIB_OF_RESPONSE_PEAK_OMEGA = 2000000,
 } hbvib_quantity;
 
 /// Reasons of derivatives.

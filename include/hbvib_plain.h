@@ -261,7 +261,9 @@ typedef enum {
   HBVIB_OF_PEAK_AMPLITUDE = 1,
   HBVIB_OF_PEAK_OMEGA = 2,
   HBVIB_OF_MODE_OMEGA = 3,
-  HBVIB_OF_MODE_DAMPING = 4
+  HBVIB_OF_MODE_DAMPING = 4,
+  HBVIB_OF_RESPONSE = 1000000,
+  HBVIB_OF_RESPONSE_PEAK_OMEGA = 2000000
 } hbvib_quantity;
 typedef enum {
   HBVIB_DERIVATIVE_EXISTS = 0,
@@ -753,7 +755,8 @@ hbvib_status hbvib_branch_folds(const hbvib_branch *branch, int64_t capacity, do
 hbvib_status hbvib_branch_at(const hbvib_branch *branch, int64_t wanted, int64_t capacity, double *amplitude, int64_t *point, int64_t *count);
 int64_t hbvib_branch_responses(const hbvib_branch *branch);
 hbvib_status hbvib_branch_response(const hbvib_branch *branch, int64_t response, int32_t reading, hbvib_view *out);
-hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch, int64_t response, int64_t capacity, double *omega, double *value, int64_t *point, int64_t *count);
+hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch, int64_t response, int64_t capacity, double *omega, double *value, int64_t *point, int64_t *peaks);
+hbvib_status hbvib_response_of(const hbvib_response *r, int64_t ndof, double omega, const double *x, int64_t x_len, double *value, double *amplitude, double *instant);
 hbvib_status hbvib_reduction_init(hbvib_reduction *r, size_t size_of_r);
 hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
 hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);

@@ -131,6 +131,7 @@ pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::parameter_range::{Follow, ParameterRange};
 pub use analysis::parameter_response::parameter_response;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
+pub use analysis::response_of_motion::response_of;
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
@@ -148,6 +149,7 @@ pub use contact::contact_state::State;
 pub use contact::time_piece::Grazing;
 pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
+pub use fourier::Reading;
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, Floquet, HigherPeak, LimitCycle,

@@ -723,6 +723,9 @@ class Quantity(enum.IntEnum):
     MODE_OMEGA   Angular frequency of a nonlinear mode at a fixed amplitude.
     MODE_DAMPING   Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of the
         largest damping ratio.
+    RESPONSE   Plus the number of a response of hbvib_forced_options: that response, at a fixed frequency or at a peak
+        of it, which moves with the parameter.
+    RESPONSE_PEAK_OMEGA   Plus the number of a response: angular frequency of a peak of it.
 
     >>> import hbvib
     >>> hbvib.Quantity(0)
@@ -733,6 +736,8 @@ class Quantity(enum.IntEnum):
     PEAK_OMEGA = 2
     MODE_OMEGA = 3
     MODE_DAMPING = 4
+    RESPONSE = 1000000
+    RESPONSE_PEAK_OMEGA = 2000000
 
 
 class Derivative(enum.IntEnum):
@@ -921,6 +926,7 @@ branch_at: h l l p p p
 branch_responses: h -> int64
 branch_response: h l i view
 branch_response_peaks: h l l p p p p
+response_of: response l d p l p p p
 reduction_init: reduction z
 branch_reduction: h reduction
 energy_init: energy z
@@ -1084,7 +1090,9 @@ if TYPE_CHECKING:
         def hbvib_branch_responses(self, branch: Any) -> int: ...
         def hbvib_branch_response(self, branch: Any, response: int, reading: int, out: Any) -> int: ...
         def hbvib_branch_response_peaks(self, branch: Any, response: int, capacity: int, omega: Any, value: Any, point:
-            Any, count: Any) -> int: ...
+            Any, peaks: Any) -> int: ...
+        def hbvib_response_of(self, r: Any, ndof: int, omega: float, x: Any, x_len: int, value: Any, amplitude: Any,
+            instant: Any) -> int: ...
         def hbvib_reduction_init(self, r: Any, size_of_r: int) -> int: ...
         def hbvib_branch_reduction(self, branch: Any, out: Any) -> int: ...
         def hbvib_energy_init(self, e: Any, size_of_e: int) -> int: ...

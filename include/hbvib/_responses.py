@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from ._c import Component, Measure
+from ._calls import _call
 from ._convert import _array, _member, _whole
 from ._library import structs
 from ._structs import _new
@@ -56,6 +57,21 @@ class Response:
         if self.component != Component.DISPLACEMENT:
             text += f", component={self.component.name.lower()!r}"
         return text + ")"
+
+    def of(self, harmonics: ArrayLike, omega: float = 0) -> float:
+        """The measure of any motion: of a nonlinear mode, a synthesis, an integration in time.
+
+        harmonics  (H + 1, ndof) complex, such as Branch.harmonics and TimeResponse.harmonics are; sector 0 alone.
+        omega      angular frequency, for velocities and accelerations.
+
+        >>> import hbvib
+        >>> hbvib.Response(0, "rms").of([[3], [4j]])  # 3 + 4 cos(omega t + pi/2)
+        4.123105625617661
+        """
+        x = _array("harmonics", harmonics, np.complex128, [None, None])
+        value = ctypes.c_double()
+        _call("hbvib_response_of", self._description(), x.shape[1], omega, x, x.size, value, None, None)
+        return value.value
 
     def _description(self) -> Any:
         count = 0 if self.dofs is None else len(self.dofs)

@@ -79,12 +79,13 @@ class _Sensitivity(_Owner):
     """Methods of Model for derivatives."""
 
     def sensitivity(self, branch: Branch, point: int, parameters: Union[Parameter, Sequence[Parameter]],
-                    of: Quantities = "amplitude", *, phase: Hook = None,
+                    of: Quantities = "amplitude", *, response: Optional[int] = None, phase: Hook = None,
                     cancel: Optional[CancelFlag] = None) -> Sensitivities:
         """Exact derivatives of a result at a point of this model by parameters, from one adjoint solution for all.
 
         of      "amplitude": of a forced response at fixed frequency; "peak_amplitude", "peak_omega": of a peak, which
                 moves; "mode_omega", "mode_damping": of a nonlinear mode at fixed amplitude; or a Quantity.
+        response  number of a response of the branch, which "amplitude" and "peak_omega" are then those of.
         phase, cancel   as in forced_response; Stopped is raised where they stop it.
         NaN where a derivative does not exist, as at the onset of slip: `reasons` tells why.
 
@@ -102,9 +103,13 @@ class _Sensitivity(_Owner):
         given = [parameter._description() for parameter in listed]
         array = (structs["hbvib_parameter"] * len(given))(*given)
         values, reasons, onset = np.empty(len(given)), np.empty(len(given), np.int64), ctypes.c_int64()
+        quantity = _member(Quantity, of)
+        if response is not None:
+            of_peak = quantity == Quantity.PEAK_OMEGA
+            quantity = (Quantity.RESPONSE_PEAK_OMEGA if of_peak else Quantity.RESPONSE) + response
         with _Guard() as guard:
             hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
-            status = _call("hbvib_sensitivity", self.handle, branch.handle, point, _member(Quantity, of), array,
+            status = _call("hbvib_sensitivity", self.handle, branch.handle, point, int(quantity), array,
                            len(given), values, values.size, reasons, onset, hooks, guard=guard)
         if status == Status.STOPPED_BY_CALLER:
             raise Stopped(_sentence(status), Status(status), 0)

@@ -24,7 +24,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{Content, ForcedOptions, SolverOptions, check_highest, check_responses};
+use crate::options::{Content, ForcedOptions, Response, SolverOptions, check_highest, check_responses};
 use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -101,6 +101,13 @@ fn with_detail(
     Ok(branch)
 }
 
+/// Whether no force acts in the harmonic whose amplitude would be the response: that may be rounding.
+fn misses_fundamental(condensed: &Condensed, forced: &[usize]) -> bool {
+    let set = condensed.set();
+    let watched = set.numbers().get(set.watched());
+    watched.is_some_and(|number| forced.iter().any(|h| *h > 0) && !forced.contains(number))
+}
+
 /// The options with the response degree of freedom of the first response, where that has a single one.
 fn with_leading_response(solver: &SolverOptions, range: &ForcedOptions<'_>) -> Result<SolverOptions> {
     let leading = range.responses.first().filter(|response| response.is_plain());
@@ -156,6 +163,13 @@ fn follow(
     let length = resolution.condensed.length();
     // The lower end is used, so that both directions follow the same degree of freedom.
     let lower = range.omega_start.min(range.omega_stop);
+    let automatic = [Response::of_no_fundamental()];
+    let by_itself = ForcedOptions {
+        responses: &automatic,
+        ..*range
+    };
+    let is_missing = range.responses.is_empty() && misses_fundamental(&resolution.condensed, &forced);
+    let range = if is_missing { &by_itself } else { range };
     let response_dof = match solver.response_dof {
         Some(dof) => dof,
         None => forced_dof_with_largest_motion(model, &resolution.condensed, lower, interrupt)?,

@@ -2,17 +2,21 @@
 
 #![allow(non_camel_case_types)]
 
+use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call, call_count};
 use super::handles::{KeptBranch, read};
-use super::indices::index;
+use super::indices::{at_least_1, index};
 use super::matrices::hbvib_scalar;
 use super::results::hbvib_view;
 use super::results_special_points::Lists;
 use super::solve::hbvib_branch;
+use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out};
+use crate::analysis;
 use crate::error::{Status, fail};
 use core::ptr;
+use num_complex::Complex64;
 
 /// Results of a response at each stored point.
 #[repr(C)]
@@ -90,7 +94,7 @@ pub unsafe extern "C" fn hbvib_branch_response(
 /// omega      receives their angular frequencies, or NULL.
 /// value      receives the measures there, or NULL.
 /// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
-/// count      receives how many there are, also when `capacity` is too small.
+/// peaks      receives how many there are, also when `capacity` is too small.
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity too small: the arrays are
 /// untouched), HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any number on one branch.
@@ -102,7 +106,7 @@ pub unsafe extern "C" fn hbvib_branch_response_peaks(
     omega: *mut f64,
     value: *mut f64,
     point: *mut i64,
-    count: *mut i64,
+    peaks: *mut i64,
 ) -> hbvib_status {
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -112,8 +116,62 @@ pub unsafe extern "C" fn hbvib_branch_response_peaks(
             omega: (omega, 4),
             amplitude: (value, 5),
             point: (point, 6),
-            count: (count, 7),
+            count: (peaks, 7),
         };
         unsafe { lists.fill(of.peaks(), (capacity, 3)) }
+    })
+}
+
+/// Reads a response from any periodic motion: of a nonlinear mode, a synthesis, an integration in
+/// time. The fundamental is harmonic 1, and the sector must be 0.
+///
+/// r          the response; it needs degrees of freedom of its own.
+/// ndof       degrees of freedom of the motion, at least 1.
+/// omega      angular frequency, for velocities and accelerations.
+/// x          complex harmonics 0 .. H of the motion, (H + 1) x ndof, harmonic after harmonic.
+/// x_len      complex numbers in it.
+/// value      receives the measure; untouched on error.
+/// amplitude  receives the complex amplitude, re and im, NaN where the measure has none; or NULL.
+/// instant    receives the phase omega t of the largest magnitude of a peak, or of the largest
+///            value of a range, else NaN; or NULL.
+/// Errors: HBVIB_E_DIMENSION (ndof, x_len, weights), HBVIB_E_INDEX (dofs, sector),
+/// HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_response_of(
+    r: *const hbvib_response,
+    ndof: i64,
+    omega: f64,
+    x: *const f64,
+    x_len: i64,
+    value: *mut f64,
+    amplitude: *mut f64,
+    instant: *mut f64,
+) -> hbvib_status {
+    call(|| {
+        let ndof = at_least_1(ndof, 2, "ndof")?;
+        let watched = unsafe { Watched::new(r, 1, ndof, 1) }.with_argument(1)?;
+        let responses = unsafe { watched.responses(1) }.with_argument(1)?;
+        let x_len = count(x_len, 5, "x_len")?;
+        let x = unsafe { input::<Complex64>(x.cast(), x_len, 4, "x") }?;
+        check_pointer(value, 6, "value")?;
+        for (p, argument, name) in [(amplitude, 7, "amplitude"), (instant, 8, "instant")] {
+            if !p.is_null() {
+                check_pointer(p, argument, name)?;
+            }
+        }
+        let found = analysis::response_of(&responses[0], ndof, omega, x)?;
+        unsafe {
+            value.write(found.value);
+            if !amplitude.is_null() {
+                amplitude.write(found.complex.re);
+                amplitude.add(1).write(found.complex.im);
+            }
+            if !instant.is_null() {
+                instant.write(found.instant);
+            }
+        }
+        Ok(Status::Ok)
     })
 }

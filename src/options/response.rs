@@ -88,6 +88,15 @@ impl Response<'_> {
         Ok(())
     }
 
+    /// The response of a run that forces no fundamental: the root of the mean square of the response degree of freedom.
+    #[must_use]
+    pub(crate) fn of_no_fundamental() -> Self {
+        Self {
+            measure: Measure::Rms,
+            ..Self::default()
+        }
+    }
+
     /// Whether this is the fundamental displacement of a degree of freedom as every forced response has it.
     #[must_use]
     pub fn is_plain(&self) -> bool {
