@@ -215,7 +215,10 @@ class _BranchPoints(_Owner):
         [1, 1]
         """
         curve: Branch = cast("Branch", self)
-        return tuple(self._watched(r, response, len(curve)) for r, response in enumerate(curve._responses))
+        asked = curve._responses
+        if not asked and self._call("hbvib_branch_responses"):
+            asked = (Response(None, "rms"),)  # where forces act in several harmonics and none in the first
+        return tuple(self._watched(r, response, len(curve)) for r, response in enumerate(asked))
 
     def _watched(self, r: int, response: Response, points: int) -> WatchedResponse:
         readings = [self._reading(r, reading) for reading in Reading]

@@ -101,11 +101,11 @@ fn with_detail(
     Ok(branch)
 }
 
-/// Whether no force acts in the harmonic whose amplitude would be the response: that may be rounding.
-fn misses_fundamental(condensed: &Condensed, forced: &[usize]) -> bool {
-    let set = condensed.set();
-    let watched = set.numbers().get(set.watched());
-    watched.is_some_and(|number| forced.iter().any(|h| *h > 0) && !forced.contains(number))
+/// Whether forces act in several harmonics and none in the fundamental: no single harmonic is the response.
+fn misses_fundamental(forced: &[usize]) -> bool {
+    let mut vibrating = forced.iter().filter(|h| **h > 0);
+    let first = vibrating.next();
+    !forced.contains(&1) && vibrating.any(|h| Some(h) != first)
 }
 
 /// The options with the response degree of freedom of the first response, where that has a single one.
@@ -168,7 +168,7 @@ fn follow(
         responses: &automatic,
         ..*range
     };
-    let is_missing = range.responses.is_empty() && misses_fundamental(&resolution.condensed, &forced);
+    let is_missing = range.responses.is_empty() && misses_fundamental(&forced);
     let range = if is_missing { &by_itself } else { range };
     let response_dof = match solver.response_dof {
         Some(dof) => dof,

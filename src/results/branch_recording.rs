@@ -192,7 +192,11 @@ impl Branch {
         self.motion.extend_from_slice(record.motion);
         let length = record.resolution.condensed.length();
         for (response, seen) in self.responses.iter_mut().zip(record.seen) {
-            response.push(seen, length)?;
+            let mut seen = *seen;
+            if response.is_observed() {
+                seen.seen.reading.value = record.amplitude.norm();
+            }
+            response.push(&seen, length)?;
         }
         // The frequency is stored last: its length is the number of points.
         try_push(&mut self.omega, record.omega, CONTEXT)?;

@@ -2,6 +2,7 @@
 
 use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::nearest_name::hint;
+use crate::responses::ResponsePart;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,9 @@ pub struct Job {
     pub force: Vec<ForcePart>,
     #[serde(default)]
     pub unbalance: Vec<UnbalancePart>,
+    /// What [forced] watches; the first one leads its amplitude and peaks.
+    #[serde(default)]
+    pub response: Vec<ResponsePart>,
     pub forced: Option<ForcedPart>,
     pub mode: Option<ModePart>,
     pub verify: Option<VerifyPart>,
@@ -419,6 +423,9 @@ impl Job {
         }
         if job.verify.is_some() && job.forced.is_none() {
             return Err(format!("{}: [verify] needs [forced]", path.display()));
+        }
+        if !job.response.is_empty() && job.forced.is_none() {
+            return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
         Ok(job)
     }

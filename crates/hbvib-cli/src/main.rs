@@ -33,6 +33,7 @@ mod npz;
 mod output;
 mod points;
 mod progress;
+mod responses;
 mod solver;
 mod study;
 mod tornado;
@@ -48,6 +49,7 @@ use hbvib::{
 };
 use job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use progress::Bar;
+use responses::ResponsePart;
 use solver::solver;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -148,6 +150,7 @@ fn written(job: &Job, built: &Built, branch: &Branch, files: &mut Files<'_>) {
         contact_tables::write(job, branch, &built.names, files);
     }
     files.tell(&output::summary(branch));
+    files.tell(&responses::summary(branch));
 }
 
 /// Tells why a branch ended, and compares points with integration in time.
@@ -246,20 +249,22 @@ fn solve(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<Branch> {
         ..Hooks::default()
     };
     match (&job.forced, &job.mode) {
-        (Some(part), _) => forced(part, built, &mut hooks),
+        (Some(part), _) => forced((part, &job.response), built, &mut hooks),
         (None, Some(part)) => mode(part, built, &mut hooks),
         (None, None) => Err("names no analysis".into()),
     }
 }
 
-fn forced(part: &ForcedPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+fn forced((part, watched): (&ForcedPart, &[ResponsePart]), built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+    let dofs = responses::dofs(watched, built)?;
+    let responses = responses::responses(watched, &dofs);
     let at: Vec<f64> = part.at_hz.iter().map(|f| TAU * f).collect();
     let range = ForcedOptions {
         omega_start: TAU * part.from_hz,
         omega_stop: TAU * part.to_hz,
         at: &at,
         guess: None,
-        responses: &[],
+        responses: &responses,
     };
     let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
     let solver = SolverOptions {

@@ -40,6 +40,9 @@ fn rows(branch: &Branch) -> String {
     if branch.tells_stability() {
         text += ",floquet_radius,unstable_directions";
     }
+    for r in 0..branch.responses().len() {
+        let _ = write!(text, ",response_{r}");
+    }
     text += "\n";
     for point in 0..branch.points() {
         let slip = branch.slip_fraction_at(point).unwrap_or(&[]);
@@ -59,6 +62,9 @@ fn rows(branch: &Branch) -> String {
             branch.unstable_directions().get(point),
         ) {
             let _ = write!(text, ",{radius:.16e},{count}");
+        }
+        for of in branch.responses() {
+            let _ = write!(text, ",{:.16e}", of.values()[point]);
         }
         text += "\n";
     }
@@ -84,6 +90,26 @@ fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
     for (name, special) in [("peaks", branch.peaks()), ("folds", branch.folds())] {
         let pairs: Vec<f64> = special.iter().flat_map(|s| [s.omega, s.amplitude]).collect();
         real(name, &[special.len(), 2], &pairs)?;
+    }
+    let responses = branch.responses();
+    if !responses.is_empty() {
+        let of = |f: fn(&hbvib::ResponseSeries) -> &[f64]| -> Vec<f64> {
+            responses.iter().flat_map(|r| &f(r)[..points]).copied().collect()
+        };
+        real(
+            "responses",
+            &[responses.len(), points],
+            &of(hbvib::ResponseSeries::values),
+        )?;
+        real(
+            "response_errors",
+            &[responses.len(), points],
+            &of(hbvib::ResponseSeries::errors),
+        )?;
+        let peaks = responses.iter().enumerate();
+        let rows = peaks.flat_map(|(r, of)| of.peaks().iter().map(move |p| [r as f64, p.omega, p.amplitude]));
+        let rows: Vec<f64> = rows.flatten().collect();
+        real("response_peaks", &[rows.len() / 3, 3], &rows)?;
     }
     if branch.tells_stability() {
         real(

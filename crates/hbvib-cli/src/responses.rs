@@ -1,0 +1,109 @@
+//! The responses that a job watches: from its tables to the library, and what the summary tells of them.
+
+use crate::build::{Built, Outcome};
+use crate::counted::counted;
+use crate::job::DofName;
+use hbvib::{Branch, Component, Measure, Response};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+/// A response of [forced]: a weighted sum of degrees of freedom, and what is read from it over a period.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ResponsePart {
+    pub dofs: Vec<DofName>,
+    /// One for each of the dofs; none: 1 each.
+    #[serde(default)]
+    pub weights: Vec<f64>,
+    #[serde(default)]
+    pub measure: MeasureName,
+    /// Number of the harmonic of the measure "harmonic".
+    pub harmonic: Option<usize>,
+    #[serde(default)]
+    pub sector: usize,
+    #[serde(default)]
+    pub component: ComponentName,
+}
+
+/// What is read from a response.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum MeasureName {
+    #[default]
+    Fundamental,
+    Harmonic,
+    Peak,
+    Rms,
+    Range,
+}
+
+/// The derivative by time that a response sees.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ComponentName {
+    #[default]
+    Displacement,
+    Velocity,
+    Acceleration,
+}
+
+/// Degrees of freedom of each response.
+///
+/// # Errors
+/// A sentence: an unknown degree of freedom, a harmonic without its measure or the other way round.
+pub fn dofs(parts: &[ResponsePart], built: &Built) -> Outcome<Vec<Vec<usize>>> {
+    let of_part = |(i, part): (usize, &ResponsePart)| -> Outcome<Vec<usize>> {
+        if part.harmonic.is_some() != (part.measure == MeasureName::Harmonic) {
+            return Err(format!(
+                "[[response]] {i}: harmonic goes with measure = \"harmonic\", and that needs it"
+            ));
+        }
+        let named = part.dofs.iter().map(|name| built.nodes.dof(name));
+        let found: Result<Vec<usize>, String> = named.collect();
+        found.map_err(|e| format!("[[response]] {i}: dofs: {e}"))
+    };
+    parts.iter().enumerate().map(of_part).collect()
+}
+
+/// The responses, with their degrees of freedom.
+pub fn responses<'a>(parts: &'a [ResponsePart], dofs: &'a [Vec<usize>]) -> Vec<Response<'a>> {
+    let one = |(part, dofs): (&'a ResponsePart, &'a Vec<usize>)| Response {
+        measure: match part.measure {
+            MeasureName::Fundamental => Measure::Fundamental,
+            MeasureName::Harmonic => Measure::Harmonic(part.harmonic.unwrap_or(1)),
+            MeasureName::Peak => Measure::Peak,
+            MeasureName::Rms => Measure::Rms,
+            MeasureName::Range => Measure::Range,
+        },
+        dofs,
+        weights: &part.weights,
+        sector: part.sector,
+        component: match part.component {
+            ComponentName::Displacement => Component::Displacement,
+            ComponentName::Velocity => Component::Velocity,
+            ComponentName::Acceleration => Component::Acceleration,
+        },
+    };
+    parts.iter().zip(dofs).map(one).collect()
+}
+
+/// The highest peak of each response, a line each.
+pub fn summary(branch: &Branch) -> String {
+    let mut text = String::new();
+    for (r, of) in branch.responses().iter().enumerate() {
+        let highest = of.peaks().iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        let _ = match highest {
+            Some(peak) => writeln!(
+                text,
+                "response {r}: {}, the highest {:.6e} at {:.6} Hz",
+                counted(of.peaks().len(), "peak"),
+                peak.amplitude,
+                peak.omega / TAU
+            ),
+            None => writeln!(text, "response {r}: no peak"),
+        };
+    }
+    text
+}
