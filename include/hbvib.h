@@ -1603,7 +1603,7 @@ typedef struct {
 HBVIB_NODISCARD
 hbvib_status hbvib_hooks_init(hbvib_hooks *h, size_t size_of_h);
 
-/// What is read from a response over a period.
+/// The number that is read from a response over a period.
 typedef enum {
   /// Amplitude of the fundamental: harmonic 1, or the one that hbvib_reduction names.
   HBVIB_MEASURE_FUNDAMENTAL = 0,

@@ -353,7 +353,7 @@ class Phase(enum.IntEnum):
 
 
 class Measure(enum.IntEnum):
-    """What is read from a response over a period.
+    """The number that is read from a response over a period.
 
     FUNDAMENTAL   Amplitude of the fundamental: harmonic 1, or the one that hbvib_reduction names.
     HARMONIC   Amplitude of one harmonic, 0 where the motion does not have it; harmonic 0 is the magnitude of the mean.

@@ -92,7 +92,7 @@ impl BranchTracer<'_> {
         s: f64,
     ) -> Result<Option<Point>> {
         for (end, at) in [(a, 0.0), (b, 1.0)] {
-            if s == at {
+            if s.to_bits() == f64::to_bits(at) {
                 return end.try_clone().map(Some);
             }
         }

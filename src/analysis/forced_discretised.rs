@@ -230,16 +230,14 @@ impl<'a> ForcedDiscretised<'a> {
 
     /// Estimated relative error of the response amplitude; NaN if unknown or not requested.
     fn error(&mut self, point: &Point) -> Result<f64> {
-        match self.estimated.take() {
-            Some(error) => Ok(error),
-            None => {
-                let found = self.estimate_error(point)?;
-                self.last_errors.clear();
-                let Some(found) = found else { return Ok(f64::NAN) };
-                try_extend(&mut self.last_errors, &found.responses, "the responses")?;
-                Ok(found.response)
-            }
+        if let Some(error) = self.estimated.take() {
+            return Ok(error);
         }
+        let found = self.estimate_error(point)?;
+        self.last_errors.clear();
+        let Some(found) = found else { return Ok(f64::NAN) };
+        try_extend(&mut self.last_errors, &found.responses, "the responses")?;
+        Ok(found.response)
     }
 }
 

@@ -76,6 +76,13 @@ fn with_detail(
     range.check_guess(model.ndof())?;
     model.check_response_dof(solver.response_dof)?;
     check_responses(range.responses, model.ndof(), model.structure().sectors())?;
+    let automatic = [Response::of_no_fundamental()];
+    let by_itself = ForcedOptions {
+        responses: &automatic,
+        ..*range
+    };
+    let is_missing = range.responses.is_empty() && misses_fundamental(&forced_harmonics(model)?);
+    let range = if is_missing { &by_itself } else { range };
     let leading = with_leading_response(solver, range)?;
     let solver = &leading;
     let interrupt = hooks.interrupt();
@@ -163,13 +170,6 @@ fn follow(
     let length = resolution.condensed.length();
     // The lower end is used, so that both directions follow the same degree of freedom.
     let lower = range.omega_start.min(range.omega_stop);
-    let automatic = [Response::of_no_fundamental()];
-    let by_itself = ForcedOptions {
-        responses: &automatic,
-        ..*range
-    };
-    let is_missing = range.responses.is_empty() && misses_fundamental(&forced);
-    let range = if is_missing { &by_itself } else { range };
     let response_dof = match solver.response_dof {
         Some(dof) => dof,
         None => forced_dof_with_largest_motion(model, &resolution.condensed, lower, interrupt)?,
@@ -246,10 +246,27 @@ fn follow(
     if let Some(factor) = required(solver, &*response) {
         return Ok(Err(factor));
     }
-    let mut ending = Ending::of(outcome, response.branch())?;
+    let ending = ending_of(outcome, response.branch(), (model, &forced), interrupt)?;
+    let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;
+    if branch.status() == Status::Ok
+        && let Some(reason) = unbounded_response::in_branch(&branch, length)
+    {
+        branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
+    }
+    Ok(Ok(branch))
+}
+
+/// How a run ended that has recorded a branch so far.
+fn ending_of(
+    outcome: Result<Status>,
+    branch: &Branch,
+    (model, forced): (&Model, &[usize]),
+    interrupt: &Interrupt<'_>,
+) -> Result<Ending> {
+    let mut ending = Ending::of(outcome, branch)?;
     if ending.status == Status::StoppedStepTooSmall
         && ending.reason.is_none()
-        && let Some(&omega) = response.branch().omega().last()
+        && let Some(&omega) = branch.omega().last()
     {
         match unbounded_response::reason(model, omega, interrupt) {
             Ok(reason) => ending.reason = reason,
@@ -259,13 +276,7 @@ fn follow(
     if ending.status == Status::Ok && forced.is_empty() {
         ending.status = Status::StoppedNoForce;
     }
-    let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;
-    if branch.status() == Status::Ok
-        && let Some(reason) = unbounded_response::in_branch(&branch, length)
-    {
-        branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
-    }
-    Ok(Ok(branch))
+    Ok(ending)
 }
 
 /// The level of the first point.

@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::options::{Measure, Response};
 use num_complex::Complex64;
 
-/// What a response is of a motion of `ndof` degrees of freedom at `omega`; `x` has its harmonics 0 … H, (H + 1) × ndof numbers,
+/// The response of a motion of `ndof` degrees of freedom at `omega`; `x` has its harmonics 0 … H, (H + 1) × ndof numbers,
 /// harmonic by harmonic. The fundamental is harmonic 1. A sector other than 0 is refused: the motion is that of one sector.
 ///
 /// # Errors

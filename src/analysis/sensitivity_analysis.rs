@@ -108,8 +108,12 @@ pub fn sensitivity_with(
         return absent(Reason::Fold);
     }
     let mut forced = None;
-    let adjoint = match branch.mode_data().zip(branch.mode_at(point)) {
-        Some((data, at)) => ModePointAdjoint {
+    let adjoint = if let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) {
+        let quantity = match of {
+            Quantity::ModeOmega => ModeQuantity::Omega,
+            _ => ModeQuantity::Damping,
+        };
+        let at = ModePointAdjoint {
             condensed: solution.0,
             linear: &data.linear,
             gauge: &data.gauge,
@@ -117,23 +121,16 @@ pub fn sensitivity_with(
             motion,
             omega,
             point: at,
-        }
-        .solve(
-            match of {
-                Quantity::ModeOmega => ModeQuantity::Omega,
-                _ => ModeQuantity::Damping,
-            },
-            interrupt,
-        )?,
-        None => {
-            let responses = (branch.response_dof(), solution.1);
-            let at = ForcedPoint::new(solution.0, responses, omega, interrupt)?;
-            let at = match watched(branch, of) {
-                Some(series) => at.watching(&series.response(), solution.1)?,
-                None => at,
-            };
-            forced.insert(at).adjoint(motion, omega)?
-        }
+        };
+        at.solve(quantity, interrupt)?
+    } else {
+        let responses = (branch.response_dof(), solution.1);
+        let at = ForcedPoint::new(solution.0, responses, omega, interrupt)?;
+        let at = match watched(branch, of) {
+            Some(series) => at.watching(&series.response(), solution.1)?,
+            None => at,
+        };
+        forced.insert(at).adjoint(motion, omega)?
     };
     let Some(adjoint) = adjoint else {
         return absent(Reason::Fold);

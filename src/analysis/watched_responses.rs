@@ -20,7 +20,7 @@ type Key = (u64, u64, usize);
 pub(super) struct WatchedResponses<'a> {
     /// The responses that were asked for.
     pub list: &'a [Response<'a>],
-    /// What they are at the point recorded last.
+    /// Their readings at the point recorded last.
     pub seen: Vec<SeenWithError>,
     /// Their values at the point that is estimated, in the caller's unit.
     pub watched: Vec<Complex64>,
@@ -85,21 +85,18 @@ impl<'a> WatchedResponses<'a> {
     /// All responses at a point, which may have been read before.
     pub fn read_at(&mut self, problem: &mut HarmonicBalance<'_>, at: PointAt<'_>) -> Result<&[Seen]> {
         let wanted = key(at);
-        let place = match self.recent.iter().position(|(key, _)| *key == wanted) {
-            Some(known) => known,
-            None => {
-                let mut seen = if self.recent.len() < MOST_RECENT {
-                    Vec::new()
-                } else {
-                    self.recent.pop().map_or_else(Vec::new, |(_, seen)| seen)
-                };
-                problem.see_all(&at.0.v, &at.0.tangent, &mut seen)?;
-                self.recent.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
-                self.recent.insert(0, (wanted, seen));
-                0
-            }
+        if let Some(known) = self.recent.iter().position(|(key, _)| *key == wanted) {
+            self.recent[..=known].rotate_right(1);
+            return Ok(&self.recent[0].1);
+        }
+        let mut seen = if self.recent.len() < MOST_RECENT {
+            Vec::new()
+        } else {
+            self.recent.pop().map_or_else(Vec::new, |(_, seen)| seen)
         };
-        self.recent[..=place].rotate_right(1);
+        problem.see_all(&at.0.v, &at.0.tangent, &mut seen)?;
+        self.recent.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.recent.insert(0, (wanted, seen));
         Ok(&self.recent[0].1)
     }
 

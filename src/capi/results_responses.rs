@@ -58,12 +58,12 @@ pub unsafe extern "C" fn hbvib_branch_response(
     reading: i32,
     out: *mut hbvib_view,
 ) -> hbvib_status {
+    use hbvib_reading as r;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
         let all = kept.branch.responses();
         let of = &all[index(response, all.len(), 2, "response")?];
         unsafe { check_out(out, 4) }?;
-        use hbvib_reading as r;
         let real = |values: &[f64]| (hbvib_scalar::HBVIB_REAL, values.as_ptr());
         let (scalar, data) = match reading {
             k if k == r::HBVIB_READING_VALUE as i32 => real(of.values()),

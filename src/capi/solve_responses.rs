@@ -11,7 +11,7 @@ use crate::error::{Result, fail, try_push};
 use crate::options::{Component, Measure, Response};
 use core::ptr;
 
-/// What is read from a response over a period.
+/// The number that is read from a response over a period.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub enum hbvib_measure {

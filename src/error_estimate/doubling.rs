@@ -1,7 +1,7 @@
 //! The response of a point as its harmonics are doubled: how much of the change is still missing.
 //!
 //! With X₀ the response of the point, Xₖ that of the k-th extension and dₖ = |Xₖ − Xₖ₋₁| the next change is about
-//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q. Of several responses the largest relative change counts.
+//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q. The largest relative change of several responses counts.
 
 use crate::error::{Result, try_copy};
 use crate::error_estimate::estimate::{CONTEXT, Estimate, MARGIN};

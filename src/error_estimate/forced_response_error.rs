@@ -442,7 +442,7 @@ impl<'a> ForcedEstimator<'a> {
     }
 }
 
-/// What doubling watches: the responses that were asked for, or the one that every point has.
+/// The numbers that doubling watches: the responses that were asked for, or the one that every point has.
 fn observed<'o>(response: &'o Complex64, watched: &'o [Complex64]) -> &'o [Complex64] {
     if watched.is_empty() {
         core::slice::from_ref(response)

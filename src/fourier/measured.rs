@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 
 const CONTEXT: &str = "a response";
 
-/// What was read.
+/// The number that was read.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
     /// The measure.
@@ -101,7 +101,7 @@ impl Reader {
                 }
             }
             Measure::Peak => {
-                let (first, second) = self.extremes(set, packed, interrupt, |x| x.abs())?;
+                let (first, second) = self.extremes(set, packed, interrupt, f64::abs)?;
                 self.add_instant(set, first.tau, if first.x < 0.0 { -1.0 } else { 1.0 });
                 Reading {
                     value: first.x.abs(),

@@ -18,7 +18,7 @@ pub struct ForcedOptions<'a> {
     /// contacts. The motion at the contacts counts. Harmonics that forces and laws do not excite by themselves, as a
     /// subharmonic, a mean or even harmonics of a symmetric model, are carried where the guess has them.
     pub guess: Option<&'a [Complex64]>,
-    /// What is watched: the first response leads the amplitude and the peaks of the branch, and a tolerance holds for each. None:
+    /// Responses that are watched: the first one leads the amplitude and the peaks of the branch, and a tolerance holds for each. None:
     /// the fundamental of the response degree of freedom.
     pub responses: &'a [Response<'a>],
 }

@@ -1,4 +1,4 @@
-//! What of the motion a response is: a gauge, and the number that is read from it over a period.
+//! A response of the motion: a gauge, and the number that is read from it over a period.
 
 use crate::error::{Result, fail};
 
@@ -41,7 +41,7 @@ impl Component {
 /// A gauge Σ w x over degrees of freedom of one sector, and what is read from it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Response<'a> {
-    /// What is read.
+    /// The number that is read.
     pub measure: Measure,
     /// Degrees of freedom; none: the response degree of freedom of the solver.
     pub dofs: &'a [usize],

@@ -78,7 +78,7 @@ impl Gauge {
     }
 }
 
-/// What a gauge reads at a point, in the unit of the condensed model.
+/// The reading of a gauge at a point, in the unit of the condensed model.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// The reading.
@@ -104,7 +104,7 @@ impl Seen {
 /// The gauges of a run on one condensed model.
 pub struct Gauges<'a> {
     condensed: &'a Condensed,
-    gauges: Vec<Gauge>,
+    all: Vec<Gauge>,
     forces: ContactForces<'a>,
     workspace: Workspace,
     reader: Reader,
@@ -137,7 +137,7 @@ impl<'a> Gauges<'a> {
         let vector = |n| try_vec(n, Complex64::ZERO, CONTEXT);
         Ok(Self {
             condensed,
-            gauges,
+            all: gauges,
             forces: ContactForces::unchecked(condensed, samples, interrupt)?,
             workspace: Workspace::new(condensed, None)?,
             reader: Reader::new(set)?,
@@ -166,7 +166,7 @@ impl<'a> Gauges<'a> {
         self.changes.fill(0.0);
         let wanted = |r: usize| one.is_none_or(|one| one == r);
         for (i, &number) in set.numbers().iter().enumerate() {
-            let mut gauges = self.gauges.iter().enumerate();
+            let mut gauges = self.all.iter().enumerate();
             if !gauges.any(|(r, gauge)| wanted(r) && gauge.reads(condensed, i)) {
                 continue;
             }
@@ -183,7 +183,7 @@ impl<'a> Gauges<'a> {
                 *y = set.get_at(u, c * m, i);
             }
             near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, x, interrupt)?;
-            for (r, gauge) in self.gauges.iter().enumerate() {
+            for (r, gauge) in self.all.iter().enumerate() {
                 let (factor, d_factor) = gauge.factor(number, omega);
                 let (value, change) = (gauge.along(i, x), gauge.along(i, dx));
                 let signal = r * m..(r + 1) * m;
@@ -193,7 +193,7 @@ impl<'a> Gauges<'a> {
             }
         }
         seen.clear();
-        for (r, gauge) in self.gauges.iter().enumerate() {
+        for (r, gauge) in self.all.iter().enumerate() {
             if !wanted(r) {
                 continue;
             }
@@ -228,7 +228,7 @@ impl<'a> Gauges<'a> {
         let m = set.packed_len();
         let mut by_motion = try_vec(n.saturating_mul(set.numbers().len()), Complex64::ZERO, CONTEXT)?;
         let mut by_omega = 0.0;
-        let gauge = &self.gauges[r];
+        let gauge = &self.all[r];
         for (i, (&number, c)) in set.numbers().iter().zip(self.reader.weights()).enumerate() {
             let (factor, d_factor) = gauge.factor(number, omega);
             if factor == Complex64::ZERO {

@@ -8,10 +8,10 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the responses";
 
-/// What a response is at a point, with its estimated relative error.
+/// A response at a point, with its estimated relative error.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenWithError {
-    /// What it is.
+    /// The response.
     pub seen: Seen,
     /// NaN where it is unknown.
     pub error: f64,
@@ -72,7 +72,7 @@ impl ResponseSeries {
         try_push(&mut self.peaks, peak, CONTEXT)
     }
 
-    /// What was asked for.
+    /// The response as it was asked for.
     #[must_use]
     pub fn response(&self) -> Response<'_> {
         Response {

@@ -83,8 +83,8 @@ fn derivatives_at_a_frequency_are_those_of_differences() {
         for omega in [0.43, 0.61, 0.78] {
             let model = chain_with(6, preload, AT);
             let branch = solve(preload, AT, (omega, omega), &all);
-            for parameter in 0..3 {
-                let scale = if parameter == 2 { 1.0 } else { AT[parameter] };
+            for (parameter, value) in AT.iter().enumerate() {
+                let scale = if parameter == 2 { 1.0 } else { *value };
                 let step = 1e-4;
                 let steps = [step, -step, 2.0 * step, -2.0 * step];
                 let found = steps.map(|by| solve(preload, moved(parameter, by), (omega, omega), &all));
@@ -123,8 +123,8 @@ fn peaks_move_as_their_derivatives_tell() {
         };
         let amplitude = sensitivity(&model, &branch, peak.point, &PARAMETERS, Quantity::Response(r)).unwrap();
         let omega = sensitivity(&model, &branch, peak.point, &PARAMETERS, Quantity::ResponsePeakOmega(r)).unwrap();
-        for parameter in 0..3 {
-            let scale = if parameter == 2 { 1.0 } else { AT[parameter] };
+        for (parameter, value) in AT.iter().enumerate() {
+            let scale = if parameter == 2 { 1.0 } else { *value };
             let largest = |by: f64| {
                 let found = solve(0.0, moved(parameter, by), range, core::slice::from_ref(response));
                 let peaks = found.responses()[0].peaks().to_vec();

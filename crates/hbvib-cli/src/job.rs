@@ -18,7 +18,7 @@ pub struct Job {
     pub force: Vec<ForcePart>,
     #[serde(default)]
     pub unbalance: Vec<UnbalancePart>,
-    /// What [forced] watches; the first one leads its amplitude and peaks.
+    /// Responses that [forced] watches; the first one leads its amplitude and peaks.
     #[serde(default)]
     pub response: Vec<ResponsePart>,
     pub forced: Option<ForcedPart>,

@@ -27,7 +27,7 @@ pub struct ResponsePart {
     pub component: ComponentName,
 }
 
-/// What is read from a response.
+/// The number that is read from a response.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum MeasureName {
