@@ -121,9 +121,7 @@ impl<'a> Equations<'a> {
 
     /// Fundamental of all degrees of freedom per unit of amplitude at the point evaluated last.
     pub fn fundamental(&self) -> &[Complex64] {
-        let condensed = &self.resolution.condensed;
-        let (i, dofs) = (condensed.set().fundamental(), condensed.ndof());
-        &self.problem.shape()[i * dofs..(i + 1) * dofs]
+        self.problem.fundamental()
     }
 
     /// Quantities of the mode at the point evaluated last; `before` is the fundamental of the previous point, empty
@@ -134,8 +132,8 @@ impl<'a> Equations<'a> {
         let (u, p) = (point.unknowns(), point.parameter());
         let (omega, damping_ratio) = Epmc::frequency_and_damping(linear, u);
         let dofs = condensed.ndof();
-        let x = self.problem.shape();
         self.forces.copy_from_slice(self.problem.forces().forces());
+        let x = self.problem.shape();
         let unit = 10f64.powf(p) * condensed.length();
         let balance: Balance = energy::balance(condensed, omega, x, &self.forces, &u[..n - 2]);
         let i = condensed.set().fundamental();

@@ -234,10 +234,35 @@ impl ModeFlexibility {
         &self.value
     }
 
-    /// x
+    /// x of all degrees of freedom; of the modes where [`Self::is_of_modes`].
     #[must_use]
     pub fn x(&self) -> &[Complex64] {
         &self.x
+    }
+
+    /// Whether the harmonic solved last has its motion in the modes of its wave.
+    #[must_use]
+    pub fn is_of_modes(&self) -> bool {
+        let sums = self.by_sums.and_then(|i| self.sums[i].as_ref());
+        sums.is_some_and(|(sums, _)| !sums.is_fundamental())
+    }
+
+    /// The largest motion of the harmonic solved last, or a bound of it.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        if let Some((sums, _)) = self.by_sums.and_then(|i| self.sums[i].as_ref())
+            && !sums.is_fundamental()
+        {
+            return sums.bound(&self.x);
+        }
+        self.x.iter().fold(0.0_f64, |m, z| m.max(z.norm_sqr())).sqrt()
+    }
+
+    /// The motion of all degrees of freedom in the i-th carried harmonic from that of the modes.
+    pub fn expand(&self, i: usize, of_modes: &[Complex64], x: &mut [Complex64], memory: &mut [Complex64]) {
+        if let Some((sums, _)) = &self.sums[i] {
+            sums.expand(of_modes, x, memory);
+        }
     }
 }
 
@@ -424,7 +449,13 @@ mod tests {
                     let error = off(a, b) * norm(b) / size;
                     assert!(error <= allowed, "{name}, {case}: {error:e}");
                 };
-                check("x", &by_sums.x, &exact.x, norm(&exact.x));
+                let mut x = by_sums.x.clone();
+                if by_sums.is_of_modes() {
+                    by_sums.expand(i, &by_sums.x, &mut x, &mut vec![Complex64::ZERO; n]);
+                }
+                let largest = exact.largest();
+                assert!(by_sums.largest() >= (1.0 - 1e-9) * largest, "{case}");
+                check("x", &x, &exact.x, norm(&exact.x));
                 check("flexibility", &by_sums.value, &exact.value, norm(&exact.value));
                 for k in 0..3 {
                     let part = k * w.len()..(k + 1) * w.len();

@@ -39,6 +39,8 @@ pub(super) struct ModeSums {
     coefficients: Coefficients,
     /// Terms of the series over stiff modes.
     terms: usize,
+    /// Largest length of a row of Φ.
+    longest_row: f64,
 }
 
 /// Products of the normalisation of a nonlinear mode with its fundamental: of (B x)ᴴ, and the motion of the reference degree of freedom.
@@ -105,6 +107,7 @@ impl ModeSums {
         Ok(Some(Self {
             coefficients: Coefficients::new(condensed, i, rows.springs(), is_damped)?,
             number: block.number as f64,
+            longest_row: longest_row(&modes),
             is_mass_type,
             modes,
             terms: if rows.count() < SERIES_FROM {
@@ -152,9 +155,15 @@ impl ModeSums {
         work.inverse.len() == self.rows.terms() && work.seen.len() == self.rows.count()
     }
 
+    /// Whether the normalisation reads this harmonic.
+    pub fn is_fundamental(&self) -> bool {
+        self.number < 1.5
+    }
+
     /// Solves at frequency `omega` and damping ratio `damping` under the forces w; `false` so near a resonance of the
-    /// structure with its reference stiffness that digits would be lost. Writes the motion of all degrees of freedom, and the relative
-    /// motions of the contacts: of it and of its derivatives by frequency and damping ratio.
+    /// structure with its reference stiffness that digits would be lost. Writes the motion, of all degrees of freedom in the fundamental
+    /// and of the modes in other harmonics, and the relative motions of the contacts: of it and of its derivatives by frequency and
+    /// damping ratio.
     ///
     /// # Errors
     /// `Singular`, `OutOfMemory`, `StoppedByCaller`.
@@ -177,14 +186,21 @@ impl ModeSums {
         work.at = denominator(at, by_omega);
         if let ([w], 1) = (w, self.coefficients.len()) {
             self.solve_single(work, [at, by_omega, by_damping], *w, relative);
-            expand(&self.modes.vectors, &work.motion, x);
+            if self.is_fundamental() {
+                expand(&self.modes.vectors, &work.motion, x);
+            } else {
+                x.copy_from_slice(&work.motion);
+            }
             return Ok(true);
         }
         interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
         self.flexibility(work, interrupt)?;
         self.motion(work, w);
-        let memory = &mut work.whole[..x.len()];
-        complex_columns::multiply(&self.modes.vectors, memory.len(), &work.motion, x, memory);
+        if self.is_fundamental() {
+            self.expand(&work.motion, x, &mut work.whole);
+        } else {
+            x.copy_from_slice(&work.motion);
+        }
         let coordinates = self.rows.coordinates();
         for (variable, slope) in [by_omega, by_damping].into_iter().enumerate() {
             let to = &mut relative[(1 + variable) * coordinates..(2 + variable) * coordinates];
@@ -192,6 +208,16 @@ impl ModeSums {
         }
         relative[..coordinates].copy_from_slice(&work.seen[..coordinates]);
         Ok(true)
+    }
+
+    /// The motion of all degrees of freedom from that of the modes.
+    pub fn expand(&self, of_modes: &[Complex64], x: &mut [Complex64], memory: &mut [Complex64]) {
+        complex_columns::multiply(&self.modes.vectors, x.len(), of_modes, x, memory);
+    }
+
+    /// Bound of the largest motion of a degree of freedom.
+    pub fn bound(&self, of_modes: &[Complex64]) -> f64 {
+        self.longest_row * of_modes.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt()
     }
 
     /// Products of the normalisation with the solution of [`Self::solve`]: B x, and the row of the reference degree of freedom.
@@ -268,7 +294,7 @@ impl ModeSums {
         for (xi, (inverse, [q, _])) in work.motion.iter_mut().zip(work.inverse.iter().zip(sums)) {
             *xi = -pivot * inverse * q.conj() * w;
         }
-        let is_fundamental = self.number < 1.5;
+        let is_fundamental = self.is_fundamental();
         if is_fundamental {
             let columns = work.inverse.iter().zip(sums);
             let moved: Complex64 = columns
@@ -365,6 +391,10 @@ impl ModeSums {
                 *z = work.force[of.row_of(b)];
             }
             work.low_rank.solve_rows(&mut work.inner);
+            relative.copy_from_slice(&work.inner[..relative.len()]);
+            if !self.is_fundamental() {
+                return;
+            }
             work.memory.fill(Complex64::ZERO);
             for (b, z) in work.inner.iter().enumerate() {
                 work.memory[of.row_of(b)] = of.entry(b, work.at.a - 1.0) * z;
@@ -373,7 +403,6 @@ impl ModeSums {
             for ((rate, inverse), force) in rate.iter_mut().zip(&work.inverse).zip(&work.of_modes) {
                 *rate += inverse * force;
             }
-            relative.copy_from_slice(&work.inner[..relative.len()]);
         } else {
             relative.copy_from_slice(&work.force[..relative.len()]);
         }
@@ -401,6 +430,20 @@ impl Pair {
         a: Complex64::ZERO,
         b: Complex64::ZERO,
     };
+}
+
+fn longest_row(modes: &WaveModes) -> f64 {
+    let n = modes.values.len();
+    let square = |row: usize| {
+        modes
+            .vectors
+            .iter()
+            .skip(row)
+            .step_by(n)
+            .map(Complex64::norm_sqr)
+            .sum::<f64>()
+    };
+    (0..n).map(square).fold(0.0, f64::max).sqrt()
 }
 
 fn denominator(at: Pair, slope: Pair) -> Denominator {

@@ -272,9 +272,8 @@ impl<'a> ModeEstimator<'a> {
             system
         } else {
             let (linear, gauge, interrupt) = (self.linear, self.gauge, self.interrupt);
-            let tolerance = tables_within(self.options.tolerance);
-            let problem =
-                boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt)?.within(tolerance))?;
+            let mut problem = boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt))?;
+            problem.set_tolerance(tables_within(self.options.tolerance))?;
             boxed(|| ExtendedSystem::iterative(*problem, state.log10_amplitude, chosen, (sizes, work)))?
         };
         let mut found = self.extended_with(&mut system, condensed, (solved, from), state, stage);
@@ -353,10 +352,9 @@ impl<'a> ModeEstimator<'a> {
         let (omega2, damping2) = Epmc::frequency_and_damping(self.linear, &z);
         let (omega1, damping1) = Epmc::frequency_and_damping(self.linear, &extended.at);
         let unit = a * condensed.length();
-        let (i, dofs) = (set.fundamental(), condensed.ndof());
-        let row = condensed.motion_row(i, self.response)?;
-        let response = |shape: &[Complex64]| row.along(&shape[i * dofs..(i + 1) * dofs]) * unit;
-        let before = response(system.problem.shape());
+        let row = condensed.motion_row(set.fundamental(), self.response)?;
+        let response = |shape: &[Complex64]| row.along(shape) * unit;
+        let before = response(system.problem.fundamental());
         // One of several extensions tells frequency and damping ratio; the response may lack the last step.
         let response = if stage.by_doubling {
             before
@@ -364,7 +362,7 @@ impl<'a> ModeEstimator<'a> {
             if !system.evaluate(&z)? {
                 return Ok(None);
             }
-            response(system.problem.shape())
+            response(system.problem.fundamental())
         };
         let motion = &z[..n - 2];
         let size = norm(motion);

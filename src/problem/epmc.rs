@@ -17,7 +17,7 @@ mod mode_products;
 use crate::condense::Condensed;
 use crate::condense::mode_flexibility::ModeFlexibility;
 use crate::contact::onset::Onset;
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::{inner, norm};
@@ -82,11 +82,14 @@ pub struct LinearMode {
 pub struct Epmc<'a> {
     condensed: &'a Condensed,
     forces: Box<ContactForces<'a>>,
-    structure: ModeFlexibility,
+    structure: Box<ModeFlexibility>,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
-    /// x̂ of all carried harmonics at the point last evaluated.
+    /// x̂ of all carried harmonics at the point last evaluated, and of which of them it is that of the modes.
     x: Vec<Complex64>,
+    of_modes: Vec<bool>,
+    /// Memory for one harmonic of it, and of a product.
+    harmonic: [Vec<Complex64>; 2],
     weighted: Vec<Complex64>,
     w: Vec<Complex64>,
     /// A packed signal, for a column of the Jacobian.
@@ -100,7 +103,7 @@ pub struct Epmc<'a> {
     by_omega: Vec<f64>,
     by_damping: Vec<f64>,
     gauge_rows: Vec<[Complex64; 2]>,
-    products: mode_products::ModeProducts,
+    products: Box<mode_products::ModeProducts>,
     /// Unknowns given for the first point.
     guess: Option<Vec<f64>>,
     /// Whether the linear mode is one of several of its frequency.
@@ -135,10 +138,15 @@ impl<'a> Epmc<'a> {
         Ok(Self {
             condensed,
             forces,
-            structure: ModeFlexibility::new(condensed, gauge.reference_dof, 0.0)?,
+            structure: boxed(|| ModeFlexibility::new(condensed, gauge.reference_dof, 0.0))?,
             gauge,
             linear,
             x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
+            of_modes: try_vec(condensed.blocks().len(), false, CONTEXT)?,
+            harmonic: [
+                try_vec(n, Complex64::ZERO, CONTEXT)?,
+                try_vec(n, Complex64::ZERO, CONTEXT)?,
+            ],
             weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             change: try_vec(condensed.set().packed_len(), 0.0, CONTEXT)?,
@@ -154,19 +162,20 @@ impl<'a> Epmc<'a> {
             by_omega: try_vec(unknowns, 0.0, CONTEXT)?,
             by_damping: try_vec(unknowns, 0.0, CONTEXT)?,
             gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
-            products: mode_products::ModeProducts::default(),
+            products: boxed(|| Ok(mode_products::ModeProducts::default()))?,
             guess: None,
             is_repeated: false,
         })
     }
 
-    /// The same with the flexibility within a relative tolerance, as exactly as an estimate of an error needs it.
+    /// Makes the flexibility within a relative tolerance, as exactly as an estimate of an error needs it.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn within(mut self, tolerance: f64) -> Result<Self> {
-        self.structure = ModeFlexibility::new(self.condensed, self.gauge.reference_dof, tolerance)?;
-        Ok(self)
+    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<()> {
+        let (condensed, dof) = (self.condensed, self.gauge.reference_dof);
+        self.structure = boxed(|| ModeFlexibility::new(condensed, dof, tolerance))?;
+        Ok(())
     }
 
     /// Tells that the linear mode is one of several of its frequency. Nonlinear modes may then lie in a continuum: bodies that nothing
@@ -212,8 +221,24 @@ impl<'a> Epmc<'a> {
     /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
     /// evaluated, in the solver's units.
     #[must_use]
-    pub fn shape(&self) -> &[Complex64] {
+    pub fn shape(&mut self) -> &[Complex64] {
+        let n = self.condensed.ndof();
+        let [of_modes, memory] = &mut self.harmonic;
+        for (i, is_of_modes) in self.of_modes.iter_mut().enumerate() {
+            if core::mem::replace(is_of_modes, false) {
+                let x = &mut self.x[i * n..(i + 1) * n];
+                of_modes.copy_from_slice(x);
+                self.structure.expand(i, of_modes, x, memory);
+            }
+        }
         &self.x
+    }
+
+    /// The fundamental of all degrees of freedom there.
+    #[must_use]
+    pub fn fundamental(&self) -> &[Complex64] {
+        let (i, n) = (self.condensed.set().fundamental(), self.condensed.ndof());
+        &self.x[i * n..(i + 1) * n]
     }
 
     /// Relative change of the forces with the number of samples; see [`ContactForces::sampling_error`].
@@ -399,8 +424,8 @@ impl<'a> Epmc<'a> {
             self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.structure.x());
             self.tables[i].copy_from_slice(self.structure.value());
             let share = if mean { MEAN_SHARE } else { 1.0 };
-            let squared = self.structure.x().iter().fold(0.0_f64, |m, z| m.max(z.norm_sqr()));
-            largest = largest.max(share * squared.sqrt());
+            self.of_modes[i] = self.structure.is_of_modes();
+            largest = largest.max(share * self.structure.largest());
             for row in 0..coordinates {
                 let position = row * m + at;
                 let [x, by_omega, by_damping] = self.structure.relative(row);

@@ -192,12 +192,11 @@ impl<'a> Refinement<'a> {
         }
         let (omega, damping_ratio) = Epmc::frequency_and_damping(&self.data.linear, &v[..n]);
         let unit = 10f64.powf(p) * condensed.length();
-        let dofs = condensed.ndof();
         let i = condensed.set().fundamental();
-        let shape = &problem.shape()[i * dofs..(i + 1) * dofs];
+        let energy = balance(condensed, omega, problem.shape(), &[], &[]).twice_mean_kinetic;
+        let shape = problem.fundamental();
         condensed.blocks()[i].multiply_mass(shape, &mut self.x);
         let size = inner(shape, &self.x).re;
-        let energy = balance(condensed, omega, problem.shape(), &[], &[]).twice_mean_kinetic;
         let point = ModePoint {
             log10_amplitude: p,
             modal_amplitude: unit * size.sqrt(),

@@ -88,7 +88,7 @@ impl Completed {
             self.found.clear();
         }
         for (i, b) in self.generic.iter_mut().enumerate() {
-            *b = (1.0 + 1.7 * i as f64 + 2.3 * round as f64).sin();
+            *b = (1.0 + (1.7 + 0.9 * round as f64) * i as f64).sin();
         }
         let size = norm(&self.generic);
         let mut v = try_vec(n + 1, 0.0, CONTEXT)?;

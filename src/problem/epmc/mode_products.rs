@@ -158,7 +158,7 @@ impl Epmc<'_> {
         for table in &self.tables {
             try_push(&mut tables, try_vec(table.len(), Complex64::ZERO, CONTEXT)?, CONTEXT)?;
         }
-        self.products = ModeProducts {
+        *self.products = ModeProducts {
             change: zeros(unknowns)?,
             harmonic: [of_harmonic()?, of_harmonic()?, of_harmonic()?],
             column: zeros(unknowns)?,
@@ -203,7 +203,7 @@ impl Epmc<'_> {
         let (motion, [along_omega, along_damping]) = (&d[..n - BEHIND], [d[n - 2], d[n - 1]]);
         let ModeProducts {
             change, harmonic, rows, ..
-        } = &mut self.products;
+        } = &mut *self.products;
         let [z, sum, memory] = harmonic;
         for (c, dw) in change.chunks_exact_mut(m).enumerate() {
             self.forces.change(motion, c, dw);
