@@ -39,7 +39,7 @@ pub struct Record<'a> {
     /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
     /// damping ratio; NaN if unknown.
     pub errors: (f64, f64),
-    /// What the responses of the run are, in the solver's units, with their errors; empty without any.
+    /// The responses of the run, in the solver's units, with their errors; empty without any.
     pub seen: &'a [SeenWithError],
 }
 
