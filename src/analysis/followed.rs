@@ -197,6 +197,7 @@ fn unknown(set: &HarmonicSet, point: &Point, too_large: bool) -> Estimate {
             response: Complex64::ZERO,
             omega: f64::NAN,
             damping: 0.0,
+            rates: Vec::new(),
         },
     }
 }

@@ -5,6 +5,7 @@ mod condensation;
 mod condensed;
 pub mod contact_classes;
 pub mod dynamic_stiffness;
+pub mod exchange;
 pub mod flexibility;
 pub mod frequency_cache;
 pub mod harmonic_block;

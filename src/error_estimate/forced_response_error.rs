@@ -39,6 +39,10 @@ const SHARED: f64 = 0.5;
 const OF_TABLES: f64 = 1e-3;
 const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 
+/// Ratio of the harmonics to which a point with exchanged motions is extended: the force jumps where slip ends, so that the
+/// error falls as H^-1.25, and a sixth of it is left beyond them.
+const OF_JUMPS: usize = 4;
+
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
 
@@ -163,7 +167,10 @@ impl<'a> ForcedEstimator<'a> {
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
-        let core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
+        let mut core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
+        if solved.condensed.has_exchanges() {
+            core = core.max(cutoff_harmonic::carried_from(set, OF_JUMPS * own)).min(most);
+        }
         Ok(Some(Extent {
             core,
             highest: core.max(least),

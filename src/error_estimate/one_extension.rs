@@ -110,7 +110,8 @@ pub(super) fn extend_once(
     let change = norm(&change) / size;
     let (x, dx) = system.problem.observe(&extended.at, &extended.next);
     let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
-    let tail = tail(set, solved.condensed.set(), &z)?;
+    let rates = condensed.rates()?;
+    let tail = tail(set, solved.condensed.set(), (&z, &rates))?;
     let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
     let known = |x: f64| if certified { x } else { f64::NAN };
     for z in &mut z {
@@ -133,6 +134,7 @@ pub(super) fn extend_once(
             response,
             omega,
             damping: 0.0,
+            rates,
         },
     }))
 }

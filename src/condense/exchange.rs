@@ -1,0 +1,219 @@
+//! Exchanged motions: near-rigid sliders without their stick stiffness.
+//!
+//! A slider of a stick stiffness k, infinite if it is rigid, whose limit is constant, slips at the rate of the motion
+//! y − f/k of its end, and only while its force is at the limit. With τ = ωt, any stiffness α > 0 and
+//!
+//! > α x = f + α d(y − f/k)/dτ,  f = min(max(α x, −fc), fc)
+//!
+//! says the same ([`crate::contact::laws::saturated`]), at every time and exactly. In harmonic h, with the flexibility G
+//! of the structure,
+//!
+//! > x − s y_lin + (s G + s/k − 1/α) f(x) = 0,  s = ih,
+//!
+//! an equation of the same form as that of a motion, with the row of the coordinate times s and s/k − 1/α added to its
+//! diagonal; its reference stiffness κ is 0. Cut off at H, y has a tail of harmonics where f jumps as slip ends, and a near-rigid spring
+//! between them rings at every harmonic up to H: hundreds of events, no Newton's method that finds them, errors of
+//! H⁻¹. Cut off at H, x acts as a damper α/ω on the harmonics above: nothing rings, and the equations have one solution at
+//! any H, since the law and a structure that is passive are both monotone.
+//!
+//! The mean has s = [`CREEP`] instead of 0: a slider that slips has lost its mean place, and one that never slipped keeps it.
+//!
+//! α only moves the truncation error. It is the geometric mean of the structure's h⁻¹|G_h|⁻¹ over [`NOMINAL`] harmonics of
+//! a mass that has its flexibility in the last of them, the best relaxation of such an iteration (Peaceman & Rachford).
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::{Table, Workspace};
+use crate::condense::relative_coordinates::AssembledDirection;
+use crate::condense::sweep::Sweep;
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::lu::Lu;
+use crate::model::Model;
+use num_complex::Complex64;
+use std::f64::consts::E;
+
+const CONTEXT: &str = "the near-rigid contacts";
+
+/// Share of its place that a slider in the mean of the motion loses in a turn.
+const CREEP: f64 = 1e-6;
+
+/// Number of harmonics for which α is chosen, whatever the number of those carried, so that motions are the same for
+/// all. A quarter and four times as many do the same within a factor of two of the error.
+const NOMINAL: f64 = 64.0;
+
+/// The exchange of one coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchange {
+    /// α
+    pub stiffness: f64,
+    /// 1/k
+    compliance: f64,
+}
+
+impl Exchange {
+    /// s of a harmonic.
+    fn rate(number: usize) -> Complex64 {
+        if number == 0 {
+            CREEP.into()
+        } else {
+            Complex64::new(0.0, number as f64)
+        }
+    }
+
+    /// The motion y in a harmonic, where the exchanged one is x and the force f.
+    fn motion(&self, number: usize, x: Complex64, f: Complex64) -> Complex64 {
+        (x - f / self.stiffness) / Self::rate(number) + f * self.compliance
+    }
+}
+
+/// Selects the coordinates whose motions are exchanged: those of one near-rigid slider alone, which have no reference stiffness
+/// then.
+pub(super) fn select_exchanged(
+    model: &Model,
+    assembled: &[AssembledDirection],
+    (stiffness, reference): (&[f64], &mut [f64]),
+    exchanges: &mut [Option<Exchange>],
+) -> Result<()> {
+    let mut count = try_vec(exchanges.len(), 0_usize, CONTEXT)?;
+    for at in assembled {
+        count[at.coordinate] += 1;
+    }
+    for at in assembled {
+        let (c, contact) = (at.coordinate, &model.contacts()[at.contact]);
+        let is_loaded = model.speed_loads().iter().any(|load| load.contact == at.contact);
+        if count[c] == 1 && reference[c] < stiffness[c] && !is_loaded && contact.exchanged(1.0, 1.0).is_some() {
+            let compliance = stiffness[c].recip();
+            exchanges[c] = Some(Exchange {
+                stiffness: 1.0,
+                compliance,
+            });
+            reference[c] = 0.0;
+        }
+    }
+    Ok(())
+}
+
+impl Condensed {
+    /// Whether some motion is exchanged.
+    #[must_use]
+    pub fn has_exchanges(&self) -> bool {
+        self.exchanges.iter().any(Option::is_some)
+    }
+
+    /// Whether the motion of a coordinate is exchanged.
+    #[must_use]
+    pub fn is_exchanged(&self, coordinate: usize) -> bool {
+        self.exchanges[coordinate].is_some()
+    }
+
+    /// Coordinates whose motions are exchanged; empty where none is.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn rates(&self) -> Result<Vec<bool>> {
+        let mut rates = Vec::new();
+        for exchange in self.exchanges.iter().filter(|_| self.has_exchanges()) {
+            try_push(&mut rates, exchange.is_some(), CONTEXT)?;
+        }
+        Ok(rates)
+    }
+
+    /// Sets α of all exchanges, from the middle of a sweep.
+    pub(super) fn set_exchanges(&mut self, sweep: Sweep, interrupt: &Interrupt<'_>) -> Result<()> {
+        let first = self.set.numbers().iter().position(|&h| h > 0);
+        let Some(i) = first.filter(|_| self.has_exchanges()) else {
+            return Ok(());
+        };
+        let omega = (sweep.start * sweep.stop).sqrt();
+        let effective = NOMINAL * omega / self.set.numbers()[i] as f64;
+        let table = Workspace::new(self, None)?;
+        let flexibility = without_reference(self, table, (i, effective), interrupt)?;
+        let n = self.coordinates();
+        for (c, exchange) in self.exchanges.iter_mut().enumerate() {
+            if let Some(exchange) = exchange {
+                exchange.stiffness = (E * NOMINAL * flexibility[c * n + c].norm()).recip();
+                self.stiffness[c] = exchange.stiffness;
+            }
+        }
+        Ok(())
+    }
+
+    /// Turns a table of the i-th carried harmonic into that of the exchanged motions.
+    pub(super) fn exchange(&self, i: usize, table: &mut Table) {
+        let number = self.set.numbers()[i];
+        let outputs = self.coordinates() + 1;
+        let s = Exchange::rate(number);
+        for (c, exchange) in self.exchanges.iter().enumerate() {
+            let Some(exchange) = exchange else { continue };
+            for values in [&mut table.value, &mut table.slope] {
+                for entry in values.iter_mut().skip(c).step_by(outputs) {
+                    *entry *= s;
+                }
+            }
+            table.value[c * outputs + c] += s * exchange.compliance - exchange.stiffness.recip();
+        }
+    }
+
+    /// The packed relative motions of a point, of exchanged ones the motion itself.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn relative_motion(&self, motion: &[f64], forces: &[f64]) -> Result<Vec<f64>> {
+        let mut found = try_copy(motion, CONTEXT)?;
+        let m = self.set.packed_len();
+        for (c, exchange) in self.exchanges.iter().enumerate() {
+            let Some(exchange) = exchange else { continue };
+            for (i, &number) in self.set.numbers().iter().enumerate() {
+                let y = exchange.motion(
+                    number,
+                    self.set.get_at(motion, c * m, i),
+                    self.set.get_at(forces, c * m, i),
+                );
+                self.set.set(&mut found[c * m..(c + 1) * m], i, y);
+            }
+        }
+        Ok(found)
+    }
+
+    /// A start for the exchanged motions, from packed relative ones whose forces are not known.
+    pub fn exchange_start(&self, motion: &mut [f64]) {
+        let m = self.set.packed_len();
+        for (c, motion) in motion.chunks_exact_mut(m).enumerate() {
+            if self.exchanges[c].is_none() {
+                continue;
+            }
+            for (i, &number) in self.set.numbers().iter().enumerate() {
+                let y = self.set.get(motion, i);
+                self.set.set(motion, i, Exchange::rate(number) * y);
+            }
+        }
+    }
+}
+
+/// The flexibility of the structure without reference stiffness in the i-th carried harmonic, (1 − Gκ)⁻¹G, column-major.
+fn without_reference(
+    condensed: &Condensed,
+    mut workspace: Workspace,
+    (i, omega): (usize, f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<Complex64>> {
+    let n = condensed.coordinates();
+    let table = &workspace.evaluate(condensed, i, omega, false, interrupt)?.value;
+    let mut found = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    let mut lu = Lu::new(n, n)?;
+    let a = lu.matrix();
+    for c in 0..n {
+        for r in 0..n {
+            let g = table[c * (n + 1) + r];
+            found[c * n + r] = g;
+            a[c * n + r] = Complex64::from(f64::from(u8::from(c == r))) - g * condensed.kappa(c, i);
+        }
+    }
+    match lu.factor(interrupt) {
+        // A resonance: the flexibility with reference stiffness is as good a scale.
+        Err(e) if e.status == Status::Singular => return Ok(found),
+        factored => factored?,
+    }
+    lu.solve_columns(&mut found, false, interrupt)?;
+    Ok(found)
+}
