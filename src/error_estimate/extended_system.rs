@@ -45,6 +45,8 @@ pub(super) struct ExtendedSystem<P> {
     factored: Factored,
     /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
     pub stalled: bool,
+    /// Whether the equations are those of exchanged motions, see [`crate::condense::exchange`].
+    pub is_monotone: bool,
     /// Residual that steps may leave.
     goal: f64,
     sizes: Sizes,
@@ -83,6 +85,7 @@ impl<P: Problem> ExtendedSystem<P> {
             system,
             factored,
             stalled: false,
+            is_monotone: false,
             goal: 0.0,
             sizes,
             work,

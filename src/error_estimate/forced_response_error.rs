@@ -39,10 +39,6 @@ const SHARED: f64 = 0.5;
 const OF_TABLES: f64 = 1e-3;
 const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 
-/// Ratio of the harmonics to which a point with exchanged motions is extended: the force jumps where slip ends, so that the
-/// error falls as H^-1.25, and a sixth of it is left beyond them.
-const OF_JUMPS: usize = 4;
-
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
 
@@ -169,7 +165,8 @@ impl<'a> ForcedEstimator<'a> {
         };
         let mut core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
         if solved.condensed.has_exchanges() {
-            core = core.max(cutoff_harmonic::carried_from(set, OF_JUMPS * own)).min(most);
+            // No harmonic is weak, and none beyond is left out of the estimate: see `OF_JUMPS`.
+            core = core.max(least).min(most);
         }
         Ok(Some(Extent {
             core,
@@ -388,6 +385,7 @@ impl<'a> ForcedEstimator<'a> {
             let problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
+        system.is_monotone = condensed.has_exchanges();
         if by_modes && !system.problem.has_modes() {
             let tolerance = (OF_TABLES * self.options.tolerance).clamp(EXACTEST.0, EXACTEST.1);
             let modal = self.modal_tables(condensed, tolerance)?;
