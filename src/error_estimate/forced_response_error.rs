@@ -369,7 +369,9 @@ impl<'a> ForcedEstimator<'a> {
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
         let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
         let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
-        let all = if stalled { whole(&sizes, &work) } else { None };
+        // All harmonics of an exchanged motion couple with each other.
+        let couples = stalled || condensed.has_exchanges();
+        let all = if couples { whole(&sizes, &work) } else { None };
         let factored = all.unwrap_or_else(|| factored(&sizes, compliant, &work));
         let packed = sizes.packed().min(2.0 * factored.block as f64);
         let pairs = factored.each.saturating_sub(factored.block) as f64;

@@ -13,6 +13,9 @@ use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
 /// Columns up to which a direct solution is quicker.
 const DIRECT_UP_TO: usize = 240;
 
+/// The same where the last numbers of a group couple as much as the first.
+const DIRECT_IF_COUPLED: usize = 1200;
+
 /// Unknowns of the factored block, unless the first numbers of the groups are more.
 const BLOCK: usize = 200;
 
@@ -77,7 +80,8 @@ impl AutomaticSystem {
         let groups = self.n / group.max(1);
         let pairs = (BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
         let part = first.max(group % 2 + 2 * pairs);
-        (part < group && operator.coupled() > DIRECT_UP_TO).then_some((group, part))
+        let direct_up_to = if operator.couples_all() { DIRECT_IF_COUPLED } else { DIRECT_UP_TO };
+        (part < group && operator.coupled() > direct_up_to).then_some((group, part))
     }
 
     fn attainable(&self, tolerance: f64) -> f64 {
