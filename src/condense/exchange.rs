@@ -39,7 +39,7 @@ const CREEP: f64 = 1e-6;
 
 /// Number of harmonics for which α is chosen, whatever the number of those carried, so that motions are the same for
 /// all. A quarter and four times as many do the same within a factor of two of the error.
-const NOMINAL: f64 = 64.0;
+const NOMINAL: f64 = 160.0;
 
 /// The exchange of one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
