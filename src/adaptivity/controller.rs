@@ -395,7 +395,9 @@ impl AdaptivityController {
         let all = if corrected.rates.is_empty() {
             norm(&corrected.motion)
         } else {
-            (0..set.numbers().len()).map(|i| corrected.size(i)).fold(0.0, f64::hypot)
+            (0..set.numbers().len())
+                .map(|i| corrected.size(i))
+                .fold(0.0, f64::hypot)
         };
         let mut tail = 0.0_f64;
         for (i, &number) in set.numbers().iter().enumerate().rev() {

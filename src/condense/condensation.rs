@@ -263,7 +263,12 @@ impl Condensed {
         let mut reference_stiffness = reference_stiffness(&stiffness, &structural)?;
         let mut exchanges = try_vec(representatives.len(), None, "the contacts")?;
         if options.exchange && mode.is_none() {
-            select_exchanged(model, &assembled, (&stiffness, &mut reference_stiffness), &mut exchanges)?;
+            select_exchanged(
+                model,
+                &assembled,
+                (&stiffness, &mut reference_stiffness),
+                &mut exchanges,
+            )?;
         }
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = match (reference, mode) {

@@ -146,6 +146,9 @@ impl<'a> Orbit<'a> {
         } = self.motion;
         let mut found = Evaluation::force_alone(set, directions)?;
         let mut evaluator = Evaluator::force_alone(set, self.samples, std::iter::once(law))?;
+        if directions == 1 {
+            evaluator.prepare(set, packed, interrupt)?;
+        }
         evaluator.evaluate(law, set, packed, omega, &mut found, interrupt)?;
         let (slip, open) = (found.slip_fraction, found.open_fraction);
         let takes_nothing = match law.form() {

@@ -137,3 +137,53 @@ impl PiecewiseLinear for Saturated {
         Some(((self.stiffness * x).clamp(-self.limit, self.limit), state))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Saturated;
+    use crate::contact::law::PiecewiseLinear;
+    use crate::fourier::{HarmonicSet, TurningPoints, jet};
+    use crate::interrupt::Interrupt;
+    use std::f64::consts::{PI, TAU};
+
+    /// Pieces of motions that pass one end of the range, both within a rise, touch one, or stay, against values at many times.
+    #[test]
+    fn pieces_have_the_force_at_each_time() {
+        let law = Saturated {
+            stiffness: 2.0,
+            limit: 1.0,
+        };
+        let odd = HarmonicSet::excited(&[1], 5, true, true, false).unwrap();
+        let all = HarmonicSet::all(3).unwrap();
+        let cases: [(&HarmonicSet, &[f64]); 7] = [
+            (&odd, &[0.4, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            (&odd, &[0.9, 0.2, 0.0, 0.0, 0.0, 0.0]),
+            (&odd, &[0.9, 0.2, -0.5, 0.3, 0.2, 0.1]),
+            (&odd, &[0.5, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            (&all, &[0.45, 0.2, 0.1, 0.3, 0.0, 0.1, -0.2]),
+            (&all, &[-0.9, 0.1, 0.1, 0.0, 0.0, 0.0, 0.0]),
+            (&all, &[0.1, 3.0, 1.0, 0.0, 2.0, 0.5, 0.0]),
+        ];
+        for (set, motion) in cases {
+            let (mut extrema, mut pieces) = (Vec::with_capacity(64), Vec::with_capacity(64));
+            let none = Interrupt::none();
+            let mut search = TurningPoints::new(set).unwrap();
+            search.find(set, motion, &mut extrema, &none).unwrap();
+            law.pieces(set, motion, &extrema, &mut pieces, &none).unwrap();
+            let turn = if set.is_odd() { PI } else { TAU };
+            let covered: f64 = pieces.iter().map(|p| p.end - p.start).sum();
+            assert!((covered - turn).abs() < 1e-12, "{motion:?}: {covered}");
+            for piece in &pieces {
+                for share in [0.01, 0.3, 0.6, 0.99] {
+                    let x = jet(set, motion, piece.start + share * (piece.end - piece.start)).x;
+                    let (force, state) = law.at(x).unwrap();
+                    assert!((piece.slope * x + piece.offset - force).abs() < 1e-9, "{motion:?}");
+                    assert!(
+                        state == law.state(piece) || (force.abs() - 1.0).abs() < 1e-9,
+                        "{motion:?}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -80,7 +80,11 @@ impl AutomaticSystem {
         let groups = self.n / group.max(1);
         let pairs = (BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
         let part = first.max(group % 2 + 2 * pairs);
-        let direct_up_to = if operator.couples_all() { DIRECT_IF_COUPLED } else { DIRECT_UP_TO };
+        let direct_up_to = if operator.couples_all() {
+            DIRECT_IF_COUPLED
+        } else {
+            DIRECT_UP_TO
+        };
         (part < group && operator.coupled() > direct_up_to).then_some((group, part))
     }
 
