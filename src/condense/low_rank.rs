@@ -14,6 +14,7 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products::multiply;
 use crate::linalg::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
@@ -97,6 +98,9 @@ pub struct LowRank {
     d_inner: Vec<Complex64>,
     force: Vec<Complex64>,
     d_force: Vec<Complex64>,
+    /// ∂G′ beside G′, and e X above ∂e X: empty until a slope is made.
+    beside: Vec<Complex64>,
+    forces: Vec<Complex64>,
 }
 
 impl LowRank {
@@ -113,6 +117,8 @@ impl LowRank {
             d_inner: columns()?,
             force: columns()?,
             d_force: columns()?,
+            beside: Vec::new(),
+            forces: Vec::new(),
         })
     }
 
@@ -182,19 +188,31 @@ impl LowRank {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
-        for k in 0..=self.coordinates {
-            interrupt.check_before((2 * order * order) as u64)?;
-            let sums = &mut self.d_inner[k * order..(k + 1) * order];
-            for (p, sum) in sums.iter_mut().enumerate() {
-                *sum = plain.slope[k * rows + of.row_of(p)];
+        let columns = self.coordinates + 1;
+        if self.beside.is_empty() {
+            self.beside = try_vec(2 * order * order, Complex64::ZERO, CONTEXT)?;
+            self.forces = try_vec(2 * order * columns, Complex64::ZERO, CONTEXT)?;
+        }
+        interrupt.check_before((2 * order * order * columns) as u64)?;
+        let (slope, value) = self.beside.split_at_mut(order * order);
+        for q in 0..order {
+            let from = of.row_of(q) * rows;
+            for p in 0..order {
+                let entry = from + of.row_of(p);
+                slope[q * order + p] = plain.slope[entry];
+                value[q * order + p] = plain.value[entry];
             }
+        }
+        for (k, both) in self.forces.chunks_exact_mut(2 * order).enumerate() {
             for q in 0..order {
-                let d_e_x = of.d_entry(q, at.d_c) * self.inner[k * order + q];
-                let (force, from) = (self.force[k * order + q], of.row_of(q) * rows);
-                for (p, sum) in sums.iter_mut().enumerate() {
-                    let entry = from + of.row_of(p);
-                    *sum += plain.slope[entry] * force + plain.value[entry] * d_e_x;
-                }
+                both[q] = self.force[k * order + q];
+                both[order + q] = of.d_entry(q, at.d_c) * self.inner[k * order + q];
+            }
+        }
+        multiply(&self.beside, &self.forces, &mut self.d_inner, order);
+        for (k, sums) in self.d_inner.chunks_exact_mut(order).enumerate() {
+            for (p, sum) in sums.iter_mut().enumerate() {
+                *sum += plain.slope[k * rows + of.row_of(p)];
             }
         }
         self.lu.solve_columns(&mut self.d_inner, false, interrupt)?;
