@@ -11,7 +11,7 @@
 
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
-use crate::condense::exchange::select_exchanged;
+use crate::condense::exchanged_motions::select_exchanged;
 use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
 use crate::condense::memory_limit::{within_directly, within_for_contacts};

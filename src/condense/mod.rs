@@ -6,6 +6,7 @@ mod condensed;
 pub mod contact_classes;
 pub mod dynamic_stiffness;
 pub mod exchange;
+mod exchanged_motions;
 pub mod flexibility;
 pub mod frequency_cache;
 pub mod harmonic_block;

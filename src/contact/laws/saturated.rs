@@ -103,7 +103,7 @@ impl PiecewiseLinear for Saturated {
                 let tau = if (level - from.x) * (to.x - level) > 0.0 {
                     interrupt.check_before((VALUES_OF_A_CROSSING * motion.len()) as u64)?;
                     crossing(set, motion, from.tau, to.tau, from.x, to.x, level)
-                } else if from.x == level {
+                } else if (from.x - level).abs() <= (to.x - level).abs() {
                     from.tau
                 } else {
                     to.tau
