@@ -16,7 +16,7 @@
 //! H⁻¹. Cut off at H, x acts as a damper α/ω on the harmonics above: nothing rings, and the equations have one solution at
 //! any H, since the law and a structure that is passive are both monotone.
 //!
-//! The mean has s = [`CREEP`] instead of 0: a slider that slips has lost its mean place, and one that never slipped keeps it.
+//! The mean has s = 10⁻⁶ instead of 0: a slider that slips has lost its mean place, and one that never slipped keeps it.
 //!
 //! α only moves the truncation error. It is the geometric mean of 1/(h|G_h|) over a nominal number of harmonics of a mass that
 //! has the flexibility of the structure in the last of them, the best relaxation of such an iteration (Peaceman & Rachford).
