@@ -84,6 +84,11 @@ module hbvib
       HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15, &
       HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17, HBVIB_PARAMETER_VALUE = 18, HBVIB_D_AMPLITUDE = 19, &
       HBVIB_D_DAMPING = 20
+   ! hbvib_flexibility_way
+   integer(c_int32_t), parameter, public :: HBVIB_FLEXIBILITY_WAY_SINGLE_FREQUENCY = 0, HBVIB_FLEXIBILITY_WAY_MODES = 1, &
+      HBVIB_FLEXIBILITY_WAY_POLES = 2, HBVIB_FLEXIBILITY_WAY_NEAR_RIGID = 3, HBVIB_FLEXIBILITY_WAY_FEW = 4, &
+      HBVIB_FLEXIBILITY_WAY_SPARSE = 5, HBVIB_FLEXIBILITY_WAY_MANY = 6, HBVIB_FLEXIBILITY_WAY_UNSUITABLE = 7, &
+      HBVIB_FLEXIBILITY_WAY_DISAGREEMENT = 8
    ! hbvib_state
    integer(c_int32_t), parameter, public :: HBVIB_STATE_STICK = 0, HBVIB_STATE_SLIP = 1, HBVIB_STATE_OPEN = 2
    ! hbvib_contact_state
@@ -244,7 +249,7 @@ module hbvib
       integer(c_int64_t) :: held_by_contacts = 0, basis = 0
       real(c_double) :: certificate = 0
       integer(c_int64_t) :: response_harmonic = 0
-      integer(c_int32_t) :: guess_used = -1, reserved2 = 0
+      integer(c_int32_t) :: guess_used = -1, flexibility_way = 0
    end type hbvib_reduction
 
    !> Energies and losses of one point, in the units of the caller.

@@ -46,8 +46,8 @@
  *             environment (no traps, rounding to nearest, no flush to zero); the environment of the
  *             caller is restored for callbacks and on return.
  *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY; docs/memory.md tells the bytes
- *             that each call needs at most. 128 KiB of stack suffice for every function, 64 KiB for
- *             forced responses and modes of small models. After fork both processes may go on; a
+ *             that each call needs at most. 256 KiB of stack suffice for every function, 128 KiB
+ *             for models of less than 48 degrees of freedom. After fork both processes may go on; a
  *             handle that a call of another thread used at that time stays HBVIB_E_BUSY in the
  *             child. dlclose frees all memory of the library but handles that were not freed.
  *   safety    No panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.
@@ -1941,6 +1941,30 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch,
                              int64_t *point,
                              int64_t *count);
 
+/// Ways to the flexibility of the contacts along a branch, told by hbvib_branch_reduction with the
+/// reason.
+typedef enum {
+  /// Factors: at a single frequency they take the least time.
+  HBVIB_FLEXIBILITY_WAY_SINGLE_FREQUENCY = 0,
+  /// A sum over all modes of each wave.
+  HBVIB_FLEXIBILITY_WAY_MODES = 1,
+  /// A sum over all poles of each wave: damping couples the modes.
+  HBVIB_FLEXIBILITY_WAY_POLES = 2,
+  /// Factors at each frequency: modes lose the motion of a near-rigid contact.
+  HBVIB_FLEXIBILITY_WAY_NEAR_RIGID = 3,
+  /// Factors: damping couples the modes, and few degrees of freedom are factored as quickly.
+  HBVIB_FLEXIBILITY_WAY_FEW = 4,
+  /// Factors: damping couples the modes, and sparse matrices are factored as quickly.
+  HBVIB_FLEXIBILITY_WAY_SPARSE = 5,
+  /// Factors: there are too many degrees of freedom for all modes or poles.
+  HBVIB_FLEXIBILITY_WAY_MANY = 6,
+  /// Factors: the reference stiffness is not definite, or poles are badly conditioned; in a
+  /// nonlinear mode also where damping couples the modes.
+  HBVIB_FLEXIBILITY_WAY_UNSUITABLE = 7,
+  /// Factors: sums did not agree with them at an end of the range.
+  HBVIB_FLEXIBILITY_WAY_DISAGREEMENT = 8,
+} hbvib_flexibility_way;
+
 /// Size of the problem that was solved, and the parts that were removed from it before. Fill it by
 /// hbvib_reduction_init.
 typedef struct {
@@ -1989,8 +2013,9 @@ typedef struct {
   /// 1: the first point was found from the given guess. 0: there was a guess, and no solution was
   /// found from it; another way found the first point. -1: no guess was given.
   int32_t guess_used;
-  /// 0.
-  int32_t reserved2;
+  /// How the flexibility of the contacts is made along the branch, and why so: see
+  /// hbvib_flexibility_way.
+  int32_t flexibility_way;
 } hbvib_reduction;
 
 /// Fills a reduction with zeros.

@@ -159,6 +159,17 @@ typedef enum {
   HBVIB_D_DAMPING = 20
 } hbvib_field;
 typedef enum {
+  HBVIB_FLEXIBILITY_WAY_SINGLE_FREQUENCY = 0,
+  HBVIB_FLEXIBILITY_WAY_MODES = 1,
+  HBVIB_FLEXIBILITY_WAY_POLES = 2,
+  HBVIB_FLEXIBILITY_WAY_NEAR_RIGID = 3,
+  HBVIB_FLEXIBILITY_WAY_FEW = 4,
+  HBVIB_FLEXIBILITY_WAY_SPARSE = 5,
+  HBVIB_FLEXIBILITY_WAY_MANY = 6,
+  HBVIB_FLEXIBILITY_WAY_UNSUITABLE = 7,
+  HBVIB_FLEXIBILITY_WAY_DISAGREEMENT = 8
+} hbvib_flexibility_way;
+typedef enum {
   HBVIB_STATE_STICK = 0,
   HBVIB_STATE_SLIP = 1,
   HBVIB_STATE_OPEN = 2
@@ -454,7 +465,7 @@ struct hbvib_reduction {
   double certificate;
   int64_t response_harmonic;
   int32_t guess_used;
-  int32_t reserved2;
+  int32_t flexibility_way;
 };
 struct hbvib_energy {
   uint32_t struct_size;

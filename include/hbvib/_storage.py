@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable, NoReturn, Optional, TypeVar
 import numpy as np
 
 from ._branch import Branch
-from ._c import Field, ModeMultiple, Status
+from ._c import Field, FlexibilityWay, ModeMultiple, Status
 from ._errors import ArgumentError, OutOfRangeError, UnsupportedError
 from ._library import __version__
 from ._model import Model
@@ -202,7 +202,10 @@ class SavedBranch(Branch):
 
     @property
     def reduction(self) -> Reduction:
-        return Reduction(**self._about["reduction"])
+        values = dict(self._about["reduction"])
+        # Earlier files do not know it.
+        way = FlexibilityWay(values.pop("flexibility_way", values.pop("reserved2", 0)))
+        return Reduction(**values, flexibility_way=way)
 
     @property
     def mode_info(self) -> ModeInfo:

@@ -7,7 +7,7 @@ from typing import Any, Callable, Mapping, TypeVar
 
 import numpy as np
 
-from ._c import ModeMultiple, Part, Storage, Tangent
+from ._c import FlexibilityWay, ModeMultiple, Part, Storage, Tangent
 from ._convert import _array, _member, _numbers, _pointer, _real, _whole
 from ._library import lib, structs
 from ._types import (ContactSummary, Energy, JacobianGap, ModeInfo, ModePoint, Reduction, TimeInfo, VerificationInfo)
@@ -108,7 +108,7 @@ _RECORDS: dict[type, tuple[str, dict[str, Callable[..., Any]]]] = {
     ContactSummary: ("hbvib_contact_summary", {}),
     ModePoint: ("hbvib_mode_point", {}),
     ModeInfo: ("hbvib_mode_info", dict(multiple=ModeMultiple)),
-    Reduction: ("hbvib_reduction", dict(mean_carried=bool, even_removed=bool)),
+    Reduction: ("hbvib_reduction", dict(mean_carried=bool, even_removed=bool, flexibility_way=FlexibilityWay)),
     JacobianGap: ("hbvib_jacobian_gap", dict(tangent=Tangent)),
     TimeInfo: ("hbvib_time_info", {}),
     VerificationInfo: ("hbvib_verification", dict(same_solution=bool, marched=bool,

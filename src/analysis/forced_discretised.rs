@@ -9,6 +9,7 @@ use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::forced_equations::Equations;
 use crate::analysis::point_error::observed;
+use crate::condense::FlexibilityWay;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reduction, Reference, reduced_resonances};
 use crate::continuation::resolve::resolve;
@@ -92,6 +93,7 @@ pub(super) struct ForcedDiscretised<'a> {
     /// Newton iterations of the first point.
     first_iterations: usize,
     guess_used: Option<bool>,
+    flexibility_way: FlexibilityWay,
     /// Whether every contact was linear at the point of the curve recorded last.
     linear: bool,
     stability: Option<BranchStability<'a>>,
@@ -122,6 +124,7 @@ impl<'a> ForcedDiscretised<'a> {
         let estimates = solver.estimate_error || levels.is_automatic();
         let equations = boxed(|| Equations::new(resolution, &settings, response, guess, interrupt))?;
         Ok(Self {
+            flexibility_way: equations.problem.flexibility_way(),
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             linear_response: LinearResponse::new(stuck),
@@ -158,6 +161,11 @@ impl<'a> ForcedDiscretised<'a> {
         self.guess_used = used;
     }
 
+    /// How the flexibility is made along the branch, and why so.
+    pub fn flexibility_way(&self) -> FlexibilityWay {
+        self.flexibility_way
+    }
+
     /// The complete branch.
     pub fn finish(
         self: Box<Self>,
@@ -168,6 +176,7 @@ impl<'a> ForcedDiscretised<'a> {
     ) -> Result<Box<Branch>> {
         let reduction = Reduction {
             guess_used: self.guess_used,
+            flexibility_way: self.flexibility_way,
             ..self
                 .resolutions
                 .reduction(model, solver, self.recorder.branch().reduction())?

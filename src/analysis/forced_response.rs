@@ -15,7 +15,7 @@ use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::wave_cache::SharedWaves;
-use crate::condense::{Condensed, ModelCache, Reference};
+use crate::condense::{Condensed, FlexibilityWay, ModelCache, Reference};
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::{Detail, StepControl};
 use crate::continuation::{Point, Settings};
@@ -165,6 +165,10 @@ fn follow(
     let models = (&levels, &stuck, (&extended, &waves));
     let mut response =
         boxed(|| ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt))?;
+    hooks.log(
+        LogLevel::Info,
+        &sentence(response.flexibility_way(), response.branch().reduction().basis),
+    );
     let held = response.branch().reduction().held_by_contacts;
     let course = Course {
         settings,
@@ -250,6 +254,14 @@ pub(super) fn told_way(way: Way, has_guess: bool, hooks: &mut Hooks<'_>) -> bool
     }
     hooks.log(LogLevel::Info, way.sentence());
     used
+}
+
+/// The way to the flexibility, for the log.
+fn sentence(way: FlexibilityWay, basis: usize) -> String {
+    if basis == 0 {
+        return format!("flexibility of the contacts: {way}");
+    }
+    format!("flexibility of the contacts, on a basis of {basis} coordinates: {way}")
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and

@@ -9,6 +9,32 @@ use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::Status;
 
+/// Ways to the flexibility of the contacts along a branch, told by hbvib_branch_reduction with the
+/// reason.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum hbvib_flexibility_way {
+    /// Factors: at a single frequency they take the least time.
+    HBVIB_FLEXIBILITY_WAY_SINGLE_FREQUENCY = 0,
+    /// A sum over all modes of each wave.
+    HBVIB_FLEXIBILITY_WAY_MODES = 1,
+    /// A sum over all poles of each wave: damping couples the modes.
+    HBVIB_FLEXIBILITY_WAY_POLES = 2,
+    /// Factors at each frequency: modes lose the motion of a near-rigid contact.
+    HBVIB_FLEXIBILITY_WAY_NEAR_RIGID = 3,
+    /// Factors: damping couples the modes, and few degrees of freedom are factored as quickly.
+    HBVIB_FLEXIBILITY_WAY_FEW = 4,
+    /// Factors: damping couples the modes, and sparse matrices are factored as quickly.
+    HBVIB_FLEXIBILITY_WAY_SPARSE = 5,
+    /// Factors: there are too many degrees of freedom for all modes or poles.
+    HBVIB_FLEXIBILITY_WAY_MANY = 6,
+    /// Factors: the reference stiffness is not definite, or poles are badly conditioned; in a
+    /// nonlinear mode also where damping couples the modes.
+    HBVIB_FLEXIBILITY_WAY_UNSUITABLE = 7,
+    /// Factors: sums did not agree with them at an end of the range.
+    HBVIB_FLEXIBILITY_WAY_DISAGREEMENT = 8,
+}
+
 /// Size of the problem that was solved, and the parts that were removed from it before. Fill it by
 /// hbvib_reduction_init.
 #[repr(C)]
@@ -59,8 +85,9 @@ pub struct hbvib_reduction {
     /// 1: the first point was found from the given guess. 0: there was a guess, and no solution was
     /// found from it; another way found the first point. -1: no guess was given.
     pub guess_used: i32,
-    /// 0.
-    pub reserved2: i32,
+    /// How the flexibility of the contacts is made along the branch, and why so: see
+    /// hbvib_flexibility_way.
+    pub flexibility_way: i32,
 }
 
 unsafe impl VersionedStruct for hbvib_reduction {
@@ -88,7 +115,7 @@ unsafe impl VersionedStruct for hbvib_reduction {
             certificate: 0.0,
             response_harmonic: 0,
             guess_used: -1,
-            reserved2: 0,
+            flexibility_way: 0,
         }
     }
 }
@@ -135,6 +162,7 @@ pub unsafe extern "C" fn hbvib_branch_reduction(
             certificate: r.certificate,
             response_harmonic: r.response_harmonic as i64,
             guess_used: r.guess_used.map_or(-1, i32::from),
+            flexibility_way: r.flexibility_way as i32,
             ..hbvib_reduction::defaults()
         };
         unsafe { fill_out(out, value) };

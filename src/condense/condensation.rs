@@ -13,6 +13,7 @@ use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::exchanged_motions::select_exchanged;
 use crate::condense::flexibility::Workspace;
+use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
 use crate::condense::memory_limit::{within_directly, within_for_contacts};
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
@@ -111,11 +112,16 @@ impl Condensed {
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn attach_modes(&mut self, model: &Model, waves: &mut WaveCache, interrupt: &Interrupt<'_>) -> Result<()> {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
-        if (0..self.coordinates()).any(|c| self.is_near_rigid(c)) {
-            return Ok(());
-        }
+        let is_near_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
         for i in 0..self.blocks.len() {
-            self.blocks[i].source = waves.of(model, self, i, interrupt)?;
+            if is_near_rigid {
+                self.blocks[i].without_source = FlexibilityWay::NearRigid;
+                continue;
+            }
+            match waves.of(model, self, i, interrupt)? {
+                Ok(source) => self.blocks[i].source = Some(source),
+                Err(reason) => self.blocks[i].without_source = reason,
+            }
         }
         Ok(())
     }

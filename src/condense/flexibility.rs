@@ -6,12 +6,17 @@
 
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply};
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, boxed, try_push, try_vec};
+use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_products::multiply_adjoint;
+use crate::linalg::inner;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the contact flexibility";
+
+/// Columns of Z′ Z⁻¹ B at a time.
+const PRODUCTS: usize = 8;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
 /// the unit force of contact j, the last one the excitation; the last row is the response degree
@@ -56,7 +61,8 @@ pub struct Workspace {
     columns: Vec<Complex64>,
     /// Z⁻ᵀ Rᵀ, ndof rows.
     rows: Vec<Complex64>,
-    product: Vec<Complex64>,
+    /// Z′ Z⁻¹ B, some columns at a time.
+    products: Vec<Complex64>,
     /// Entries of Z′, made when slopes are first wanted.
     slope: Vec<Complex64>,
     load: Vec<Complex64>,
@@ -81,7 +87,7 @@ impl Workspace {
             responses,
             columns: Vec::new(),
             rows: Vec::new(),
-            product: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            products: Vec::new(),
             slope: Vec::new(),
             load: try_vec(n, Complex64::ZERO, CONTEXT)?,
             table: Table::new(condensed.coordinates())?,
@@ -149,6 +155,7 @@ impl Workspace {
         }
         if self.rows.is_empty() {
             self.rows = try_vec(self.columns.len(), Complex64::ZERO, CONTEXT)?;
+            self.products = try_vec(n * PRODUCTS.min(outputs), Complex64::ZERO, CONTEXT)?;
         }
         self.rows.fill(Complex64::ZERO);
         for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
@@ -162,56 +169,82 @@ impl Workspace {
             self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
         }
         fill_slope(block, (omega, self.damping), &mut self.slope[..entries]);
-        for (column, table) in self
-            .columns
-            .chunks_exact(n)
-            .zip(self.table.slope.chunks_exact_mut(outputs))
-        {
-            interrupt.check()?;
-            multiply(block, &self.slope[..entries], column, &mut self.product);
-            for (slope, solved) in table.iter_mut().zip(self.rows.chunks_exact(n)) {
-                let sum: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
-                *slope = -sum;
+        // −Rᵀ as the adjoint of −conj R.
+        for z in &mut self.rows {
+            *z = -z.conj();
+        }
+        let columns = self.columns.chunks(PRODUCTS * n);
+        for (columns, table) in columns.zip(self.table.slope.chunks_mut(PRODUCTS * outputs)) {
+            interrupt.check_before(8 * (outputs * columns.len()) as u64)?;
+            let products = &mut self.products[..columns.len()];
+            for (column, product) in columns.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
+                multiply(block, &self.slope[..entries], column, product);
             }
+            multiply_adjoint(&self.rows, products, table, n);
         }
         if let Some(unbalance) = &block.unbalance {
             // The last column is that of the excitation, whose own derivative is 2ω times the unbalance.
             let last = self.table.slope.len() - outputs;
             for (slope, solved) in self.table.slope[last..].iter_mut().zip(self.rows.chunks_exact(n)) {
-                let sum: Complex64 = solved.iter().zip(unbalance).map(|(a, b)| a * b).sum();
-                *slope += 2.0 * omega * sum;
+                *slope -= 2.0 * omega * inner(solved, unbalance);
             }
         }
         Ok(&self.table)
     }
 
-    /// H as [`Self::evaluate`] left it, its columns improved until only the rounding of the matrices is left.
+    /// The k-th column of H and of its slope after [`Self::evaluate`], improved until only the rounding of the matrices is left; the
+    /// slope where it is `wanted`.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
-    pub(super) fn refined(
+    pub(super) fn refined_column(
         &mut self,
-        condensed: &Condensed,
-        i: usize,
+        (condensed, i, k): (&Condensed, usize, usize),
         omega: f64,
+        wanted: bool,
         interrupt: &Interrupt<'_>,
-    ) -> Result<&[Complex64]> {
+    ) -> Result<[Vec<Complex64>; 2]> {
         let block = &condensed.blocks()[i];
-        let (n, outputs) = (condensed.ndof(), condensed.coordinates() + 1);
+        let n = condensed.ndof();
         let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
-        let tables = self.table.value.chunks_exact_mut(outputs);
+        let outputs = || try_vec(condensed.coordinates() + 1, Complex64::ZERO, CONTEXT);
+        let [mut value, mut slope] = [outputs()?, outputs()?];
         let dynamic = made(&mut self.dynamic, condensed)?;
-        for (k, (x, table)) in self.columns.chunks_exact_mut(n).zip(tables).enumerate() {
-            fill_load(block, k, omega, &mut self.load);
-            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
-            read(rows.clone(), x, table);
+        let at = (omega, self.damping);
+        let x = &mut self.columns[k * n..(k + 1) * n];
+        fill_load(block, k, omega, &mut self.load);
+        dynamic.refine(condensed, i, at, &self.load, x, interrupt)?;
+        read(rows.clone(), x, &mut value);
+        if wanted {
+            self.load.fill(Complex64::ZERO);
+            add_slope_product(
+                condensed,
+                i,
+                (omega.into(), self.damping),
+                Variable::Omega,
+                false,
+                x,
+                &mut self.load,
+            );
+            for load in &mut self.load {
+                *load = -*load;
+            }
+            if let Some(unbalance) = block.unbalance.as_ref().filter(|_| k == condensed.coordinates()) {
+                for (load, u) in self.load.iter_mut().zip(unbalance) {
+                    *load += 2.0 * omega * u;
+                }
+            }
+            let mut change = try_copy(&self.load, CONTEXT)?;
+            dynamic.solve(condensed, i, omega, &mut change, false, interrupt)?;
+            dynamic.refine(condensed, i, at, &self.load, &mut change, interrupt)?;
+            read(rows, &change, &mut slope);
         }
-        Ok(&self.table.value)
+        Ok([value, slope])
     }
 
     /// Motion under the excitation, after [`Self::evaluate`].
     pub(super) fn excited(&self) -> &[Complex64] {
-        &self.columns[self.columns.len() - self.product.len()..]
+        &self.columns[self.columns.len() - self.load.len()..]
     }
 
     /// Factors Z_κ of the i-th carried harmonic at `omega`, and replaces b by Z_κ⁻ᴴ b: the adjoint motion of a functional

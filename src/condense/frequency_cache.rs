@@ -1,11 +1,11 @@
 //! The flexibility tables of all carried harmonics at a frequency: sums over modes or poles where a sweep has them, by
 //! factorisation elsewhere.
 
-use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::single_contact_lanes::SingleContactLanes;
+use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use num_complex::Complex64;
@@ -14,10 +14,13 @@ use std::sync::Arc;
 /// Degrees of freedom up to which a table by factorisation has all digits, and takes little time.
 const FACTORISED_UP_TO: usize = 100;
 
-/// Relative error of sums.
+/// Relative error of sums, and of their slopes, which lead steps and change no solution.
 const TOLERANCE: f64 = 1e-11;
+const OF_SLOPES: f64 = 1e-9;
 
-/// Deviation of a sum from a refined solution, or of its slope from one by factorisation, over the error of that factorisation.
+const CONTEXT: &str = "the contact flexibility";
+
+/// Deviation of a sum from a refined solution over the error of a factorisation.
 const BEYOND_FACTORS: f64 = 10.0;
 
 /// Tables of all carried harmonics.
@@ -33,6 +36,8 @@ pub struct FrequencyCache {
     modal_slopes: bool,
     /// Whether a sweep uses other tables than those by factorisation.
     is_quicker: bool,
+    /// How the table of the lowest vibrating harmonic is made along it.
+    told: FlexibilityWay,
     /// Whether the structure is so stiff that factorisations lose the digits that sums have.
     is_stiff: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
@@ -59,7 +64,6 @@ impl FrequencyCache {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn new(condensed: &Condensed, response: usize, range: (f64, f64), interrupt: &Interrupt<'_>) -> Result<Self> {
-        const CONTEXT: &str = "the contact flexibility";
         let coordinates = condensed.coordinates();
         let (start, end) = range;
         let sweep = start.to_bits() != end.to_bits();
@@ -67,6 +71,7 @@ impl FrequencyCache {
         let mut tables = Vec::new();
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
         let (mut is_quicker, mut is_stiff) = (false, false);
+        let mut told = None;
         let (mut waves, mut modal_work) = (Vec::new(), ModalWork::default());
         let count = condensed.blocks().len();
         for i in 0..count {
@@ -80,6 +85,13 @@ impl FrequencyCache {
                 None
             };
             is_quicker |= from_modes.is_some();
+            if condensed.blocks()[i].number > 0 && told.is_none() {
+                told = Some(match (condensed.blocks()[i].flexibility_way(), &from_modes) {
+                    _ if !sweep => FlexibilityWay::SingleFrequency,
+                    (FlexibilityWay::Modes | FlexibilityWay::Poles, None) => FlexibilityWay::Disagreement,
+                    (known, _) => known,
+                });
+            }
             let from_modes = from_modes.map(|(table, error)| {
                 is_stiff |= error > TOLERANCE;
                 table
@@ -94,6 +106,7 @@ impl FrequencyCache {
             modal_work,
             modal_slopes: true,
             is_quicker,
+            told: told.unwrap_or_default(),
             is_stiff,
             constant,
             tabulated: None,
@@ -104,6 +117,12 @@ impl FrequencyCache {
                 Way::Quick
             },
         })
+    }
+
+    /// How the table of the lowest vibrating harmonic is made along a sweep, and why so.
+    #[must_use]
+    pub fn flexibility_way(&self) -> FlexibilityWay {
+        self.told
     }
 
     /// Selects tables by factorisation from now on, without slopes if these are expensive.
@@ -238,36 +257,50 @@ fn agreement(
         return Ok(Some(0.0));
     }
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;
-    let slope = if *checks_slope {
-        deviation(&table.slope, &exact.slope, outputs)
-    } else {
-        0.0
-    };
-    let value = deviation(&table.value, &exact.value, outputs);
-    *checks_slope = false;
-    if value.max(slope) <= TOLERANCE {
-        return Ok(Some(0.0));
+    let parts = [(&table.value, &exact.value), (&table.slope, &exact.slope)];
+    let checked = if core::mem::replace(checks_slope, false) { 2 } else { 1 };
+    let allowed = [TOLERANCE, OF_SLOPES];
+    let mut own = 0.0_f64;
+    let mut off = Vec::new();
+    for (part, (by_modes, exact)) in parts.into_iter().take(checked).enumerate() {
+        let (column, deviation) = worst_column(by_modes, exact, outputs);
+        // A factorisation of a stiff structure may be no better: that column shows.
+        if deviation.is_nan() || deviation > allowed[part] {
+            let of_column = column * outputs..(column + 1) * outputs;
+            try_push(&mut off, (part, column, try_copy(&exact[of_column], CONTEXT)?), CONTEXT)?;
+        }
     }
-    // A factorisation of a stiff structure may be no better.
-    let factorised = try_copy(&exact.value, "the contact flexibility")?;
-    let refined = workspace.refined(condensed, i, omega, interrupt)?;
-    let own = deviation(&factorised, refined, outputs);
-    let by_modes = deviation(&table.value, refined, outputs);
-    let are_close = by_modes.max(slope) <= TOLERANCE.max(BEYOND_FACTORS * own);
-    Ok((are_close && (slope + by_modes).is_finite()).then_some(own))
+    for (part, column, factorised) in off {
+        let refined = workspace.refined_column((condensed, i, column), omega, part == 1, interrupt)?;
+        let by_modes = [&table.value, &table.slope][part];
+        let of_factors = worst_column(&factorised, &refined[part], outputs).1;
+        let of_modes = worst_column(
+            &by_modes[column * outputs..(column + 1) * outputs],
+            &refined[part],
+            outputs,
+        )
+        .1;
+        if !(of_modes <= allowed[part].max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
+            return Ok(None);
+        }
+        if part == 0 {
+            own = of_factors;
+        }
+    }
+    Ok(Some(own))
 }
 
-/// Largest relative deviation of a column of a table of so many rows from that of another one.
-fn deviation(a: &[Complex64], b: &[Complex64], outputs: usize) -> f64 {
-    let mut largest = 0.0_f64;
-    for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
+/// The column of a table of so many rows with the largest relative deviation from that of another one, and the deviation.
+fn worst_column(a: &[Complex64], b: &[Complex64], outputs: usize) -> (usize, f64) {
+    let mut largest = (0, 0.0_f64);
+    for (k, (a, b)) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)).enumerate() {
         let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
         let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
-        if off > 0.0 || off.is_nan() {
-            largest = largest.max((off / size).sqrt());
-            if off.is_nan() || size == 0.0 {
-                return f64::INFINITY;
-            }
+        if off.is_nan() || (off > 0.0 && size == 0.0) {
+            return (k, f64::INFINITY);
+        }
+        if off > 0.0 && (off / size).sqrt() > largest.1 {
+            largest = (k, (off / size).sqrt());
         }
     }
     largest

@@ -1,6 +1,7 @@
 //! One harmonic of the condensed model: the matrices on one pattern, and the rows of the contacts.
 
 use crate::condense::contact_classes::ContactClasses;
+use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::sum_terms::Source;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -49,6 +50,8 @@ pub struct HarmonicBlock {
     pub artificial: Artificial,
     /// Modes or poles of the wave along a sweep, where the flexibility is a sum over them.
     pub source: Option<Source>,
+    /// Why there are none.
+    pub without_source: FlexibilityWay,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Amplitudes of the forces that grow with ω², over ω², likewise; `None` without such forces.
@@ -77,6 +80,16 @@ pub struct TiedValues {
 }
 
 impl HarmonicBlock {
+    /// The way to its flexibility, as far as it is known before a sweep.
+    #[must_use]
+    pub fn flexibility_way(&self) -> FlexibilityWay {
+        match &self.source {
+            Some(Source::Modes(_)) => FlexibilityWay::Modes,
+            Some(Source::Poles(_)) => FlexibilityWay::Poles,
+            None => self.without_source,
+        }
+    }
+
     /// A row over the independent degrees of freedom as one over the coordinates.
     ///
     /// # Errors
@@ -265,6 +278,7 @@ impl Matrices {
             mass: self.mass,
             artificial: Artificial::None,
             source: None,
+            without_source: FlexibilityWay::SingleFrequency,
             force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
             unbalance: None,
             tied: self.tied,

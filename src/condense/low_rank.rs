@@ -14,7 +14,7 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products::multiply;
+use crate::linalg::complex_products;
 use crate::linalg::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
@@ -98,9 +98,9 @@ pub struct LowRank {
     d_inner: Vec<Complex64>,
     force: Vec<Complex64>,
     d_force: Vec<Complex64>,
-    /// ∂G′ beside G′, and e X above ∂e X: empty until a slope is made.
-    beside: Vec<Complex64>,
-    forces: Vec<Complex64>,
+    /// e X and ∂e X at all rows of T′, of which that of the response has no force, and products with them.
+    forces: [Vec<Complex64>; 2],
+    products: [Vec<Complex64>; 2],
 }
 
 impl LowRank {
@@ -110,6 +110,7 @@ impl LowRank {
     /// `OutOfMemory`.
     pub fn new(coordinates: usize, order: usize) -> Result<Self> {
         let columns = || try_vec(order * (coordinates + 1), Complex64::ZERO, CONTEXT);
+        let wide = || try_vec((order + 1) * (coordinates + 1), Complex64::ZERO, CONTEXT);
         Ok(Self {
             coordinates,
             lu: Lu::new(order, coordinates + 1)?,
@@ -117,8 +118,8 @@ impl LowRank {
             d_inner: columns()?,
             force: columns()?,
             d_force: columns()?,
-            beside: Vec::new(),
-            forces: Vec::new(),
+            forces: [wide()?, wide()?],
+            products: [wide()?, wide()?],
         })
     }
 
@@ -148,7 +149,12 @@ impl LowRank {
         if slopes {
             self.differentiate(of, plain, at, interrupt)?;
             self.copy_rows(&self.d_inner, &mut table.slope);
-            self.add_response(of, (plain.slope, plain.rows), &self.force, &mut table.slope);
+            // ∂T′_B e X of the response is made with the others.
+            let outputs = self.coordinates + 1;
+            let made = self.products[0].chunks_exact(plain.rows);
+            for (to, product) in table.slope.chunks_exact_mut(outputs).zip(made) {
+                to[self.coordinates] += product[self.coordinates];
+            }
             self.add_response(of, (plain.value, plain.rows), &self.d_force, &mut table.slope);
         }
         Ok(())
@@ -188,31 +194,25 @@ impl LowRank {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
-        let columns = self.coordinates + 1;
-        if self.beside.is_empty() {
-            self.beside = try_vec(2 * order * order, Complex64::ZERO, CONTEXT)?;
-            self.forces = try_vec(2 * order * columns, Complex64::ZERO, CONTEXT)?;
-        }
-        interrupt.check_before((2 * order * order * columns) as u64)?;
-        let (slope, value) = self.beside.split_at_mut(order * order);
-        for q in 0..order {
-            let from = of.row_of(q) * rows;
-            for p in 0..order {
-                let entry = from + of.row_of(p);
-                slope[q * order + p] = plain.slope[entry];
-                value[q * order + p] = plain.value[entry];
+        let [forces, d_forces] = &mut self.forces;
+        let columns = self.force.chunks_exact(order).zip(self.inner.chunks_exact(order));
+        let wide = forces.chunks_exact_mut(rows).zip(d_forces.chunks_exact_mut(rows));
+        for ((force, x), (forces, d_forces)) in columns.zip(wide) {
+            for (p, (force, x)) in force.iter().zip(x).enumerate() {
+                forces[of.row_of(p)] = *force;
+                d_forces[of.row_of(p)] = of.d_entry(p, at.d_c) * x;
             }
         }
-        for (k, both) in self.forces.chunks_exact_mut(2 * order).enumerate() {
-            for q in 0..order {
-                both[q] = self.force[k * order + q];
-                both[order + q] = of.d_entry(q, at.d_c) * self.inner[k * order + q];
-            }
+        let [by_slope, by_value] = &mut self.products;
+        for (table, forces, out) in [(plain.slope, &*forces, by_slope), (plain.value, &*d_forces, by_value)] {
+            interrupt.check_before((2 * rows * forces.len()) as u64)?;
+            complex_products::multiply(table, forces, out, rows);
         }
-        multiply(&self.beside, &self.forces, &mut self.d_inner, order);
+        let [by_slope, by_value] = &self.products;
         for (k, sums) in self.d_inner.chunks_exact_mut(order).enumerate() {
             for (p, sum) in sums.iter_mut().enumerate() {
-                *sum += plain.slope[k * rows + of.row_of(p)];
+                let at = k * rows + of.row_of(p);
+                *sum = plain.slope[at] + by_slope[at] + by_value[at];
             }
         }
         self.lu.solve_columns(&mut self.d_inner, false, interrupt)?;

@@ -8,6 +8,7 @@ pub mod dynamic_stiffness;
 pub mod exchange;
 mod exchanged_motions;
 pub mod flexibility;
+mod flexibility_way;
 pub mod frequency_cache;
 pub mod harmonic_block;
 mod krylov_wave;
@@ -43,6 +44,7 @@ mod wave_poles;
 mod wave_reduction;
 
 pub use condensed::{Condensed, Reference};
+pub use flexibility_way::FlexibilityWay;
 pub use harmonic_block::{Artificial, HarmonicBlock};
 pub use model_cache::ModelCache;
 pub use reduced_resonances::reduced_resonances;

@@ -427,7 +427,7 @@ mod tests {
 
     fn table(model: &Model, condensed: &Condensed, i: usize, tolerance: f64) -> ModalTable {
         let modes = WaveCache::default().of(model, condensed, i, &Interrupt::none());
-        let rows = ModalRows::new((condensed, i, RESPONSE), modes.unwrap().unwrap());
+        let rows = ModalRows::new((condensed, i, RESPONSE), modes.unwrap().ok().unwrap());
         ModalTable::new((condensed, i), Arc::new(rows.unwrap()), tolerance).unwrap()
     }
 

@@ -12,6 +12,7 @@ use crate::condense::sum_terms::{Denominator, Source};
 use crate::condense::wave_modes::NEAR_RESONANCE;
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::complex_columns;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -78,7 +79,7 @@ impl Work {
         Ok(Self {
             inverse: zeros(n)?,
             slopes: zeros(n)?,
-            weighted: zeros(rows * n)?,
+            weighted: zeros(rows * (n + 1) + n)?,
             plain: zeros(rows * rows)?,
             d_plain: zeros(rows * rows)?,
             low_rank: LowRank::new(table.rows.coordinates(), table.coefficients.len())?,
@@ -208,21 +209,22 @@ impl ModalTable {
         if self.force.is_empty() && self.unbalance.is_empty() {
             return;
         }
-        for (k, left) in self.rows.left().chunks_exact(rows).enumerate() {
-            let part = |of: &[Complex64]| of.get(k).copied().unwrap_or_default();
-            let unbalance = part(&self.unbalance);
-            let force = part(&self.force) + unbalance * (omega * omega);
-            let weighted = force * work.inverse[k];
-            for (out, left) in value.iter_mut().zip(left) {
-                *out += left * weighted;
-            }
-            if slopes {
-                let weighted = force * work.slopes[k] + 2.0 * omega * unbalance * work.inverse[k];
-                for (out, left) in slope.iter_mut().zip(left) {
-                    *out += left * weighted;
-                }
-            }
+        let n = self.rows.terms();
+        let (weights, memory) = work.weighted.split_at_mut(n);
+        let part = |of: &[Complex64], k: usize| of.get(k).copied().unwrap_or_default();
+        let force = |k: usize| part(&self.force, k) + part(&self.unbalance, k) * (omega * omega);
+        for (k, (weight, inverse)) in weights.iter_mut().zip(&work.inverse).enumerate() {
+            *weight = force(k) * inverse;
         }
+        complex_columns::multiply(self.rows.left(), rows, weights, value, &mut memory[..rows]);
+        if !slopes {
+            return;
+        }
+        let factors = work.inverse.iter().zip(&work.slopes);
+        for (k, (weight, (inverse, d_inverse))) in weights.iter_mut().zip(factors).enumerate() {
+            *weight = force(k) * d_inverse + 2.0 * omega * part(&self.unbalance, k) * inverse;
+        }
+        complex_columns::multiply(self.rows.left(), rows, weights, slope, &mut memory[..rows]);
     }
 
     /// The table from T′ with the low-rank term.

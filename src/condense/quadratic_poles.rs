@@ -15,13 +15,15 @@
 //!
 //! With a speed Ω = pω the matrices of ω² join M: M − p²K₁/h² − ipG/h.
 
-use crate::condense::Condensed;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock};
 use crate::condense::refined_modes::{self, dense};
 use crate::condense::wave_poles::{Key, WavePoles};
+use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::cholesky::entries_by_degrees;
 use crate::linalg::complex_products::{self, multiply_adjoint};
+use crate::linalg::factor::is_dense;
 use crate::linalg::general_eigen;
 use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
@@ -37,6 +39,14 @@ const MOST_POLE_WORK: f64 = 900.0 * 900.0 * 900.0;
 /// Work of a complex matrix over that of a real one.
 const WORK_OF_COMPLEX: f64 = 3.0;
 
+/// Points of a sweep for which the poles must pay.
+const POINTS: f64 = 300.0;
+
+/// Operations of the QR iteration over order³, and of a sparse factorisation, where it takes as long as so many, over the entries of
+/// its factor.
+const OPERATIONS_OF_POLES: f64 = 25.0;
+const OPERATIONS_OF_ENTRY: f64 = 1000.0;
+
 /// μ over the largest below which a motion has no mass.
 const MASSLESS_MOTION: f64 = 1e-14;
 
@@ -49,19 +59,26 @@ const MOST_CONDITION: f64 = 1e4;
 /// Largest relative change of a pole by its Newton step.
 const MOST_CHANGE: f64 = 1e-6;
 
-/// The poles of the i-th carried harmonic; `None` where they are too many or badly conditioned, or the structure can move without
-/// the reference stiffness.
+/// The poles of the i-th carried harmonic, or why it has none.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
-pub(super) fn poles(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
+pub(super) fn poles(
+    condensed: &Condensed,
+    i: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<core::result::Result<WavePoles, FlexibilityWay>> {
+    const UNSUITABLE: FlexibilityWay = FlexibilityWay::Unsuitable;
     let block = &condensed.blocks()[i];
     let is_forced = matches!(block.artificial, Artificial::None);
-    if block.number == 0 || !is_forced || !is_small(condensed.ndof(), block) {
-        return Ok(None);
+    if block.number == 0 || !is_forced {
+        return Ok(Err(UNSUITABLE));
+    }
+    if let Some(reason) = factors_are_quicker(condensed, block)? {
+        return Ok(Err(reason));
     }
     let Some(wave) = Undamped::new(condensed, i, interrupt)? else {
-        return Ok(None);
+        return Ok(Err(UNSUITABLE));
     };
     let key = Key {
         matrices: (
@@ -71,7 +88,7 @@ pub(super) fn poles(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) 
         ),
         tied: block.tied.as_ref().map(|_| block.number),
     };
-    wave.poles(key, interrupt)
+    Ok(wave.poles(key, interrupt)?.ok_or(UNSUITABLE))
 }
 
 /// Whether these are the poles of a block.
@@ -88,16 +105,31 @@ pub(super) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
         && is_same(damping, &block.damping)
 }
 
-/// Whether the poles of a wave of so many degrees of freedom take no second.
-fn is_small(n: usize, block: &HarmonicBlock) -> bool {
+/// Why the poles of a wave take more than a second, or longer than the factorisations of a sweep, if they do.
+fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<FlexibilityWay>> {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
     let is_real = block.structural.is_none()
         && block.tied.is_none()
         && real(&block.stiffness)
         && real(&block.damping)
         && real(&block.mass);
-    let order = 2.0 * n as f64;
-    order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX } <= MOST_POLE_WORK
+    let order = 2.0 * condensed.ndof() as f64;
+    let work = order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX };
+    if work > MOST_POLE_WORK {
+        return Ok(Some(FlexibilityWay::Many));
+    }
+    if is_dense(&block.reference)? {
+        return Ok(None);
+    }
+    // A wave serves all harmonics unless their speeds differ.
+    let harmonics = if block.tied.is_none() {
+        condensed.blocks().len()
+    } else {
+        1
+    };
+    let entries = entries_by_degrees(&block.reference)? as f64;
+    let of_factors = POINTS * harmonics as f64 * OPERATIONS_OF_ENTRY * entries;
+    Ok((OPERATIONS_OF_POLES * work > of_factors).then_some(FlexibilityWay::Sparse))
 }
 
 /// A wave in its undamped modes.
@@ -519,6 +551,6 @@ mod tests {
         model.add_force(0, 1, Complex64::ONE).unwrap();
         let condensed = condensed(&model, Reference::Stuck);
         let i = condensed.blocks().iter().position(|block| block.number == 1).unwrap();
-        assert!(poles(&condensed, i, &Interrupt::none()).unwrap().is_none());
+        assert!(poles(&condensed, i, &Interrupt::none()).unwrap().is_err());
     }
 }

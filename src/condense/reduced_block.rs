@@ -2,6 +2,7 @@
 
 use crate::condense::HarmonicBlock;
 use crate::condense::contact_classes::ContactClasses;
+use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::harmonic_block::Artificial;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::sparse::Csc;
@@ -90,6 +91,7 @@ pub(super) fn reduced_block(
         mass: Arc::new(mass),
         artificial: Artificial::None,
         source: None,
+        without_source: FlexibilityWay::SingleFrequency,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         unbalance: None,
         tied: None,

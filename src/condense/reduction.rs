@@ -1,6 +1,6 @@
 //! The parts of the problem that the condensation removed.
 
-use crate::condense::Condensed;
+use crate::condense::{Condensed, FlexibilityWay, HarmonicBlock};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -42,6 +42,8 @@ pub struct Reduction {
     pub response_harmonic: usize,
     /// Whether the first point was found from the given guess; `None` without one.
     pub guess_used: Option<bool>,
+    /// How the flexibility of the contacts is made, and why so.
+    pub flexibility_way: FlexibilityWay,
 }
 
 impl Condensed {
@@ -56,6 +58,12 @@ impl Condensed {
             0
         };
         Ok(self.reduction_with(model, options, held_by_contacts))
+    }
+
+    /// The way of the lowest vibrating harmonic, as far as it is known before a sweep.
+    fn flexibility_way(&self) -> FlexibilityWay {
+        let vibrating = self.blocks.iter().find(|block| block.number > 0);
+        vibrating.map_or(FlexibilityWay::SingleFrequency, HarmonicBlock::flexibility_way)
     }
 
     /// The same with the number of rigid-body modes that contacts alone hold.
@@ -78,6 +86,7 @@ impl Condensed {
             certificate: self.certificate(),
             response_harmonic: self.set.numbers().get(self.set.watched()).copied().unwrap_or(0),
             guess_used: None,
+            flexibility_way: self.flexibility_way(),
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::{self, multiply_adjoint};
 use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::quadratic::{self, ComplexSum, terms};
+use crate::linalg::quadratic::{self, ComplexSum, terms_of_moduli};
 use crate::linalg::sparse::Csc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -87,12 +87,16 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
     let x = vectors.as_mut_slice();
     let (mut strained, mut moved) = (zeros()?, zeros()?);
     let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
+    let (sizes, mut size) = (moduli(&stiffness.values)?, try_vec(n, 0.0, CONTEXT)?);
     let columns = strained.chunks_exact_mut(n).zip(moved.chunks_exact_mut(n));
     for (x, (strained, moved)) in x.chunks_exact(n).zip(columns) {
         interrupt.check_before(20 * stiffness.values.len() as u64)?;
         multiply(stiffness, mass, x, moved);
+        for (to, x) in size.iter_mut().zip(x) {
+            *to = modulus(x);
+        }
         // φᴴ K φ is 1.
-        if terms(stiffness, x) > SOFT_TERMS {
+        if terms_of_moduli(stiffness, &sizes, &size) > SOFT_TERMS {
             sums.fill(ComplexSum::default());
             quadratic::product(stiffness, &stiffness.values, x, &mut sums);
             for (to, sum) in strained.iter_mut().zip(&sums) {
@@ -138,6 +142,19 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
         *x += change;
     }
     Ok(largest)
+}
+
+/// |z|, without care for numbers whose square is out of range.
+fn modulus(z: &Complex64) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
+fn moduli(of: &[Complex64]) -> Result<Vec<f64>> {
+    let mut found = try_vec(of.len(), 0.0, CONTEXT)?;
+    for (to, z) in found.iter_mut().zip(of) {
+        *to = modulus(z);
+    }
+    Ok(found)
 }
 
 /// y ← A x for values on a pattern.

@@ -70,6 +70,7 @@ impl HarmonicBlock {
             mass: Arc::new(mass),
             artificial: Artificial::None,
             source: None,
+            without_source: self.without_source,
             force: try_copy(&self.force, CONTEXT)?,
             rows: self.rows.clone(),
             structural_rows: try_copy(&self.structural_rows, CONTEXT)?,

@@ -7,7 +7,7 @@ use crate::condense::refined_modes;
 use crate::condense::sum_terms::Source;
 use crate::condense::wave_modes::{WaveModes, proportional};
 use crate::condense::wave_poles::WavePoles;
-use crate::condense::{Condensed, HarmonicBlock};
+use crate::condense::{Condensed, FlexibilityWay, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
@@ -28,6 +28,9 @@ const CONTEXT: &str = "the modes of the structure";
 /// the small thread of a small model has.
 const POLES_FROM: usize = 49;
 
+/// The terms of a sum, or why there is none.
+type Found = core::result::Result<Source, FlexibilityWay>;
+
 /// The waves met so far.
 #[derive(Default)]
 pub struct WaveCache {
@@ -35,9 +38,9 @@ pub struct WaveCache {
     /// Matrices of blocks whose modes were asked for, which other blocks share.
     blocks: Vec<KnownBlock>,
     poles: Vec<Arc<WavePoles>>,
-    /// Whether a wave without modes, and one without poles, was met: there are no others then.
+    /// Whether a wave without modes was met, and why one has no poles: there are no others then.
     has_no_modes: bool,
-    has_no_poles: bool,
+    without_poles: Option<FlexibilityWay>,
 }
 
 /// Z_κ at rest and M of blocks, with the modes of their wave.
@@ -70,13 +73,7 @@ impl SharedWaves {
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn of(
-        &self,
-        model: &Model,
-        condensed: &Condensed,
-        i: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Source>> {
+    pub fn of(&self, model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Found> {
         let mut waves = self.waves.take();
         let found = waves.of(model, condensed, i, interrupt);
         self.waves.set(waves);
@@ -114,44 +111,41 @@ impl WaveCache {
     /// Whether no wave has modes or poles.
     #[must_use]
     pub fn is_refused(&self) -> bool {
-        self.has_no_modes && self.has_no_poles
+        self.has_no_modes && self.without_poles.is_some()
     }
 
-    /// The modes of the i-th carried harmonic, or where damping couples them its poles; `None` for the mean, and where the wave
-    /// can move without the reference stiffness or has too many degrees of freedom.
+    /// The modes of the i-th carried harmonic, or where damping couples them its poles, or why it has none.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn of(
-        &mut self,
-        model: &Model,
-        condensed: &Condensed,
-        i: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Source>> {
+    pub fn of(&mut self, model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Found> {
         let block = &condensed.blocks()[i];
         if block.number == 0 {
-            return Ok(None);
+            return Ok(Err(FlexibilityWay::SingleFrequency));
         }
         if !self.has_no_modes
             && let Some(modes) = self.modes(model, condensed, i, interrupt)?
         {
-            return Ok(Some(Source::Modes(modes)));
+            return Ok(Ok(Source::Modes(modes)));
         }
-        if self.has_no_poles || condensed.ndof() < POLES_FROM {
-            self.has_no_poles = true;
-            return Ok(None);
+        if condensed.ndof() < POLES_FROM {
+            self.without_poles = Some(FlexibilityWay::Few);
+        }
+        if let Some(reason) = self.without_poles {
+            return Ok(Err(reason));
         }
         if let Some(poles) = self.poles.iter().find(|poles| quadratic_poles::are_of(poles, block)) {
-            return Ok(Some(Source::Poles(Arc::clone(poles))));
+            return Ok(Ok(Source::Poles(Arc::clone(poles))));
         }
-        let Some(poles) = quadratic_poles::poles(condensed, i, interrupt)? else {
-            self.has_no_poles = true;
-            return Ok(None);
+        let poles = match quadratic_poles::poles(condensed, i, interrupt)? {
+            Ok(poles) => Arc::new(poles),
+            Err(reason) => {
+                self.without_poles = Some(reason);
+                return Ok(Err(reason));
+            }
         };
-        let poles = Arc::new(poles);
         try_push(&mut self.poles, Arc::clone(&poles), CONTEXT)?;
-        Ok(Some(Source::Poles(poles)))
+        Ok(Ok(Source::Poles(poles)))
     }
 
     /// The modes of a harmonic; `None` where the damping is not proportional.

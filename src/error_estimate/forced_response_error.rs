@@ -296,14 +296,14 @@ impl<'a> ForcedEstimator<'a> {
                 Some(table) => Some(table.rows()),
                 None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
                 None => match self.waves.of(self.model, condensed, i, self.interrupt)? {
-                    Some(modes) => {
+                    Ok(modes) => {
                         let rows = self.waves.rows((condensed, i, self.response), modes)?;
                         if !self.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
                             try_push(&mut self.rows, Arc::clone(&rows), CONTEXT)?;
                         }
                         Some(rows)
                     }
-                    None => None,
+                    Err(_) => None,
                 },
             };
             let table = rows.map(|rows| ModalTable::new((condensed, i), rows, tolerance));

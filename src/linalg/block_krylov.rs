@@ -13,6 +13,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::COPIED_UP_TO;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::compensated_product::Rows;
+use crate::linalg::hermitian;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::{Entry, Triangle};
 use faer::linalg::matmul::matmul;
@@ -277,18 +278,18 @@ impl<T: Entry> BlockKrylov<T> {
         let first = self.order();
         let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
         self.weigh(&block, &mut weighted, interrupt)?;
-        let orthonormal = |block: &mut Vec<T>, weighted: &mut Vec<T>, drops| -> Result<()> {
-            let kept = orthonormalise((block, weighted), n, sizes, drops, interrupt)?;
-            block.truncate(kept * n);
-            weighted.truncate(kept * n);
-            Ok(())
-        };
-        orthonormal(&mut block, &mut weighted, true)?;
+        let kept = orthonormalise((&mut block, &mut weighted), n, sizes, interrupt)?;
+        block.truncate(kept * n);
+        weighted.truncate(kept * n);
         // The rest of a small part has lost the digits by which it was small.
         self.weigh(&block, &mut weighted, interrupt)?;
         self.project(&mut block, &weighted, interrupt)?;
         self.weigh(&block, &mut weighted, interrupt)?;
-        orthonormal(&mut block, &mut weighted, false)?;
+        if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
+            let sizes = try_vec(kept, 1.0, CONTEXT)?;
+            let kept = orthonormalise((&mut block, &mut weighted), n, &sizes, interrupt)?;
+            block.truncate(kept * n);
+        }
         self.basis
             .try_reserve_exact(block.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
@@ -428,53 +429,110 @@ fn conjugate_sum<T: Entry>(u: &[T], w: &[T]) -> T {
     sum
 }
 
+/// Orthonormalises columns B that nearly are: with Bᴴ A B = L Lᴴ the columns of B L⁻ᴴ. `false` where they are not independent.
+fn orthonormalise_again<T: Entry>(
+    block: &mut Vec<T>,
+    weighted: &[T],
+    n: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let columns = block.len() / n.max(1);
+    if columns == 0 {
+        return Ok(true);
+    }
+    let mut gram = try_vec(columns * columns, T::NONE, CONTEXT)?;
+    interrupt.check_before((4 * columns * block.len()) as u64)?;
+    adjoint_product(block, weighted, n, &mut gram);
+    let mut l = try_vec(columns * columns, Complex64::ZERO, CONTEXT)?;
+    let mut turn = try_vec(columns * columns, Complex64::ZERO, CONTEXT)?;
+    for (to, from) in l.iter_mut().zip(&gram) {
+        *to = from.complex();
+    }
+    for k in 0..columns {
+        turn[k * columns + k] = Complex64::ONE;
+    }
+    if !hermitian::cholesky(&mut l, columns, interrupt)? {
+        return Ok(false);
+    }
+    hermitian::solve_triangular(&l, columns, true, &mut turn, interrupt)?;
+    for (to, from) in gram.iter_mut().zip(&turn) {
+        *to = T::of(*from);
+    }
+    let mut turned = try_vec(block.len(), T::NONE, CONTEXT)?;
+    interrupt.check_before((4 * columns * block.len()) as u64)?;
+    matmul(
+        MatMut::from_column_major_slice_mut(&mut turned, n, columns),
+        Accum::Replace,
+        MatRef::from_column_major_slice(block, n, columns),
+        MatRef::from_column_major_slice(&gram, columns, columns),
+        T::of(Complex64::ONE),
+        Par::Seq,
+    );
+    *block = turned;
+    Ok(true)
+}
+
+/// Share of the square of a norm that is left, below which the square is computed anew.
+const DOWNDATED: f64 = 1e-4;
+
 /// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns
 /// their number.
 fn orthonormalise<T: Entry>(
     (block, weighted): (&mut [T], &mut [T]),
     n: usize,
     sizes: &[f64],
-    drops: bool,
     interrupt: &Interrupt<'_>,
 ) -> Result<usize> {
     let n = n.max(1);
     let columns = block.len() / n;
     let mut sizes = try_copy(sizes, CONTEXT)?;
+    // Squares of the norms, and what they were when they were computed.
+    let mut squares = try_vec(columns, (0.0, 0.0), CONTEXT)?;
+    for ((square, u), w) in squares
+        .iter_mut()
+        .zip(block.chunks_exact(n))
+        .zip(weighted.chunks_exact(n))
+    {
+        let own = dot(u, w).re.max(0.0);
+        *square = (own, own);
+    }
     for k in 0..columns {
-        interrupt.check_before((8 * (columns - k) * n) as u64)?;
+        interrupt.check_before((6 * (columns - k) * n) as u64)?;
         // The largest share that is still new.
-        let mut best = (k, -1.0);
-        for (j, size) in sizes.iter().enumerate().take(columns).skip(k) {
-            let at = j * n..(j + 1) * n;
-            let share = dot(&block[at.clone()], &weighted[at]).re.max(0.0).sqrt() / size.max(f64::MIN_POSITIVE);
-            if share > best.1 {
-                best = (j, share);
-            }
-        }
-        if drops && best.1 <= EXHAUSTED {
+        let share = |j: usize| squares[j].0.sqrt() / sizes[j].max(f64::MIN_POSITIVE);
+        let best = (k..columns).fold(k, |best, j| if share(j) > share(best) { j } else { best });
+        if share(best) <= EXHAUSTED {
             return Ok(k);
         }
-        if best.0 != k {
+        if best != k {
             for x in [&mut *block, &mut *weighted] {
-                let (left, right) = x.split_at_mut(best.0 * n);
+                let (left, right) = x.split_at_mut(best * n);
                 left[k * n..(k + 1) * n].swap_with_slice(&mut right[..n]);
             }
-            sizes.swap(k, best.0);
+            sizes.swap(k, best);
+            squares.swap(k, best);
         }
         let (u, later) = block[k * n..].split_at_mut(n);
         let (w, later_weighted) = weighted[k * n..].split_at_mut(n);
         let norm = dot(u, w).re.max(0.0).sqrt();
-        if norm == 0.0 {
+        if norm <= EXHAUSTED * sizes[k] {
             return Ok(k);
         }
         for x in u.iter_mut().chain(w.iter_mut()) {
             *x = x.scaled(1.0 / norm);
         }
-        for (x, y) in later.chunks_exact_mut(n).zip(later_weighted.chunks_exact_mut(n)) {
-            let c = T::of(-dot(u, y));
+        let columns = later.chunks_exact_mut(n).zip(later_weighted.chunks_exact_mut(n));
+        for ((x, y), square) in columns.zip(&mut squares[k + 1..]) {
+            let part = dot(u, y);
+            let c = T::of(-part);
             for ((x, &u), (y, &w)) in x.iter_mut().zip(&*u).zip(y.iter_mut().zip(&*w)) {
                 x.add_product(c, u);
                 y.add_product(c, w);
+            }
+            square.0 -= part.norm_sqr();
+            if square.0 <= DOWNDATED * square.1 {
+                let own = dot(x, y).re.max(0.0);
+                *square = (own, own);
             }
         }
     }

@@ -4,6 +4,7 @@ use crate::error::{Result, Status, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::hermitian;
 use crate::linalg::lu::Lu;
+use crate::linalg::real_pencil;
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use num_complex::Complex64;
 
@@ -131,6 +132,12 @@ pub fn with_definite_mass(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Pairs>> {
     let n = k.nrows();
+    // On a small stack blocked products of real numbers have no room.
+    if n > SMALL_UP_TO
+        && let Some((values, vectors)) = real_pencil::with_definite_mass(k, m, regular, interrupt)?
+    {
+        return Ok(Some(Pairs { values, vectors }));
+    }
     let mut l = copy(m)?;
     if !hermitian::cholesky(l.as_mut_slice(), n, interrupt)? {
         return Ok(None);

@@ -13,10 +13,11 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par};
 use num_complex::Complex64;
 
-/// Order up to which a dense factorisation is quicker, whatever the pattern.
-const DENSE_UP_TO: usize = 200;
+/// Order up to which a dense factorisation is quicker, whatever the pattern, and up to which the fill decides.
+const DENSE_UP_TO: usize = 24;
+const BY_FILL_UP_TO: usize = 200;
 
-/// Share of stored entries above which a larger matrix is treated as dense.
+/// Share of the entries of a factor up to that order, or of the stored ones of a larger matrix, above which it is treated as dense.
 const DENSE_FILL: f64 = 0.1;
 
 /// Right-hand sides of a sparse matrix that are solved between two checks of the interrupt.
@@ -53,7 +54,7 @@ impl Factor {
     /// `OutOfMemory`.
     pub fn new(a: &Csc, columns: usize) -> Result<Self> {
         let n = a.rows;
-        let kind = if is_dense(a) {
+        let kind = if is_dense(a)? {
             Kind::Dense(Lu::new(n, columns)?)
         } else {
             Kind::Sparse(Box::new(Sparse {
@@ -77,7 +78,7 @@ impl Factor {
     /// # Errors
     /// `OutOfMemory`.
     pub fn bytes(a: &Csc) -> Result<usize> {
-        let entries = if is_dense(a) {
+        let entries = if is_dense(a)? {
             a.rows * a.rows
         } else {
             2 * cholesky::entries_by_degrees(a)?
@@ -128,9 +129,15 @@ impl Factor {
 }
 
 /// Whether a matrix is treated as dense.
-fn is_dense(a: &Csc) -> bool {
-    let n = a.rows as f64;
-    a.rows <= DENSE_UP_TO || a.values.len() as f64 > DENSE_FILL * n * n
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn is_dense(a: &Csc) -> Result<bool> {
+    let most = DENSE_FILL * (a.rows as f64).powi(2);
+    if a.rows <= DENSE_UP_TO || a.values.len() as f64 > most {
+        return Ok(true);
+    }
+    Ok(a.rows <= BY_FILL_UP_TO && cholesky::entries_by_degrees(a)? as f64 > most)
 }
 
 impl Sparse {

@@ -1,23 +1,27 @@
-//! The lowest eigenpairs of a large sparse pencil K φ = λ M φ by shift-invert Lanczos.
+//! The lowest eigenpairs of a large sparse pencil K φ = λ M φ, or those of an interval, by shift-invert Lanczos.
 //!
 //! The operator (K + σM)⁻¹ M is self-adjoint in the M-inner product; its largest eigenvalues 1/(λ + σ) belong to
-//! the lowest λ (Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2). The basis is kept orthogonal in
-//! full. Repeated eigenvalues need a starting vector for each copy: after convergence the search starts again,
-//! orthogonal to the vectors found, until it finds no larger eigenvalue.
+//! the lowest λ, or those largest by modulus to the λ next to a shift −σ among them (Ericsson & Ruhe 1980,
+//! doi:10.1090/S0025-5718-1980-0583502-2). The basis is kept orthogonal in full. Repeated eigenvalues need a starting
+//! vector for each copy: after convergence the search starts again, orthogonal to the vectors found, until it finds no
+//! larger eigenvalue.
 
-use crate::error::{Result, check_memory, fail, try_push, try_vec};
+use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::cholesky::Definite;
 use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::factor::Factor;
-use crate::linalg::hermitian;
-use crate::linalg::sparse::{Csc, Form};
-use crate::linalg::{inner, remove};
-use nalgebra::{DMatrix, SymmetricEigen};
+use crate::linalg::shifted_inverse::{BelowAll, Inverse, Place, below_all};
+use crate::linalg::sparse::Csc;
+use crate::linalg::{inner, remove, tridiagonal};
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-/// Relative residual of an eigenvalue of the operator that counts as converged.
+/// Relative residual of an eigenvalue of the operator that counts as converged, and of one of an interval; an eigenvalue errs by the
+/// square.
 const TOLERANCE: f64 = 1e-13;
+const OF_INTERVAL: f64 = 1e-9;
+
+/// The same of a vector that is kept.
+const VECTOR: f64 = 1e-8;
 
 /// Share of a vector outside the space of the others below which it is rounding only.
 const EXHAUSTED: f64 = 1e-12;
@@ -52,11 +56,12 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
         place,
         mass: m,
         found: Vec::new(),
+        is_complete: false,
         interrupt,
     };
     for round in 0..=count {
         let before = search.smallest(count);
-        let new = search.run(count, round)?;
+        let new = search.run(Goal::Largest(count), round)?;
         // The search ends when the last run found nothing that belongs among the lowest.
         if search.found.len() >= count && new <= before * (1.0 + 1e-9) {
             break;
@@ -73,86 +78,59 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     }
     search.found.sort_by(|a, b| b.0.total_cmp(&a.0));
     search.found.truncate(count);
-    let mut vectors = DMatrix::zeros(n, search.found.len());
-    for (mut column, (_, v, _)) in vectors.column_iter_mut().zip(&search.found) {
-        column.as_mut_slice().copy_from_slice(v);
-    }
-    Ok(Pairs {
-        values: search.found.iter().map(|(mu, ..)| 1.0 / mu - shift).collect(),
-        vectors,
-    })
+    search.pairs(shift)
 }
 
-/// Growth of the shift from one attempt to the next, number of attempts, and of halvings of the last growth.
-const FURTHER: f64 = 100.0;
-const ATTEMPTS: i32 = 9;
-const HALVINGS: u32 = 5;
-
-/// The inverse of K + σM at a shift −σ below all eigenvalues.
-struct BelowAll {
-    inverse: Inverse,
-    shift: f64,
-    place: Place,
-}
-
-/// Where the shift is.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
-    /// Next to zero, below all eigenvalues.
-    First,
-    /// Below an eigenvalue below zero.
-    Further,
-    /// Next to zero, and not below all eigenvalues: K is negative on motions without mass, too.
-    Within,
-}
-
-/// Finds a shift below all eigenvalues, from `shift` on, so that the lowest eigenvalues belong to the largest of the operator
-/// also where K is negative in some direction.
-fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<BelowAll> {
-    let factors = |sigma: f64| definite_inverse(k, (sigma, m), interrupt);
-    if let Some(inverse) = factors(shift)? {
-        let place = Place::First;
-        return Ok(BelowAll { inverse, shift, place });
-    }
-    for attempt in 1..ATTEMPTS {
-        let mut high = shift * FURTHER.powi(attempt);
-        let Some(mut inverse) = factors(high)? else { continue };
-        // Next to the lowest eigenvalue, the others are far apart.
-        let mut low = high / FURTHER;
-        for _ in 0..HALVINGS {
-            let middle = (low * high).sqrt();
-            match factors(middle)? {
-                Some(better) => (inverse, high) = (better, middle),
-                None => low = middle,
-            }
+/// All eigenpairs with λ in an interval (low, high), mass-normalised and ascending; `None` if they are more than `most`.
+///
+/// # Errors
+/// As [`lowest`].
+pub fn within(
+    (k, m): (&Csc, &Csc),
+    (low, high): (f64, f64),
+    most: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Pairs>> {
+    interrupt.check()?;
+    // Not in the very middle, where a symmetric structure may have an eigenvalue.
+    let shift = -(low + INSIDE * (high - low));
+    let farthest = (high + shift).max(-shift - low);
+    let mut search = Search {
+        inverse: Inverse::new(k, (shift, m), interrupt)?,
+        place: Place::Inside,
+        mass: m,
+        found: Vec::new(),
+        is_complete: false,
+        interrupt,
+    };
+    let mut round = 0;
+    // The search ends when a run orthogonal to the vectors found finds no other.
+    while search.run(Goal::Above(farthest.recip(), most), round)? > 0.0 {
+        if !search.is_complete || search.found.len() > most {
+            return Ok(None);
         }
-        return Ok(BelowAll {
-            inverse,
-            shift: high,
-            place: Place::Further,
-        });
+        round += 1;
     }
-    let inverse = Inverse::new(k, (shift, m), interrupt)?;
-    Ok(BelowAll {
-        inverse,
-        shift,
-        place: Place::Within,
-    })
+    if !search.is_complete {
+        return Ok(None);
+    }
+    search
+        .found
+        .retain(|(mu, ..)| (low..=high).contains(&(1.0 / mu - shift)));
+    search.found.sort_by(|a, b| (1.0 / a.0).total_cmp(&(1.0 / b.0)));
+    search.pairs(shift).map(Some)
 }
 
-/// The inverse of K + σM; `None` where that is not positive definite.
-fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
-    let n = k.rows;
-    if n > DENSE_UP_TO {
-        return Ok(Definite::new(k, (shift, m), interrupt)?.map(Inverse::Definite));
-    }
-    let mut dense = try_vec(n * n, Complex64::ZERO, "the natural modes")?;
-    k.add_to_dense(Complex64::ONE, &mut dense);
-    m.add_to_dense(shift.into(), &mut dense);
-    if hermitian::cholesky(&mut dense, n, interrupt)? {
-        return Inverse::new(k, (shift, m), interrupt).map(Some);
-    }
-    Ok(None)
+/// Place of the shift in an interval.
+const INSIDE: f64 = 0.4873;
+
+/// The eigenvalues of the operator that a search is for.
+#[derive(Clone, Copy)]
+enum Goal {
+    /// So many of the largest.
+    Largest(usize),
+    /// All whose modulus is not below the number, if they are not more than so many.
+    Above(f64, usize),
 }
 
 /// Order up to which dense algebra finds the modes of a stiffness that is negative in some direction.
@@ -177,50 +155,6 @@ fn all_of(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<P
     Ok(pairs)
 }
 
-/// Order up to which dense factors are quicker.
-const DENSE_UP_TO: usize = 200;
-
-/// Factors of K + σM.
-pub enum Inverse {
-    /// Definite, in half the memory and less.
-    Definite(Definite),
-    /// Small, or indefinite as with springs of negative stiffness.
-    General(Factor),
-}
-
-impl Inverse {
-    /// Factors K + σM.
-    ///
-    /// # Errors
-    /// `Singular`, `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
-        if k.rows > DENSE_UP_TO
-            && let Some(definite) = Definite::new(k, (shift, m), interrupt)?
-        {
-            return Ok(Self::Definite(definite));
-        }
-        let shifted = Csc::sum(
-            k.rows,
-            &[(Complex64::ONE, k, Form::Plain), (shift.into(), m, Form::Plain)],
-        )?;
-        interrupt.check()?;
-        let mut factor = Factor::new(&shifted, 1)?;
-        factor.factor(&shifted, interrupt)?;
-        Ok(Self::General(factor))
-    }
-
-    /// Solves (K + σM) x = b in place.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn solve(&mut self, b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
-        match self {
-            Self::Definite(factor) => factor.solve(b, interrupt),
-            Self::General(factor) => factor.solve(b, false, interrupt),
-        }
-    }
-}
-
 struct Search<'a> {
     inverse: Inverse,
     place: Place,
@@ -228,6 +162,36 @@ struct Search<'a> {
     interrupt: &'a Interrupt<'a>,
     /// Eigenvalues 1/(λ + σ) of the operator, their vectors φ, and M φ.
     found: Vec<(f64, Vec<Complex64>, Vec<Complex64>)>,
+    /// Whether the last run found all that it was for.
+    is_complete: bool,
+}
+
+/// Basis q of a run, M q, and the diagonal of Lanczos's matrix with what is beside it.
+#[derive(Default)]
+struct Run {
+    basis: Vec<Vec<Complex64>>,
+    weighted: Vec<Vec<Complex64>>,
+    alpha: Vec<f64>,
+    /// From the size of the first vector on.
+    beta: Vec<f64>,
+}
+
+impl Run {
+    /// Ritz values with so many of the last coefficients of their vectors, vector after vector.
+    fn ritz(&self, rows: usize, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<f64>)> {
+        const CONTEXT: &str = "the eigenvectors";
+        let size = self.alpha.len();
+        let (mut values, mut beside) = (try_copy(&self.alpha, CONTEXT)?, try_vec(size, 0.0, CONTEXT)?);
+        for (to, beta) in beside.iter_mut().zip(&self.beta[1..]) {
+            *to = *beta;
+        }
+        let mut last = try_vec(rows * size, 0.0, CONTEXT)?;
+        for row in 0..rows {
+            last[(size - rows + row) * rows + row] = 1.0;
+        }
+        tridiagonal::diagonalise((&mut values, &mut beside), &mut last, interrupt, |_| Ok(()))?;
+        Ok((values, last))
+    }
 }
 
 impl Search<'_> {
@@ -238,28 +202,42 @@ impl Search<'_> {
         values.get(count - 1).copied().unwrap_or(0.0)
     }
 
+    /// The pairs found, in their order.
+    fn pairs(&self, shift: f64) -> Result<Pairs> {
+        let n = self.mass.rows;
+        let values = try_vec(n.saturating_mul(self.found.len()), Complex64::ZERO, "the eigenvectors")?;
+        let mut vectors = DMatrix::from_vec(n, self.found.len(), values);
+        for (mut column, (_, v, _)) in vectors.column_iter_mut().zip(&self.found) {
+            column.as_mut_slice().copy_from_slice(v);
+        }
+        Ok(Pairs {
+            values: self.found.iter().map(|(mu, ..)| 1.0 / mu - shift).collect(),
+            vectors,
+        })
+    }
+
     /// One Lanczos run orthogonal to the vectors found; it stores its converged pairs and returns the largest new
-    /// eigenvalue.
-    fn run(&mut self, count: usize, round: usize) -> Result<f64> {
+    /// eigenvalue, by modulus.
+    fn run(&mut self, goal: Goal, round: usize) -> Result<f64> {
         let n = self.mass.rows;
         let extra = match self.place {
             Place::Further if n <= 20_000 => 5 * EXTRA_STEPS,
             _ => EXTRA_STEPS,
         };
-        let steps = (2 * count + extra).min(n - self.found.len());
+        let (Goal::Largest(most) | Goal::Above(_, most)) = goal;
+        let steps = (2 * most + extra).min(n - self.found.len());
+        self.is_complete = true;
         if steps == 0 {
             return Ok(0.0);
         }
-        let mut basis: Vec<Vec<Complex64>> = Vec::new();
-        let mut weighted: Vec<Vec<Complex64>> = Vec::new();
-        let (mut alpha, mut beta) = (Vec::new(), Vec::new());
+        let mut run = Run::default();
         let mut v = start(n, round)?;
         // One application moves the starting vector into the range of the operator, free of massless motion.
         self.apply(&mut v)?;
         for step in 0..steps {
             self.interrupt.part(Phase::Modes, step, steps)?;
             let before = inner(&v, &self.times_mass(&v)?).re.max(0.0).sqrt();
-            self.orthogonalise(&mut v, &basis, &weighted);
+            self.orthogonalise(&mut v, &run);
             let mut mv = self.times_mass(&v)?;
             let square = inner(&v, &mv).re;
             if square < -(EXHAUSTED * before).powi(2) {
@@ -267,94 +245,69 @@ impl Search<'_> {
             }
             let norm = square.max(0.0).sqrt();
             // A structure with few masses has few modes: the remaining vector is rounding then.
-            if norm <= EXHAUSTED * before || norm <= 1e-14 * beta.first().copied().unwrap_or(0.0) {
+            if norm <= EXHAUSTED * before || norm <= 1e-14 * run.beta.first().copied().unwrap_or(0.0) {
                 break;
             }
             for x in v.iter_mut().chain(&mut mv) {
                 *x /= norm;
             }
-            beta.push(norm);
+            run.beta.push(norm);
             let mut next = mv.clone();
             self.inverse.solve(&mut next, self.interrupt)?;
-            alpha.push(inner(&mv, &next).re);
-            try_push(&mut basis, v, "the eigenvectors")?;
-            try_push(&mut weighted, mv, "the eigenvectors")?;
+            run.alpha.push(inner(&mv, &next).re);
+            try_push(&mut run.basis, v, "the eigenvectors")?;
+            try_push(&mut run.weighted, mv, "the eigenvectors")?;
             v = next;
-            if basis.len() > count
-                && basis.len().is_multiple_of(10)
-                && self.converged(&alpha, &beta, count, &v, &basis, &weighted)?
-            {
+            let done = run.basis.len();
+            let may_end = done > most || matches!(goal, Goal::Above(..));
+            if may_end && done.is_multiple_of(10) && self.converged(&run, goal, &v)? {
                 break;
             }
+            self.is_complete = step + 1 < steps || steps < 2 * most + extra;
         }
-        self.keep(&alpha, &beta, count, &v, &basis, &weighted)
+        self.keep(&run, goal, &v)
     }
 
-    /// Ritz values in descending order with their coefficients and residual bounds.
-    fn ritz(
-        &self,
-        alpha: &[f64],
-        beta: &[f64],
-        v: &[Complex64],
-        basis: &[Vec<Complex64>],
-        weighted: &[Vec<Complex64>],
-    ) -> Result<Vec<(f64, f64, Vec<f64>)>> {
-        let k = alpha.len();
-        let t = DMatrix::from_fn(k, k, |i, j| match i.abs_diff(j) {
-            0 => alpha[i],
-            1 => beta[i.max(j)],
-            _ => 0.0,
-        });
-        let Some(eigen) = SymmetricEigen::try_new(t, f64::EPSILON, 10_000) else {
-            return fail!(NoConvergence, "the eigenvalues of a tridiagonal matrix were not found");
-        };
+    /// Size of the part of the next vector that the basis does not hold.
+    fn after(&self, run: &Run, v: &[Complex64]) -> Result<f64> {
         let mut rest = v.to_vec();
-        self.orthogonalise(&mut rest, basis, weighted);
-        let after = inner(&rest, &self.times_mass(&rest)?).re.max(0.0).sqrt();
-        let mut ritz: Vec<_> = (0..k)
-            .map(|c| {
-                let s = eigen.eigenvectors.column(c);
-                (
-                    eigen.eigenvalues[c],
-                    after * s[k - 1].abs(),
-                    s.iter().copied().collect(),
-                )
-            })
-            .collect();
-        ritz.sort_by(|a: &(f64, f64, Vec<f64>), b| b.0.total_cmp(&a.0));
-        Ok(ritz)
+        self.orthogonalise(&mut rest, run);
+        Ok(inner(&rest, &self.times_mass(&rest)?).re.max(0.0).sqrt())
     }
 
-    fn converged(
-        &self,
-        alpha: &[f64],
-        beta: &[f64],
-        count: usize,
-        v: &[Complex64],
-        basis: &[Vec<Complex64>],
-        weighted: &[Vec<Complex64>],
-    ) -> Result<bool> {
-        let ritz = self.ritz(alpha, beta, v, basis, weighted)?;
-        Ok(ritz
-            .iter()
-            .take(count)
-            .all(|(mu, bound, _)| *bound <= TOLERANCE * mu.abs()))
+    /// Whether the goal is reached, or beyond reach.
+    fn converged(&self, run: &Run, goal: Goal, v: &[Complex64]) -> Result<bool> {
+        let after = self.after(run, v)?;
+        let (values, last) = run.ritz(1, self.interrupt)?;
+        let mut ritz: Vec<(f64, f64)> = values.into_iter().zip(last).collect();
+        let small = |(mu, last): &(f64, f64), tolerance: f64| after * last.abs() <= tolerance * mu.abs();
+        Ok(match goal {
+            Goal::Largest(count) => {
+                ritz.sort_by(|a, b| b.0.total_cmp(&a.0));
+                ritz.iter().take(count).all(|found| small(found, TOLERANCE))
+            }
+            // With one beyond, none is missed.
+            Goal::Above(least, most) => {
+                ritz.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+                let above = ritz.iter().take_while(|found| found.0.abs() >= least).count();
+                above > most || above < ritz.len() && ritz.iter().take(above + 1).all(|found| small(found, OF_INTERVAL))
+            }
+        })
     }
 
-    fn keep(
-        &mut self,
-        alpha: &[f64],
-        beta: &[f64],
-        count: usize,
-        v: &[Complex64],
-        basis: &[Vec<Complex64>],
-        weighted: &[Vec<Complex64>],
-    ) -> Result<f64> {
-        if alpha.is_empty() {
+    /// Stores the converged pairs that the goal asks for; the largest of their eigenvalues, by modulus.
+    fn keep(&mut self, run: &Run, goal: Goal, v: &[Complex64]) -> Result<f64> {
+        if run.alpha.is_empty() {
             return Ok(0.0);
         }
         let mut largest = 0.0_f64;
-        let ritz = self.ritz(alpha, beta, v, basis, weighted)?;
+        let after = self.after(run, v)?;
+        let size = run.alpha.len();
+        let (values, vectors) = run.ritz(size, self.interrupt)?;
+        let mut ritz: Vec<(f64, f64, &[f64])> = (values.iter().zip(vectors.chunks_exact(size)))
+            .map(|(&mu, s)| (mu, after * s[size - 1].abs(), s))
+            .collect();
+        ritz.sort_by(|a, b| b.0.total_cmp(&a.0));
         // The least value of the operator shows an eigenvalue below the shift.
         let ends = ritz.first().zip(ritz.last());
         if self.place == Place::Within
@@ -366,28 +319,31 @@ impl Search<'_> {
                  known"
             );
         }
-        for (mu, bound, s) in ritz.into_iter().take(count) {
-            self.interrupt.check()?;
-            // The error of the eigenvalue is the square of the bound; vectors need a small bound too.
-            if mu <= 0.0 || bound > 1e-8 * mu {
-                break;
+        match goal {
+            Goal::Largest(count) => {
+                ritz.truncate(count);
+                let good = ritz
+                    .iter()
+                    .take_while(|(mu, bound, _)| *mu > 0.0 && *bound <= VECTOR * mu);
+                let good = good.count();
+                ritz.truncate(good);
             }
-            let mut x = try_vec(basis[0].len(), Complex64::ZERO, "the eigenvectors")?;
-            for (q, c) in basis.iter().zip(&s) {
+            Goal::Above(least, _) => ritz.retain(|(mu, bound, _)| mu.abs() >= least && *bound <= VECTOR * mu.abs()),
+        }
+        for (mu, _, s) in ritz {
+            self.interrupt.check()?;
+            let mut x = try_vec(run.basis[0].len(), Complex64::ZERO, "the eigenvectors")?;
+            for (q, c) in run.basis.iter().zip(s) {
                 for (x, q) in x.iter_mut().zip(q) {
                     *x += q * c;
                 }
             }
-            largest = largest.max(mu);
+            largest = largest.max(mu.abs());
             let mx = self.times_mass(&x)?;
             try_push(&mut self.found, (mu, x, mx), "the eigenvectors")?;
         }
-        if largest == 0.0 && self.found.is_empty() {
-            return fail!(
-                NoConvergence,
-                "no eigenvalue converged in {} Lanczos steps",
-                alpha.len()
-            );
+        if largest == 0.0 && self.found.is_empty() && matches!(goal, Goal::Largest(_)) {
+            return fail!(NoConvergence, "no eigenvalue converged in {size} Lanczos steps");
         }
         Ok(largest)
     }
@@ -405,9 +361,9 @@ impl Search<'_> {
     }
 
     /// Removes from v, twice, its components along the basis and along the vectors found.
-    fn orthogonalise(&self, v: &mut [Complex64], basis: &[Vec<Complex64>], weighted: &[Vec<Complex64>]) {
+    fn orthogonalise(&self, v: &mut [Complex64], run: &Run) {
         for _ in 0..2 {
-            for (q, mq) in basis.iter().zip(weighted) {
+            for (q, mq) in run.basis.iter().zip(&run.weighted) {
                 remove(v, q, inner(mq, v));
             }
             for (_, q, mq) in &self.found {
@@ -438,9 +394,8 @@ fn start(n: usize, round: usize) -> Result<Vec<Complex64>> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn repeated_and_zero_eigenvalues_are_all_found() {
-        // Three equal free chains of 100 unit masses: every eigenvalue 2 − 2 cos(jπ/100) thrice.
+    /// Three equal free chains of 100 unit masses: every eigenvalue 2 − 2 cos(jπ/100) thrice.
+    fn three_chains() -> (Csc, Csc) {
         let (chains, length) = (3, 100);
         let n = chains * length;
         let mut k = Vec::new();
@@ -452,12 +407,82 @@ mod tests {
                 }
             }
         }
-        let k = Csc::from_triplets(n, n, k).unwrap();
-        let m = Csc::from_triplets(n, n, (0..n).map(|i| (i, i, Complex64::ONE)).collect()).unwrap();
+        let m = (0..n).map(|i| (i, i, Complex64::ONE)).collect();
+        (
+            Csc::from_triplets(n, n, k).unwrap(),
+            Csc::from_triplets(n, n, m).unwrap(),
+        )
+    }
+
+    fn of_chain(j: usize) -> f64 {
+        2.0 - 2.0 * (j as f64 * std::f64::consts::PI / 100.0).cos()
+    }
+
+    #[test]
+    fn repeated_and_zero_eigenvalues_are_all_found() {
+        let (k, m) = three_chains();
         let pairs = lowest(&k, &m, 8, &Interrupt::none()).unwrap();
         for (i, value) in pairs.values.iter().enumerate() {
-            let exact = 2.0 - 2.0 * ((i / 3) as f64 * std::f64::consts::PI / length as f64).cos();
+            let exact = of_chain(i / 3);
             assert!((value - exact).abs() < 1e-12, "{i}: {value} against {exact}");
+        }
+    }
+
+    #[test]
+    fn all_eigenvalues_of_an_interval_are_found_with_their_copies() {
+        let (k, m) = three_chains();
+        for (low, high) in [(-1e-9, 0.3), (0.5, 0.8), (1.9, 2.1), (3.5, 4.5), (0.5, 2.5), (5.0, 6.0)] {
+            let exact: Vec<f64> = (0..300)
+                .map(|i| of_chain(i / 3))
+                .filter(|x| (low..=high).contains(x))
+                .collect();
+            let pairs = within((&k, &m), (low, high), 200, &Interrupt::none()).unwrap().unwrap();
+            assert_eq!(pairs.values.len(), exact.len(), "{low} .. {high}");
+            for (at, (value, exact)) in pairs.values.iter().zip(&exact).enumerate() {
+                assert!((value - exact).abs() < 1e-11, "{value} against {exact}");
+                let x: Vec<Complex64> = pairs.vectors.column(at).iter().copied().collect();
+                let mut rest = vec![Complex64::ZERO; 300];
+                k.multiply_add(Complex64::ONE, &x, &mut rest);
+                m.multiply_add((-value).into(), &x, &mut rest);
+                let off = rest.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+                assert!(off < 1e-6, "{low} .. {high}, {at}: {off:e}");
+            }
+        }
+        assert!(within((&k, &m), (0.5, 2.5), 20, &Interrupt::none()).unwrap().is_none());
+    }
+
+    #[test]
+    fn intervals_of_complex_pencils_with_massless_motions_are_those_of_dense_algebra() {
+        for (n, every) in [(140, 1000), (260, 7)] {
+            let (mut k, mut m) = (Vec::new(), Vec::new());
+            for i in 0..n {
+                let x = i as f64;
+                k.push((i, i, Complex64::from(4.0 + (1.3 * x).sin())));
+                for apart in [1, 5] {
+                    if i + apart < n {
+                        let value = Complex64::from_polar(0.8, 0.7 * x);
+                        k.push((i, i + apart, value));
+                        k.push((i + apart, i, value.conj()));
+                    }
+                }
+                if i % every != 3 {
+                    m.push((i, i, Complex64::from(1.0 + 0.4 * (0.9 * x).cos())));
+                }
+            }
+            let (k, m) = (
+                Csc::from_triplets(n, n, k).unwrap(),
+                Csc::from_triplets(n, n, m).unwrap(),
+            );
+            let all = all_of(&k, &m, n, &Interrupt::none()).unwrap().values;
+            for (from, to) in [(0, 9), (20, 60), (n / 2, n / 2 + 2), (n / 3, 2 * n / 3)] {
+                let middle = |at: usize| 0.5 * (all[at] + all[at + 1]);
+                let interval = (if from == 0 { all[0] - 1.0 } else { middle(from - 1) }, middle(to));
+                let found = within((&k, &m), interval, n, &Interrupt::none()).unwrap().unwrap();
+                assert_eq!(found.values.len(), to + 1 - from, "{n}, {from} to {to}");
+                for (value, exact) in found.values.iter().zip(&all[from..=to]) {
+                    assert!((value - exact).abs() < 1e-10, "{n}: {value} against {exact}");
+                }
+            }
         }
     }
 }

@@ -17,7 +17,7 @@ const MOST_ITERATIONS: usize = 60;
 const ROWS: usize = 128;
 
 /// Eigenvalues in place of the diagonal d, with e beside it, the last number of which is memory; the rotations are applied to the
-/// columns of z. `progress` is told the share of the work that is done.
+/// columns of z, which has some rows of the identity, or all. `progress` is told the share of the work that is done.
 ///
 /// # Errors
 /// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
@@ -28,11 +28,12 @@ pub fn diagonalise(
     progress: impl Fn(f64) -> Result<()>,
 ) -> Result<()> {
     let n = d.len();
+    let rows = z.len() / n.max(1);
     let mut rotations = try_vec(n, (1.0, 0.0), "the eigenvalues of a matrix")?;
     for l in 0..n {
         for iteration in 0.. {
             progress(l as f64 / n as f64)?;
-            interrupt.check_before((6 * n * (n - l)) as u64)?;
+            interrupt.check_before((6 * (rows + 1) * (n - l)) as u64)?;
             let negligible = |m: &usize| e[*m].abs() <= f64::EPSILON * (d[*m].abs() + d[*m + 1].abs());
             let m = (l..n - 1).find(negligible).unwrap_or(n - 1);
             if m == l {
@@ -45,7 +46,7 @@ pub fn diagonalise(
             Arch::new().dispatch(Rotate {
                 rotations: &rotations,
                 range: (from, m),
-                rows: n,
+                rows,
                 z,
             });
         }

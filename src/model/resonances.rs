@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
 use crate::linalg::held_rows::MovingRows;
 use crate::linalg::lanczos;
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::quadratic::about_quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
@@ -38,11 +38,17 @@ impl Resonance {
 /// Degrees of freedom up to which all modes are found by dense algebra.
 const DENSE_UP_TO: usize = 100;
 
-/// Number of modes of a first search in a large structure; it doubles until the range is covered.
+/// The same where a range has too many modes for a search.
+const DENSE_IF_MANY: usize = 600;
+
+/// Number of the lowest modes of a large structure that are found before those of the range.
 const FIRST_MODES: usize = 24;
 
-/// Largest number of modes of a search.
-const MOST_MODES: usize = 1000;
+/// ω² relative to that of the upper end by which a search reaches beyond both ends.
+const AT_END: f64 = 1e-9;
+
+/// Largest number of modes of a search in the range.
+const MOST_MODES: usize = 500;
 
 /// Largest number of square matrices that the dense eigensolver holds at a time.
 const EIGEN_COPIES: usize = 8;
@@ -151,7 +157,7 @@ pub fn damped_frequencies(
 ) -> Result<Option<Vec<Resonance>>> {
     let (hermitian, skew) = parts(stiffness)?;
     let number = h as f64;
-    let Some(modes) = modes_up_to(&hermitian, mass, high * number, interrupt)? else {
+    let Some(modes) = modes_within(&hermitian, mass, (low * number, high * number), interrupt)? else {
         return Ok(None);
     };
     let mut frequencies = Vec::new();
@@ -191,23 +197,26 @@ fn parts(k: &Csc) -> Result<(Csc, Csc)> {
     Ok((combine(half, half)?, combine(turned, -turned)?))
 }
 
-/// All modes up to a frequency; `None` if there are too many of them.
-fn modes_up_to(k: &Csc, m: &Csc, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
+/// All modes within a range of frequencies, and some others; `None` if there are too many of them.
+fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
     if let Some(moving) = MovingRows::of(k)? {
-        let pairs = modes_up_to(&moving.reduced(k)?, &moving.reduced(m)?, omega, interrupt)?;
+        let pairs = modes_within(&moving.reduced(k)?, &moving.reduced(m)?, (low, high), interrupt)?;
         return pairs.map(|pairs| moving.expanded_pairs(pairs)).transpose();
     }
     let n = k.rows;
-    let mut count = FIRST_MODES;
-    while n > DENSE_UP_TO && count <= n / 4 {
-        if count > MOST_MODES {
-            return Ok(None);
-        }
-        let pairs = lanczos::lowest(k, m, count, interrupt)?;
-        if pairs.values.len() < count || pairs.values.last().is_some_and(|&x| x > omega * omega) {
+    if n > DENSE_UP_TO {
+        let pairs = lanczos::lowest(k, m, FIRST_MODES, interrupt)?;
+        if pairs.values.len() < FIRST_MODES || pairs.values.last().is_some_and(|&x| x > high * high) {
             return Ok(Some(pairs));
         }
-        count *= 2;
+        // Rounding at an end loses no mode there.
+        let interval = (low * low - AT_END * high * high, (1.0 + AT_END) * high * high);
+        if let Some(pairs) = lanczos::within((k, m), interval, MOST_MODES.min(n / 4), interrupt)? {
+            return Ok(Some(pairs));
+        }
+        if n > DENSE_IF_MANY {
+            return Ok(None);
+        }
     }
     // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
     check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
@@ -263,7 +272,7 @@ impl Widths {
             try_push(found, resonance, CONTEXT)
         };
         if let ([omega], [shape]) = (frequencies, shapes) {
-            let own = quadratic(&self.damping, shape) + quadratic(&self.skew, shape) / omega;
+            let own = about_quadratic(&self.damping, shape) + about_quadratic(&self.skew, shape) / omega;
             // A mode beyond critical damping has no resonance; the undamped frequency stands for it.
             let sigma = 0.5 * own;
             let damped = (omega * omega - sigma * sigma).max(0.0).sqrt();

@@ -10,7 +10,7 @@
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::definite::resists_all_motion;
-use crate::linalg::lanczos::Inverse;
+use crate::linalg::shifted_inverse::Inverse;
 use crate::linalg::sparse::Csc;
 use crate::linalg::{inner, remove};
 use crate::model::Model;

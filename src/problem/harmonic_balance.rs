@@ -4,6 +4,7 @@
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
 
 use crate::condense::Condensed;
+use crate::condense::FlexibilityWay;
 use crate::condense::frequency_cache::FrequencyCache;
 use crate::condense::modal_table::ModalTable;
 use crate::error::{Result, Status, try_vec};
@@ -98,6 +99,12 @@ impl<'a> HarmonicBalance<'a> {
     /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
         self.tables.set_modes(modal);
+    }
+
+    /// How the flexibility is made along a sweep, and why so.
+    #[must_use]
+    pub fn flexibility_way(&self) -> FlexibilityWay {
+        self.tables.flexibility_way()
     }
 
     /// Whether the flexibility is made from modes.

@@ -46,7 +46,7 @@ fn in_rust() -> String {
         hbvib_hooks { struct_size, log_level, user, progress, log, cancel, phase }
         hbvib_forced_options { struct_size, reserved, omega_start, omega_stop, at, at_len, guess, guess_len }
         hbvib_view { struct_size, scalar, rank, reserved, data, shape, stride }
-        hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts, basis, certificate, response_harmonic, guess_used, reserved2 }
+        hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts, basis, certificate, response_harmonic, guess_used, flexibility_way }
         hbvib_energy { struct_size, reserved, twice_mean_kinetic, kinetic_mean, kinetic_peak, potential_mean, potential_peak, wheel_kinetic_mean, wheel_kinetic_peak, wheel_potential_mean, wheel_potential_peak, structural_loss, friction_loss }
         hbvib_contact_summary { struct_size, reserved, work, slip_share, open_share, half_range, motion_min, motion_max, load_min, load_max, directions, all_min, all_max }
         hbvib_mode_options { struct_size, damping_form, log10_start, log10_stop, diameter, mode_index, near_omega, shape, shape_len, amplitude_contact, at, at_len, reference_dof, guess, guess_len, guess_omega, guess_damping }

@@ -246,7 +246,12 @@ fn every_analysis_returns_from_any_check_with_what_it_has() {
         let (branch, mode) = solved(&case);
         for analysis in analyses(&case, &branch, &mode) {
             let whole = stop_when(&analysis, |checks, _| checks > FOLLOWED);
-            let least = if analysis.0 == "contact evaluate" { 3 } else { 10 };
+            // The modes of a real matrix of 120 degrees of freedom are a few products.
+            let least = if ["contact evaluate", "linear modes, half"].contains(&analysis.0) {
+                3
+            } else {
+                10
+            };
             assert!(whole.checks > least, "{}: {} checks", analysis.0, whole.checks);
             let mut latest = Duration::ZERO;
             for k in 0..3 {

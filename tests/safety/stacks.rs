@@ -1,5 +1,5 @@
-//! 128 KiB of stack suffice for every analysis, and 64 KiB for building small models, their forced responses and their modes,
-//! shown by threads that have no more.
+//! 256 KiB of stack suffice for every analysis, 128 KiB for each of small models, and 64 KiB for building these, their forced
+//! responses and their modes, shown by threads that have no more.
 
 use crate::common::programs::run;
 use crate::programs::{compile, workshop};
@@ -19,6 +19,11 @@ fn runs(test: &str, bytes: usize, which: &[&str], least: usize) {
 #[test]
 fn every_analysis_runs_on_a_stack_of_128_kib() {
     runs("stacks", 128 << 10, &[], 20);
+}
+
+#[test]
+fn large_chains_are_solved_on_a_stack_of_256_kib() {
+    runs("large_stacks", 256 << 10, &["large"], 20);
 }
 
 #[test]

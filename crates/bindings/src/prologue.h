@@ -46,8 +46,8 @@
  *             environment (no traps, rounding to nearest, no flush to zero); the environment of the
  *             caller is restored for callbacks and on return.
  *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY; docs/memory.md tells the bytes
- *             that each call needs at most. 128 KiB of stack suffice for every function, 64 KiB for
- *             forced responses and modes of small models. After fork both processes may go on; a
+ *             that each call needs at most. 256 KiB of stack suffice for every function, 128 KiB
+ *             for models of less than 48 degrees of freedom. After fork both processes may go on; a
  *             handle that a call of another thread used at that time stays HBVIB_E_BUSY in the
  *             child. dlclose frees all memory of the library but handles that were not freed.
  *   safety    No panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.

@@ -32,7 +32,7 @@ const RESULTS: [(&str, &str); 8] = [
 ];
 
 /// Fields that the module gives and takes in another type than C's.
-const TYPES: [(&str, &str, &str); 8] = [
+const TYPES: [(&str, &str, &str); 9] = [
     (
         "hbvib_solver_options",
         "flexibility",
@@ -47,6 +47,7 @@ const TYPES: [(&str, &str, &str); 8] = [
     ("hbvib_jacobian_gap", "tangent", "Tangent"),
     ("hbvib_reduction", "mean_carried", "bool"),
     ("hbvib_reduction", "even_removed", "bool"),
+    ("hbvib_reduction", "flexibility_way", "FlexibilityWay"),
     ("hbvib_verification", "same_solution", "bool"),
     ("hbvib_verification", "marched", "bool"),
 ];

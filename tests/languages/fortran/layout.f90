@@ -267,7 +267,7 @@ contains
       call field('certificate', c_loc(s), c_loc(s%certificate), c_sizeof(s%certificate))
       call field('response_harmonic', c_loc(s), c_loc(s%response_harmonic), c_sizeof(s%response_harmonic))
       call field('guess_used', c_loc(s), c_loc(s%guess_used), c_sizeof(s%guess_used))
-      call field('reserved2', c_loc(s), c_loc(s%reserved2), c_sizeof(s%reserved2))
+      call field('flexibility_way', c_loc(s), c_loc(s%flexibility_way), c_sizeof(s%flexibility_way))
    end subroutine reduction
 
    subroutine energy()

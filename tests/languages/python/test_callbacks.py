@@ -286,6 +286,17 @@ exact = law.forced_response((1.1, 1.3), at=[1.25], harmonics=5).at(0)
 close("a slider with a state is a Jenkins contact up to its samples", ours.amplitude, exact.amplitude, 1e-5)
 close("and the library's own with as many samples", ours.amplitude, theirs.amplitude, 1e-5)
 
+# Its loops are marched over all times at once: too many are refused with the number that would do.
+called = hand.forced_response(1.2, harmonics=5)
+try:
+    called.loop(0, 0, n=1 << 24)
+    check("a loop of 16 million times of a law with states is refused", False)
+except hbvib.OutOfMemoryError as error:
+    most = int(str(error).split("n <= ")[1])
+    check("the refusal tells the number of times that would do", 1 << 18 < most < 1 << 24)
+    raises("one more is refused, too", hbvib.OutOfMemoryError, called.loop, 0, 0, n=most + 1)
+check("a loop of few times is given", called.loop(0, 0, n=2048).force.size == 2048)
+
 # Ctrl-C. The signal is sent when the solve has come to a known state, so that no claim depends on the machine's speed.
 # A program that a shell starts in the background inherits that the signal is ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)

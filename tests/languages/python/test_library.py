@@ -57,12 +57,13 @@ PREFIXES = dict(
     Derivative="DERIVATIVE_",
     Follow="FOLLOW_",
     AeroForm="AERO_",
+    FlexibilityWay="FLEXIBILITY_WAY_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND, "HBVIB_DIAMETER_OF_ENGINE_ORDER": hbvib.DIAMETER_OF_ENGINE_ORDER}
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
-    "ParameterKind Scaling Quantity Derivative Follow AeroForm"
+    "ParameterKind Scaling Quantity Derivative Follow AeroForm FlexibilityWay"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)

@@ -149,4 +149,33 @@ for trial in range(40):
     check(f"the axial mode of rotor {trial} has no direction", found.direction[along] == 0, found.direction)
     check(f"and the others have theirs: rotor {trial}", found.direction[others].tolist() == [-1, 1], (found.omega, found.direction))
 
-finish(150)
+# The way to the flexibility of the contacts, and the reason, in the reduction and in the log.
+Way = hbvib.FlexibilityWay
+
+
+def way_of(n, dampers=0.0, full=False, kt=0.3, range=(0.5, 0.55)):
+    k, m = 2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1), np.eye(n)
+    if full:
+        turned = np.linalg.qr(np.random.default_rng(n).normal(size=(n, n)))[0]
+        k = turned @ k @ turned.T
+        k = 0.5 * (k + k.T)
+    chain = hbvib.Model(mass=m, stiffness=k, damping=1e-3 * m + np.diag(dampers * (np.arange(n) % 3)))
+    chain.add_contact("jenkins", 1, kt=kt, mu=0.3, preload=1)
+    chain.add_force(n - 2, 0.1)
+    lines = []
+    branch = chain.forced_response(range, harmonics=3, tolerance=0, max_points=4, log=lambda _, text: lines.append(text))
+    told = [text for text in lines if text.startswith("flexibility of the contacts")]
+    check(f"one line tells of {n} masses", len(told) == 1, lines)
+    return branch, told[0]
+
+
+for expected, word, given in (
+        (Way.SINGLE_FREQUENCY, "single frequency", dict(n=30, range=0.5)), (Way.MODES, "all modes", dict(n=30)),
+        (Way.MODES, "all modes", dict(n=300)), (Way.POLES, "all poles", dict(n=60, dampers=0.01, full=True)),
+        (Way.NEAR_RIGID, "near-rigid", dict(n=30, kt=1e9)), (Way.FEW, "few", dict(n=30, dampers=0.01)),
+        (Way.SPARSE, "sparse", dict(n=150, dampers=0.01)), (Way.MANY, "too many", dict(n=700))):
+    branch, line = way_of(**given)
+    check(f"the way with {given}", branch.reduction.flexibility_way is expected, branch.reduction.flexibility_way)
+    check(f"its reason in the log with {given}", word in line, line)
+
+finish(174)
