@@ -33,6 +33,8 @@ pub struct Exchange {
     pub stiffness: f64,
     /// 1/k
     pub(super) compliance: f64,
+    /// Angular frequency √(k/m) at which the stick rings, with the mass that the structure has there.
+    pub ring: f64,
 }
 
 impl Exchange {

@@ -40,6 +40,7 @@ pub(super) fn select_exchanged(
             exchanges[c] = Some(Exchange {
                 stiffness: 1.0,
                 compliance,
+                ring: f64::INFINITY,
             });
             reference[c] = 0.0;
         }
@@ -52,6 +53,12 @@ impl Condensed {
     #[must_use]
     pub fn has_exchanges(&self) -> bool {
         self.exchanges.iter().any(Option::is_some)
+    }
+
+    /// The exchange of a coordinate.
+    #[must_use]
+    pub fn exchange_of(&self, coordinate: usize) -> Option<Exchange> {
+        self.exchanges[coordinate]
     }
 
     /// Whether the motion of a coordinate is exchanged.
@@ -72,22 +79,28 @@ impl Condensed {
         Ok(rates)
     }
 
-    /// Sets α of all exchanges, from the middle of a sweep.
+    /// Sets α of all exchanges, from the middle of a sweep, and the frequencies at which their sticks ring.
     pub(super) fn set_exchanges(&mut self, sweep: Sweep, interrupt: &Interrupt<'_>) -> Result<()> {
         let first = self.set.numbers().iter().position(|&h| h > 0);
         let Some(i) = first.filter(|_| self.has_exchanges()) else {
             return Ok(());
         };
-        let omega = (sweep.start * sweep.stop).sqrt();
-        let effective = NOMINAL * omega / self.set.numbers()[i] as f64;
-        let table = Workspace::new(self, None)?;
-        let flexibility = without_reference(self, table, (i, effective), interrupt)?;
+        let number = self.set.numbers()[i] as f64;
+        let omega = NOMINAL * (sweep.start * sweep.stop).sqrt();
+        let flexibility = without_reference(self, (i, omega / number), interrupt)?;
         let n = self.coordinates();
-        for (c, exchange) in self.exchanges.iter_mut().enumerate() {
-            if let Some(exchange) = exchange {
-                exchange.stiffness = (E * NOMINAL * flexibility[c * n + c].norm()).recip();
-                self.stiffness[c] = exchange.stiffness;
-            }
+        for c in 0..n {
+            let Some(mut exchange) = self.exchanges[c] else {
+                continue;
+            };
+            let at_nominal = flexibility[c * n + c].norm();
+            exchange.stiffness = (E * NOMINAL * at_nominal).recip();
+            // The mass −1/(Gω²) at the nominal harmonic, then at the ring of that mass.
+            let near = omega * (at_nominal / exchange.compliance).sqrt();
+            let there = without_reference(self, (i, near / number), interrupt)?;
+            exchange.ring = near * (there[c * n + c].norm() / exchange.compliance).sqrt();
+            self.stiffness[c] = exchange.stiffness;
+            self.exchanges[c] = Some(exchange);
         }
         Ok(())
     }
@@ -147,11 +160,11 @@ impl Condensed {
 /// The flexibility of the structure without reference stiffness in the i-th carried harmonic, (1 − Gκ)⁻¹G, column-major.
 fn without_reference(
     condensed: &Condensed,
-    mut workspace: Workspace,
     (i, omega): (usize, f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Complex64>> {
     let n = condensed.coordinates();
+    let mut workspace = Workspace::new(condensed, None)?;
     let table = &workspace.evaluate(condensed, i, omega, false, interrupt)?.value;
     let mut found = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     let mut lu = Lu::new(n, n)?;

@@ -165,6 +165,20 @@ impl<P: Problem> ExtendedSystem<P> {
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 
+    /// J⁻¹b with the matrix factored last; `false` where the iteration did not converge with the work that is left.
+    pub fn solve_for(&mut self, b: &[f64], x: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        let n = x.len();
+        let (packed, pairs) = self.factored_numbers();
+        let each = self.sizes.product(packed, pairs);
+        self.system
+            .limit_products(((self.work.left() / each) as usize).min(MOST_PRODUCTS));
+        self.b[..n].copy_from_slice(b);
+        self.b[n] = 0.0;
+        let solved = self.system.solve(&mut self.problem, COARSEST, &mut self.b, interrupt)?;
+        x.copy_from_slice(&self.b[..n]);
+        Ok(self.work.spend(each * self.system.products() as f64) && solved)
+    }
+
     /// Whether its solutions take many products, because the block does not hold all compliant harmonics.
     pub fn iterates_long(&self) -> bool {
         self.factored.each > self.factored.block

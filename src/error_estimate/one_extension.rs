@@ -5,6 +5,7 @@ use crate::error::{Result, try_copy, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, ROUNDING, SHARE, has_converged_tail, omits_nothing, relative, tail};
 use crate::error_estimate::extended_newton::{FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::jump_error::beyond_extension;
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::Interrupt;
@@ -14,10 +15,6 @@ use crate::problem::harmonic_balance::HarmonicBalance;
 
 /// Share of the residual that a guess from another point may leave.
 const CLOSER: f64 = 0.5;
-
-/// Error of a point with exchanged motions over its change with twice the harmonics: the force jumps where slip ends, so that the
-/// error falls as H^-1.25 (between H^-1 and H^-1.5).
-const OF_JUMPS: f64 = 1.725;
 
 /// The harmonics to which a point is extended.
 #[derive(Clone, Copy)]
@@ -116,7 +113,9 @@ pub(super) fn extend_once(
     let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
     let rates = condensed.rates()?;
     let tail = tail(set, solved.condensed.set(), (&z, &rates))?;
-    let beyond = if condensed.has_exchanges() { OF_JUMPS } else { 1.0 };
+    let Some((beyond, late)) = beyond_extension(system, condensed, (&extended.at, omega), interrupt)? else {
+        return Ok(None);
+    };
     let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
     let known = |x: f64| if certified { x } else { f64::NAN };
     for z in &mut z {
@@ -126,7 +125,10 @@ pub(super) fn extend_once(
         certified,
         too_large: !certified && extent.short,
         motion: known(beyond * change + extended.missing * norm(&extended.next[..n]) / size),
-        response: known(relative(beyond * (response - solved.response).norm() + next, response)),
+        response: known(relative(
+            beyond * (response - solved.response).norm() + next + late * length,
+            response,
+        )),
         frequency: known(0.0),
         damping: known(0.0),
         harmonics: set.numbers().last().copied().unwrap_or(0),

@@ -11,6 +11,7 @@ mod hard_sweeps;
 mod interrupts;
 mod linear_stretches;
 mod near_rigid;
+mod near_rigid_chains;
 mod near_rigid_slip;
 mod passed_resonances;
 mod random_chains;
