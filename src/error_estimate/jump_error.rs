@@ -1,7 +1,7 @@
 //! The error of a point with exchanged motions, see [`crate::condense::exchange`]: of forces that jump, and of sticks that ring.
 //!
 //! Where slip ends the force jumps, so that the response errs by about 1/H at least: twice its change with twice the harmonics. That
-//! change may be small by chance, so that half the change with twice as many harmonics as *half* of them counts, too.
+//! change may be small by chance, so that half the change from half the harmonics counts, too.
 //!
 //! Where slip reverses the force takes a stick of a part of a ring, of angular frequency ω_r = √(k/m), from one limit fc to the other.
 //! With a structure that pushes by F ≥ fc it comes late by
