@@ -389,11 +389,16 @@ impl AdaptivityController {
         };
         let corrected = &found.estimate.corrected;
         let set = &corrected.set;
-        let all = norm(&corrected.motion);
+        let all = if corrected.rates.is_empty() {
+            norm(&corrected.motion)
+        } else {
+            (0..set.numbers().len())
+                .map(|i| corrected.size(i))
+                .fold(0.0, f64::hypot)
+        };
         let mut tail = 0.0_f64;
         for (i, &number) in set.numbers().iter().enumerate().rev() {
-            let signals = corrected.motion.chunks_exact(set.packed_len());
-            tail = signals.map(|y| set.get(y, i).norm()).fold(tail, f64::hypot);
+            tail = tail.hypot(corrected.size(i));
             if tail > bound * all {
                 return number;
             }

@@ -76,9 +76,10 @@ impl<'m> HarmonicLevels<'m> {
         self.automatic
     }
 
-    /// Whether a harmonic costs many factorisations.
+    /// Whether a harmonic costs much: many factorisations, or with exchanged motions, which need a hundred and more, full matrices.
     pub fn are_costly(&self) -> bool {
-        self.costly
+        let known = self.models.any();
+        self.costly || known.is_some_and(|known| known.condensed.has_exchanges())
     }
 
     /// Number of levels.

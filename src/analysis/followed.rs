@@ -199,6 +199,7 @@ fn unknown(set: &HarmonicSet, point: &Point, too_large: bool) -> Estimate {
             watched: Vec::new(),
             omega: f64::NAN,
             damping: 0.0,
+            rates: Vec::new(),
         },
     }
 }

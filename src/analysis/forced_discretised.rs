@@ -506,5 +506,6 @@ pub(super) fn relative_motion(resolution: &Resolution, guess: &[Complex64]) -> R
             set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
         }
     }
+    condensed.exchange_start(&mut packed);
     Ok(packed)
 }

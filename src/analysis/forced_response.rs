@@ -96,7 +96,12 @@ fn with_detail(
         }
         None => solver,
     };
-    let outcome = with_samples(solver, |solver| {
+    // With fixed harmonics the motions of the contacts are cut off, as in the residual of a caller's point.
+    let with_exchange = SolverOptions {
+        exchange: solver.tolerance > 0.0 && solver.samples == 0 && solver.stability.is_none(),
+        ..*solver
+    };
+    let outcome = with_samples(&with_exchange, |solver| {
         follow(model, solver, (range, detail), hooks, &interrupt, trace)
     });
     let mut branch = match outcome {

@@ -142,9 +142,10 @@ fn follow(
             sweep.omega_stop
         );
     };
-    let (Some(omega), Some(motion)) = (branch.omega_at(point), branch.motion_at(point)) else {
-        return fail!(Internal, "a stored point has no motion");
+    let Some(omega) = branch.omega_at(point) else {
+        return fail!(Internal, "a stored point has no frequency");
     };
+    let motion = branch.relative_motion_at(point, interrupt)?;
     let levels = HarmonicLevels::new(first, solver, &forced_harmonics(first)?, |harmonics, _| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::with_reference(first, &options, (omega, omega), Some(Reference::Complex), interrupt)
@@ -153,7 +154,7 @@ fn follow(
     let level = levels.level_of(own.set());
     let resolution = levels.at(level)?;
     let mut begin = try_vec(resolution.condensed.unknowns(), 0.0, "the parameter response")?;
-    resolution.condensed.set().transfer(own.set(), motion, 1.0, &mut begin);
+    resolution.condensed.set().transfer(own.set(), &motion, 1.0, &mut begin);
     let options = SolverOptions {
         harmonics: levels.highest(level),
         samples: branch.samples_at(point).max(resolution.samples),

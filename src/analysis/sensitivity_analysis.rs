@@ -79,6 +79,13 @@ pub fn sensitivity_with(
     };
     branch.check_model(model)?;
     check_quantity(branch, point, of)?;
+    if branch.condensed_at(point).has_exchanges() {
+        return fail!(
+            Unsupported,
+            "a contact is near-rigid, and its motion at this point is that of a rigid one; derivatives need a branch of fixed \
+             harmonics, tolerance = 0"
+        );
+    }
     for (i, parameter) in parameters.iter().enumerate() {
         parameter
             .check(model)

@@ -235,6 +235,7 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         certificate: SolverOptions::default().certificate,
         memory_limit: number(o.memory_limit, "memory_limit")?,
         stability: stability(o.stability)?,
+        exchange: false,
         content: SolverOptions::default().content,
     };
     options.check()?;

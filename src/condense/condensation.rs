@@ -11,6 +11,7 @@
 
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
+use crate::condense::exchanged_motions::select_exchanged;
 use crate::condense::flexibility::Workspace;
 use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
@@ -94,6 +95,7 @@ impl Condensed {
                 motion = motion.max(condensed.largest(i, workspace.excited())?);
             }
         }
+        condensed.set_exchanges(sweep, interrupt)?;
         let scale = power_of_two(motion);
         for block in &mut condensed.blocks {
             for f in block.force.iter_mut().chain(block.unbalance.iter_mut().flatten()) {
@@ -221,6 +223,7 @@ impl Condensed {
             laws: Arc::default(),
             stiffness: Vec::new(),
             reference_stiffness: Vec::new(),
+            exchanges: Vec::new(),
             can_stick: Vec::new(),
             preloaded: false,
             reference: Reference::Complex,
@@ -263,7 +266,16 @@ impl Condensed {
             representatives.len(),
         )?;
         raise_for_springs(model, &assembled, &structural, &mut stiffness);
-        let reference_stiffness = reference_stiffness(&stiffness, &structural)?;
+        let mut reference_stiffness = reference_stiffness(&stiffness, &structural)?;
+        let mut exchanges = try_vec(representatives.len(), None, "the contacts")?;
+        if options.exchange && mode.is_none() {
+            select_exchanged(
+                model,
+                &assembled,
+                (&stiffness, &mut reference_stiffness),
+                &mut exchanges,
+            )?;
+        }
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = match (reference, mode) {
             (Some(given), _) => given,
@@ -313,6 +325,7 @@ impl Condensed {
             laws: Arc::default(),
             stiffness,
             reference_stiffness,
+            exchanges,
             can_stick,
             preloaded: model.contacts().iter().any(Contact::is_preloaded),
             reference,
@@ -337,11 +350,16 @@ impl Condensed {
                 try_push(&mut coordinates, at.coordinate, CONTEXT)?;
             }
             let contact = one[0].contact;
+            let exchange = self.exchanges[one[0].coordinate];
+            let exchanged = exchange.and_then(|e| model.contacts()[contact].exchanged(e.stiffness, length));
             let assembled = AssembledLaw {
                 coordinates,
                 contact,
                 normal: model.contacts()[contact].normal_direction(),
-                law: model.contacts()[contact].law(length)?,
+                law: match exchanged {
+                    Some(law) => law,
+                    None => model.contacts()[contact].law(length)?,
+                },
                 load: match TiedLoad::of(model, contact, length)? {
                     Some(load) => Some(boxed(|| Ok(load))?),
                     None => None,

@@ -1,6 +1,7 @@
 //! The condensed model: matrices, forces and contact laws on the relative coordinates, per carried harmonic.
 
 use crate::condense::contact_classes::ContactClasses;
+use crate::condense::exchange::Exchange;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::condense::tied_load::{LoadedLaw, TiedLoad};
 use crate::contact::Law;
@@ -83,6 +84,8 @@ pub struct Condensed {
     pub(super) stiffness: Vec<f64>,
     /// Stiffness per coordinate that defines κ: the same, or less where contacts are near-rigid.
     pub(super) reference_stiffness: Vec<f64>,
+    /// The exchange of each coordinate whose near-rigid slider has one.
+    pub(super) exchanges: Vec<Option<Exchange>>,
     /// All laws of a coordinate can stick, as friction does.
     pub(super) can_stick: Vec<bool>,
     pub(super) preloaded: bool,
@@ -110,6 +113,7 @@ impl Condensed {
             laws: Arc::clone(&self.laws),
             stiffness: try_copy(&self.stiffness, CONTEXT)?,
             reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
+            exchanges: try_copy(&self.exchanges, CONTEXT)?,
             can_stick: try_copy(&self.can_stick, CONTEXT)?,
             share: try_copy(&self.share, CONTEXT)?,
             contact_classes: self.contact_classes.clone(),
@@ -309,7 +313,7 @@ impl Condensed {
     #[must_use]
     #[inline]
     pub fn is_near_rigid(&self, coordinate: usize) -> bool {
-        self.reference_stiffness[coordinate] < self.stiffness[coordinate]
+        self.reference_stiffness[coordinate] < self.stiffness[coordinate] && self.exchanges[coordinate].is_none()
     }
 
     /// Whether a coordinate is eliminated from Newton's equations in its stuck or closed state.
@@ -318,7 +322,9 @@ impl Condensed {
     #[must_use]
     #[inline]
     pub fn may_be_eliminated(&self, coordinate: usize) -> bool {
-        self.can_stick[coordinate] && self.reference == Reference::Stuck && !self.is_near_rigid(coordinate)
+        self.can_stick[coordinate]
+            && self.reference == Reference::Stuck
+            && self.reference_stiffness[coordinate] >= self.stiffness[coordinate]
     }
 
     /// Whether a contact has a static force, so that the static solution is not zero.

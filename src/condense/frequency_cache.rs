@@ -179,6 +179,9 @@ impl FrequencyCache {
             && let Some(lanes) = &self.lanes
             && lanes.evaluate(omega, &mut self.current)
         {
+            for (i, table) in self.current.iter_mut().enumerate() {
+                condensed.exchange(i, table);
+            }
             self.tabulated = Some((omega, self.way));
             return Ok(());
         }
@@ -194,6 +197,7 @@ impl FrequencyCache {
             if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
                 && modal.evaluate((omega, self.modal_slopes), work, table, interrupt)?
             {
+                condensed.exchange(i, table);
                 continue;
             }
             interrupt.check()?;
@@ -202,6 +206,7 @@ impl FrequencyCache {
             let found = workspace.evaluate(condensed, i, omega, slopes, interrupt)?;
             table.value.copy_from_slice(&found.value);
             table.slope.copy_from_slice(&found.slope);
+            condensed.exchange(i, table);
             self.constant[i] = block.number == 0 && block.tied.is_none();
         }
         self.tabulated = Some((omega, self.way));

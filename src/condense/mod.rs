@@ -5,6 +5,8 @@ mod condensation;
 mod condensed;
 pub mod contact_classes;
 pub mod dynamic_stiffness;
+pub mod exchange;
+mod exchanged_motions;
 pub mod flexibility;
 mod flexibility_way;
 pub mod frequency_cache;

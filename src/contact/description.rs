@@ -152,6 +152,12 @@ impl Contact {
         self.ask(|law| law.law(length))
     }
 
+    /// The same force over the exchanged motion with its stiffness; `None` where the law has none.
+    #[doc(hidden)]
+    pub(crate) fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
+        self.ask(|law| law.exchanged(stiffness, length))
+    }
+
     /// The law of an active contact in an integration in time, in the caller's units.
     ///
     /// # Errors

@@ -133,6 +133,13 @@ pub trait ContactLaw {
     /// Those of the constants.
     fn law(&self, length: f64) -> Result<Arc<dyn Law>>;
 
+    /// The same force over the exchanged motion of [`crate::condense::exchange`] with its stiffness; `None` where the law is
+    /// no slider under a constant load.
+    fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
+        let _ = (stiffness, length);
+        None
+    }
+
     /// The law of an active contact in an integration in time, in the caller's units.
     ///
     /// # Errors

@@ -99,6 +99,26 @@ pub struct Corrected {
     pub omega: f64,
     /// Damping ratio of a nonlinear mode.
     pub damping: f64,
+    /// Coordinates whose motions are exchanged: rates, whose harmonics count 1/h; none where it is empty.
+    pub(crate) rates: Vec<bool>,
+}
+
+impl Corrected {
+    /// Size of the i-th carried harmonic.
+    pub(crate) fn size(&self, i: usize) -> f64 {
+        size_of_harmonic(&self.set, (&self.motion, &self.rates), i)
+    }
+}
+
+/// Size of the i-th harmonic of packed motions, of rates divided by its number.
+pub(super) fn size_of_harmonic(set: &HarmonicSet, (motion, rates): (&[f64], &[bool]), i: usize) -> f64 {
+    let of_rate = (set.numbers()[i] as f64).max(1.0).recip();
+    let signals = motion.chunks_exact(set.packed_len()).enumerate();
+    let of_one = |(c, y): (usize, &[f64])| {
+        let weight = if rates.get(c) == Some(&true) { of_rate } else { 1.0 };
+        weight * set.get(y, i).norm()
+    };
+    signals.map(of_one).fold(0.0, f64::hypot)
 }
 
 /// A solved point.
@@ -164,6 +184,7 @@ impl Solved<'_> {
                 watched: try_copy(self.watched, CONTEXT)?,
                 omega: self.omega,
                 damping,
+                rates: self.condensed.rates()?,
             },
         })
     }
@@ -204,14 +225,21 @@ pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
 }
 
 /// Sizes of the harmonics above those of `below`, relative to the norm of all.
-pub(super) fn tail(set: &HarmonicSet, below: &HarmonicSet, motion: &[f64]) -> Result<Vec<(usize, f64)>> {
-    let size = norm(motion);
+pub(super) fn tail(
+    set: &HarmonicSet,
+    below: &HarmonicSet,
+    (motion, rates): (&[f64], &[bool]),
+) -> Result<Vec<(usize, f64)>> {
+    let each = |i| size_of_harmonic(set, (motion, rates), i);
+    let size = if rates.is_empty() {
+        norm(motion)
+    } else {
+        (0..set.numbers().len()).map(each).fold(0.0, f64::hypot)
+    };
     let highest = below.numbers().last().copied().unwrap_or(0);
     let mut found = Vec::new();
     for (i, &h) in set.numbers().iter().enumerate().filter(|&(_, &h)| h > highest) {
-        let of_one = |y: &[f64]| set.get(y, i).norm();
-        let sum = motion.chunks_exact(set.packed_len()).map(of_one).fold(0.0, f64::hypot);
-        try_push(&mut found, (h, sum / size), CONTEXT)?;
+        try_push(&mut found, (h, each(i) / size), CONTEXT)?;
     }
     Ok(found)
 }

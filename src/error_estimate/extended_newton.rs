@@ -25,6 +25,10 @@ const LONG: f64 = 0.25;
 /// changes with the side, and the simplified step is long on both.
 const FALLEN: f64 = 0.25;
 
+/// Share of a damped step by which the residual of monotone equations falls where the step is right: they have one solution, to which
+/// every descent leads.
+const LEAST_DESCENT: f64 = 0.1;
+
 /// Damping factor below which a step is accepted without the monotonicity test.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
@@ -146,7 +150,9 @@ pub(super) fn extend<P: Problem>(
                 if !system.step(&mut next[..n], is_rough, interrupt)? {
                     return Ok(None);
                 }
-                let falls = norm(&next) <= (1.0 - 0.25 * damping) * size || system.residual() <= FALLEN * before;
+                let falls = norm(&next) <= (1.0 - 0.25 * damping) * size
+                    || system.residual() <= FALLEN * before
+                    || (system.is_monotone && system.residual() <= (1.0 - LEAST_DESCENT * damping) * before);
                 if last || falls {
                     break;
                 }

@@ -43,6 +43,8 @@ pub(super) struct ExtendedSystem<P> {
     factored: Factored,
     /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
     pub stalled: bool,
+    /// Whether the equations are those of exchanged motions, see [`crate::condense::exchange`].
+    pub is_monotone: bool,
     /// Residual that steps may leave.
     goal: f64,
     sizes: Sizes,
@@ -82,6 +84,7 @@ impl<P: Problem> ExtendedSystem<P> {
             system,
             factored,
             stalled: false,
+            is_monotone: false,
             goal: 0.0,
             sizes,
             work,
@@ -158,6 +161,20 @@ impl<P: Problem> ExtendedSystem<P> {
             .solve(&mut self.problem, tolerance, &mut self.b, interrupt)?;
         self.stalled |= !solved && most >= MOST_PRODUCTS;
         step.copy_from_slice(&self.b[..n]);
+        Ok(self.work.spend(each * self.system.products() as f64) && solved)
+    }
+
+    /// J⁻¹b with the matrix factored last; `false` where the iteration did not converge with the work that is left.
+    pub fn solve_for(&mut self, b: &[f64], x: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        let n = x.len();
+        let (packed, pairs) = self.factored_numbers();
+        let each = self.sizes.product(packed, pairs);
+        self.system
+            .limit_products(((self.work.left() / each) as usize).min(MOST_PRODUCTS));
+        self.b[..n].copy_from_slice(b);
+        self.b[n] = 0.0;
+        let solved = self.system.solve(&mut self.problem, COARSEST, &mut self.b, interrupt)?;
+        x.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 

@@ -7,10 +7,11 @@ use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_push};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
-use crate::error_estimate::estimate::{CONTEXT, extended_options, or_unknown};
+use crate::error_estimate::estimate::{CONTEXT, MARGIN, extended_options, or_unknown, relative};
 use crate::error_estimate::extended_newton::FirstStep;
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::factored_harmonics::{factored, whole};
+use crate::error_estimate::jump_error::{OF_HALF, OF_JUMPS};
 use crate::error_estimate::kept_changes::KeptChanges;
 use crate::error_estimate::kept_ratio::KeptRatio;
 use crate::error_estimate::one_extension::{Extent, extend_once};
@@ -179,7 +180,11 @@ impl<'a> ForcedEstimator<'a> {
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
-        let core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
+        let mut core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
+        if solved.condensed.has_exchanges() {
+            // No harmonic is weak, and none beyond is left out of the estimate: see `jump_error`.
+            core = core.max(least).min(most);
+        }
         Ok(Some(Extent {
             core,
             highest: core.max(least),
@@ -210,7 +215,49 @@ impl<'a> ForcedEstimator<'a> {
         if extent.core > extent.least && !core.is_cheap(&work) {
             return self.extend_by_doubling(solved, extent, work);
         }
-        Ok(self.extend_to(solved, None, extent, work)?.0)
+        let (found, left) = self.extend_to(solved, None, extent, work)?;
+        match found {
+            Some(found) if solved.condensed.has_exchanges() => self.with_half(solved, found, left),
+            found => Ok(found),
+        }
+    }
+
+    /// The estimate of a point with exchanged motions, no less than its change from half the harmonics tells.
+    #[inline(never)]
+    fn with_half(&mut self, solved: &Solved<'_>, mut found: Estimate, work: Work) -> Result<Option<Estimate>> {
+        let tolerance = self.options.tolerance;
+        let own = solved.condensed.set().numbers().last().copied().unwrap_or(0);
+        let misses = tolerance > 0.0 && MARGIN * found.response > tolerance;
+        let excited = solved.condensed.blocks().iter().filter(|block| block.has_force());
+        let excited = excited.map(|block| block.number).max().unwrap_or(1);
+        let slot = self.models.slot_with((own / 2).max(excited));
+        if misses || !found.certified || slot >= self.models.slots() || self.models.highest(slot) >= own {
+            return Ok(Some(found));
+        }
+        let half = self.models.highest(slot);
+        let extent = Extent {
+            core: half,
+            highest: half,
+            least: half,
+            first_step: FirstStep::Checked,
+            short: false,
+            by_doubling: true,
+        };
+        let Some(of_half) = self
+            .extend_to(solved, None, extent, work)?
+            .0
+            .filter(|half| half.certified)
+        else {
+            return Ok(None);
+        };
+        let change = |estimate: &Estimate| (estimate.corrected.response - solved.response).norm();
+        let more = OF_HALF * change(&of_half) - OF_JUMPS * change(&found);
+        let more = relative(more.max(0.0), found.corrected.response);
+        found.response += more;
+        for error in &mut found.responses {
+            *error += more;
+        }
+        Ok(Some(found))
     }
 
     /// Extends to twice the harmonics, to four times, and on: up to the core, or until the next change of the response,
@@ -343,8 +390,10 @@ impl<'a> ForcedEstimator<'a> {
                 condensed
             } else {
                 // One scale for all points, so that they share tables of one unit.
-                let scaled_at = self.range.map_or(solved.omega, |(start, _)| start);
-                Condensed::new(self.model, &options, scaled_at, self.interrupt)?
+                let (start, stop) = self.range.unwrap_or((solved.omega, solved.omega));
+                // Exchanged motions are those of the whole range.
+                let stop = if solved.condensed.has_exchanges() { stop } else { start };
+                Condensed::new(self.model, &options, (start, stop), self.interrupt)?
             };
             let carried = condensed.set().numbers().last().copied().unwrap_or(0);
             Ok(Resolution {
@@ -381,7 +430,9 @@ impl<'a> ForcedEstimator<'a> {
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
         let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
         let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
-        let all = if stalled { whole(&sizes, &work) } else { None };
+        // All harmonics of an exchanged motion couple with each other.
+        let couples = stalled || condensed.has_exchanges();
+        let all = if couples { whole(&sizes, &work) } else { None };
         let factored = all.unwrap_or_else(|| factored(&sizes, compliant, &work));
         let packed = sizes.packed().min(2.0 * factored.block as f64);
         let pairs = factored.each.saturating_sub(factored.block) as f64;
@@ -398,6 +449,7 @@ impl<'a> ForcedEstimator<'a> {
             problem.watch((self.responses, response), samples)?;
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
+        system.is_monotone = condensed.has_exchanges();
         if by_modes && !system.problem.has_modes() {
             let tolerance = tables_within(self.options.tolerance);
             let modal = self.modal_tables(condensed, tolerance)?;

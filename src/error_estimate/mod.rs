@@ -7,6 +7,7 @@ mod extended_newton;
 mod extended_system;
 mod factored_harmonics;
 pub mod forced_response_error;
+mod jump_error;
 mod kept_changes;
 mod kept_ratio;
 mod mode_doubling;

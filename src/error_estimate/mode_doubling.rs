@@ -150,6 +150,7 @@ mod tests {
                 motion: Vec::new(),
                 response: 1.0.into(),
                 watched: Vec::new(),
+                rates: Vec::new(),
                 omega,
                 damping,
             },

@@ -371,7 +371,7 @@ impl<'a> ModeEstimator<'a> {
             *c = z - s;
         }
         let change = norm(&change) / size;
-        let tail = tail(set, solved.condensed.set(), motion)?;
+        let tail = tail(set, solved.condensed.set(), (motion, &[]))?;
         let certified = extended.certified && (!short || has_converged_tail(&tail, change));
         let known = |x: f64| if certified { x } else { f64::NAN };
         let next = (response - before).norm();
@@ -398,6 +398,7 @@ impl<'a> ModeEstimator<'a> {
                 watched: Vec::new(),
                 omega: omega2,
                 damping: damping2,
+                rates: Vec::new(),
             },
         }))
     }

@@ -5,6 +5,7 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, ROUNDING, SHARE, has_converged_tail, omits_nothing, relative, tail};
 use crate::error_estimate::extended_newton::{ExtendedSolution, FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::jump_error::beyond_extension;
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::Interrupt;
@@ -112,7 +113,11 @@ pub(super) fn extend_once(
     let (x, dx) = system.problem.observe(&extended.at, &extended.next);
     let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
     let watched = watched(system, solved, &extended, length)?;
-    let tail = tail(set, solved.condensed.set(), &z)?;
+    let rates = condensed.rates()?;
+    let tail = tail(set, solved.condensed.set(), (&z, &rates))?;
+    let Some((beyond, late)) = beyond_extension(system, condensed, (&extended.at, omega), interrupt)? else {
+        return Ok(None);
+    };
     let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
     let known = |x: f64| if certified { x } else { f64::NAN };
     for z in &mut z {
@@ -120,13 +125,17 @@ pub(super) fn extend_once(
     }
     let mut responses = try_vec(watched.values.len(), f64::NAN, CONTEXT)?;
     for (error, (value, change)) in responses.iter_mut().zip(watched.values.iter().zip(&watched.changes)) {
-        *error = known(relative(*change, *value));
+        // The lateness of near-rigid sliders is known of the response that every point has.
+        *error = known(relative(beyond * change, *value) + relative(late * length, response));
     }
-    let of_response = relative((response - solved.response).norm() + next, response);
+    let of_response = relative(
+        beyond * (response - solved.response).norm() + next + late * length,
+        response,
+    );
     Ok(Some(Estimate {
         certified,
         too_large: !certified && extent.short,
-        motion: known(change + extended.missing * norm(&extended.next[..n]) / size),
+        motion: known(beyond * change + extended.missing * norm(&extended.next[..n]) / size),
         response: known(responses.iter().copied().reduce(f64::max).unwrap_or(of_response)),
         responses,
         frequency: known(0.0),
@@ -142,6 +151,7 @@ pub(super) fn extend_once(
             watched: watched.values,
             omega,
             damping: 0.0,
+            rates,
         },
     }))
 }

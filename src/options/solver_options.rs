@@ -71,6 +71,8 @@ pub struct SolverOptions {
     /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
     /// point; `None`: none. A nonlinear mode refuses it.
     pub stability: Option<Waves>,
+    /// Whether near-rigid sliders have exchanged motions, see [`crate::condense::exchange`]; an analysis sets it.
+    pub exchange: bool,
     /// Harmonics that are carried beyond those which forces and laws excite by themselves; an analysis with a guess sets it.
     pub content: Content,
 }
@@ -96,6 +98,7 @@ impl Default for SolverOptions {
             certificate: 1e-8,
             memory_limit: 0,
             stability: None,
+            exchange: false,
             content: Content::default(),
         }
     }

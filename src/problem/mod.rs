@@ -16,6 +16,7 @@ mod parametric_problem;
 mod passed_resonance;
 mod residual_scale;
 mod single_balance;
+mod slip_forces;
 pub mod static_force;
 pub mod static_state;
 

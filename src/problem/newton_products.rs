@@ -33,6 +33,10 @@ impl MatrixFree for HarmonicBalance<'_> {
         self.group() * coordinates.filter(|&c| self.forces.is_coupled(c)).count()
     }
 
+    fn couples_all(&self) -> bool {
+        self.condensed.has_exchanges()
+    }
+
     fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         let set = self.condensed.set();
         let m = set.packed_len();

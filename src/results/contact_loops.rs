@@ -44,6 +44,8 @@ pub struct Orbit<'a> {
     motion: PeriodicMotion<'a>,
     maker: Maker<'a>,
     samples: usize,
+    /// The packed motion of the contact, where the law has an exchanged one.
+    actual: Option<&'a [f64]>,
 }
 
 impl<'a> Orbit<'a> {
@@ -60,6 +62,16 @@ impl<'a> Orbit<'a> {
             },
             maker: Maker::Law(law),
             samples,
+            actual: None,
+        }
+    }
+
+    /// The same where the law has an exchanged motion, with the motion of the contact.
+    #[must_use]
+    pub fn moving(self, actual: &'a [f64]) -> Self {
+        Self {
+            actual: Some(actual),
+            ..self
         }
     }
 
@@ -75,6 +87,7 @@ impl<'a> Orbit<'a> {
             },
             maker: Maker::Spring(stiffness),
             samples: 0,
+            actual: None,
         }
     }
 
@@ -90,7 +103,7 @@ impl<'a> Orbit<'a> {
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.
     pub fn follow(&self, n: usize, interrupt: &Interrupt<'_>) -> Result<Follower<'a>> {
         match self.maker {
-            Maker::Law(law) => Follower::of_law(self.motion, n, (law, self.samples), interrupt),
+            Maker::Law(law) => Follower::of_law((self.motion, self.actual), n, (law, self.samples), interrupt),
             Maker::Spring(stiffness) => Ok(Follower::of_spring(self.motion, n, stiffness)),
         }
     }
@@ -106,6 +119,12 @@ impl<'a> Orbit<'a> {
         };
         let PeriodicMotion { set, packed, .. } = self.motion;
         match law.form() {
+            Form::PiecewiseLinear(_) if self.actual.is_some() => {
+                let shares = ScalarOrbit::new(set, packed, law, interrupt)?.account();
+                let found = self.evaluated(law, interrupt)?;
+                let work = if shares.slip == 0.0 { 0.0 } else { found.work };
+                Ok(Account { work, ..shares })
+            }
             Form::PiecewiseLinear(_) | Form::Spectral(_) => {
                 Ok(ScalarOrbit::new(set, packed, law, interrupt)?.account())
             }
@@ -127,6 +146,9 @@ impl<'a> Orbit<'a> {
         } = self.motion;
         let mut found = Evaluation::force_alone(set, directions)?;
         let mut evaluator = Evaluator::force_alone(set, self.samples, std::iter::once(law))?;
+        if directions == 1 {
+            evaluator.prepare(set, packed, interrupt)?;
+        }
         evaluator.evaluate(law, set, packed, omega, &mut found, interrupt)?;
         let (slip, open) = (found.slip_fraction, found.open_fraction);
         let takes_nothing = match law.form() {
@@ -137,7 +159,8 @@ impl<'a> Orbit<'a> {
         let mut work = 0.0;
         if !takes_nothing {
             let m = set.packed_len().max(1);
-            for (force, motion) in found.force.chunks_exact(m).zip(packed.chunks_exact(m)) {
+            let motion = self.actual.unwrap_or(packed);
+            for (force, motion) in found.force.chunks_exact(m).zip(motion.chunks_exact(m)) {
                 for (i, &h) in set.numbers().iter().enumerate() {
                     work += PI * h as f64 * (set.get(force, i) * set.get(motion, i).conj()).im;
                 }
@@ -156,8 +179,9 @@ impl<'a> Orbit<'a> {
         let mut extrema = extrema(set)?;
         let mut ranges = Vec::new();
         for k in 0..directions {
-            search.find(set, self.motion.signal(k), &mut extrema, interrupt)?;
-            try_push(&mut ranges, range(set, self.motion.signal(k), &extrema), CONTEXT)?;
+            let signal = self.actual.unwrap_or(self.motion.signal(k));
+            search.find(set, signal, &mut extrema, interrupt)?;
+            try_push(&mut ranges, range(set, signal, &extrema), CONTEXT)?;
         }
         Ok(ranges)
     }

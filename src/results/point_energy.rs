@@ -77,7 +77,8 @@ impl Branch {
         }
         let motion = self.motion_at(point).unwrap_or(&[]);
         interrupt.check()?;
-        let balance = balance(condensed, omega, &x, recovery.forces(), motion);
+        let motion = condensed.relative_motion(motion, recovery.forces())?;
+        let balance = balance(condensed, omega, &x, recovery.forces(), &motion);
         let peaks = peaks(condensed, omega, &x, interrupt)?;
         let unit = |energy: f64| energy * length * length;
         let full_wheel = |energy: f64| unit(energy) * condensed.sectors() as f64;

@@ -3,7 +3,7 @@
 use crate::condense::Resolution;
 use crate::condense::flexibility::Workspace;
 use crate::condense::near_rigid_motion;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::problem::contact_forces::ContactForces;
 use crate::results::branch::Branch;
@@ -11,6 +11,21 @@ use num_complex::Complex64;
 
 /// A solution: packed relative motions in the solver's units, angular frequency, and the ratio of artificial damping.
 type Solution<'a> = (&'a [f64], f64, f64);
+
+impl Branch {
+    /// Packed relative motions of a stored point, in the solver's units.
+    ///
+    /// # Errors
+    /// As [`Recovery::at`].
+    pub(crate) fn relative_motion_at(&self, point: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
+        let motion = self.motion_at(point).unwrap_or(&[]);
+        let condensed = self.condensed_at(point);
+        if !condensed.has_exchanges() {
+            return try_copy(motion, CONTEXT);
+        }
+        condensed.relative_motion(motion, Recovery::at(self, point, interrupt)?.forces())
+    }
+}
 
 /// Recovers the motion of points, one at a time.
 pub(crate) struct Recovery<'a> {

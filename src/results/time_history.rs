@@ -300,7 +300,15 @@ impl Branch {
             None => Arc::clone(&assembled.law),
             Some(load) => load.contact_at(omega).law(condensed.length())?,
         };
-        let orbit = Orbit::new(set, &motion, &*law, omega, self.samples_at(point));
+        let mut orbit = Orbit::new(set, &motion, &*law, omega, self.samples_at(point));
+        let mut actual = Vec::new();
+        if let [c] = assembled.coordinates[..]
+            && condensed.is_exchanged(c)
+        {
+            let all = self.relative_motion_at(point, interrupt)?;
+            try_extend(&mut actual, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+            orbit = orbit.moving(&actual);
+        }
         use_it(&orbit, condensed.length())
     }
 

@@ -11,6 +11,8 @@ mod hard_sweeps;
 mod interrupts;
 mod linear_stretches;
 mod near_rigid;
+mod near_rigid_chains;
+mod near_rigid_slip;
 mod passed_resonances;
 mod random_chains;
 mod random_points;

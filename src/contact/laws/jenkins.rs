@@ -12,6 +12,7 @@ use crate::contact::contact_state::State;
 use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d_events::Slider;
+use crate::contact::laws::saturated::Saturated;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::Piece;
@@ -116,6 +117,11 @@ impl ContactLaw for JenkinsContact {
             stiffness: self.kt,
             limit: self.slip_limit / length,
         }))
+    }
+
+    fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
+        let limit = self.slip_limit / length;
+        Some(Arc::new(Saturated { stiffness, limit }))
     }
 
     fn in_time(&self) -> Result<LawInTime> {

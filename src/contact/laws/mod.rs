@@ -10,6 +10,7 @@ mod friction_3d_stuck;
 pub mod iwan;
 mod polynomial_terms;
 pub mod registry;
+pub mod saturated;
 mod user_states;
 
 pub use registry::*;

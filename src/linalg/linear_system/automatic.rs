@@ -13,6 +13,9 @@ use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
 /// Columns up to which a direct solution is quicker.
 const DIRECT_UP_TO: usize = 240;
 
+/// The same where the last numbers of a group couple as much as the first.
+const DIRECT_IF_COUPLED: usize = 1200;
+
 /// Unknowns of the factored block, unless the first numbers of the groups are more.
 const BLOCK: usize = 200;
 
@@ -84,7 +87,12 @@ impl AutomaticSystem {
             middle: group,
             behind,
         };
-        (part < group && operator.coupled() > DIRECT_UP_TO).then_some(lengths)
+        let direct_up_to = if operator.couples_all() {
+            DIRECT_IF_COUPLED
+        } else {
+            DIRECT_UP_TO
+        };
+        (part < group && operator.coupled() > direct_up_to).then_some(lengths)
     }
 
     fn attainable(&self, tolerance: f64) -> f64 {

@@ -63,6 +63,11 @@ pub trait MatrixFree {
     /// Number of columns that differ from those of the identity.
     fn coupled(&self) -> usize;
 
+    /// Whether the last numbers of a group couple as much as the first, so that factors of a block help an iteration little.
+    fn couples_all(&self) -> bool {
+        false
+    }
+
     /// Fills the block of J between the first `part` numbers of each group and those behind, column-major, and tells of each of its
     /// columns whether it differs from that of the identity.
     ///

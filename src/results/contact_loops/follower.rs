@@ -18,6 +18,8 @@ const SLICE: usize = 1 << 14;
 /// A contact under a periodic motion, its events located and its states found, at n times.
 pub struct Follower<'a> {
     motion: PeriodicMotion<'a>,
+    /// The packed motion of the contact, where the law has an exchanged one.
+    actual: Option<&'a [f64]>,
     n: usize,
     way: Way<'a>,
 }
@@ -37,7 +39,12 @@ impl<'a> Follower<'a> {
     /// A linear spring at n times.
     pub(super) fn of_spring(motion: PeriodicMotion<'a>, n: usize, stiffness: f64) -> Self {
         let way = Way::Spring(stiffness);
-        Self { motion, n, way }
+        Self {
+            motion,
+            actual: None,
+            n,
+            way,
+        }
     }
 
     /// A law at n times; `samples` are those requested in the solution.
@@ -45,7 +52,7 @@ impl<'a> Follower<'a> {
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.
     pub(super) fn of_law(
-        motion: PeriodicMotion<'a>,
+        (motion, actual): (PeriodicMotion<'a>, Option<&'a [f64]>),
         n: usize,
         (law, samples): (&'a dyn Law, usize),
         interrupt: &Interrupt<'_>,
@@ -58,7 +65,7 @@ impl<'a> Follower<'a> {
             Form::Hysteretic(law) => Way::MarchedForces(MarchedForces::new(&motion, n, (law, samples), interrupt)?),
             Form::Memoryless(law) => Way::CalledForces(CalledForces::new(law, SLICE.min(n))?),
         };
-        Ok(Self { motion, n, way })
+        Ok(Self { motion, actual, n, way })
     }
 
     /// Calls `take` with one slice after the other.
@@ -127,6 +134,12 @@ impl<'a> Follower<'a> {
             }
             Way::MarchedForces(orbit) => orbit.copy(&self.motion, (first, n), out),
             Way::CalledForces(law) => law.fill(&self.motion, (first, n), out, interrupt)?,
+        }
+        if let Some(actual) = self.actual {
+            for (j, x) in (first..).zip(&mut out.motion) {
+                check_time(interrupt, j, set)?;
+                *x = jet(set, actual, time(set, j, n)).x;
+            }
         }
         Ok(())
     }

@@ -1,0 +1,292 @@
+//! The exchanged motions of a condensed model, see [`crate::condense::exchange`]: their choice, their tables, and the relative
+//! motions that they stand for.
+
+use crate::condense::Condensed;
+use crate::condense::exchange::Exchange;
+use crate::condense::flexibility::{Table, Workspace};
+use crate::condense::relative_coordinates::AssembledDirection;
+use crate::condense::sweep::Sweep;
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::lu::Lu;
+use crate::model::Model;
+use num_complex::Complex64;
+use std::f64::consts::E;
+
+const CONTEXT: &str = "the near-rigid contacts";
+
+/// Number of harmonics for which α is chosen, whatever the number of those carried, so that motions are the same for
+/// all. On the chain of eight masses of `tests/robustness/near_rigid_slip.rs` a third as many have half the error where
+/// few harmonics are carried, and twice the error where slip reverses without a stick.
+const NOMINAL: f64 = 160.0;
+
+/// Selects the coordinates whose motions are exchanged: those of one near-rigid slider alone, which have no reference stiffness
+/// then.
+pub(super) fn select_exchanged(
+    model: &Model,
+    assembled: &[AssembledDirection],
+    (stiffness, reference): (&[f64], &mut [f64]),
+    exchanges: &mut [Option<Exchange>],
+) -> Result<()> {
+    let mut count = try_vec(exchanges.len(), 0_usize, CONTEXT)?;
+    for at in assembled {
+        count[at.coordinate] += 1;
+    }
+    for at in assembled {
+        let (c, contact) = (at.coordinate, &model.contacts()[at.contact]);
+        let is_loaded = model.speed_loads().iter().any(|load| load.contact == at.contact);
+        if count[c] == 1 && reference[c] < stiffness[c] && !is_loaded && contact.exchanged(1.0, 1.0).is_some() {
+            let compliance = stiffness[c].recip();
+            exchanges[c] = Some(Exchange {
+                stiffness: 1.0,
+                compliance,
+                ring: f64::INFINITY,
+            });
+            reference[c] = 0.0;
+        }
+    }
+    Ok(())
+}
+
+impl Condensed {
+    /// Whether some motion is exchanged.
+    #[must_use]
+    pub fn has_exchanges(&self) -> bool {
+        self.exchanges.iter().any(Option::is_some)
+    }
+
+    /// The exchange of a coordinate.
+    #[must_use]
+    pub fn exchange_of(&self, coordinate: usize) -> Option<Exchange> {
+        self.exchanges[coordinate]
+    }
+
+    /// Whether the motion of a coordinate is exchanged.
+    #[must_use]
+    pub fn is_exchanged(&self, coordinate: usize) -> bool {
+        self.exchanges[coordinate].is_some()
+    }
+
+    /// Coordinates whose motions are exchanged; empty where none is.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn rates(&self) -> Result<Vec<bool>> {
+        let mut rates = Vec::new();
+        for exchange in self.exchanges.iter().filter(|_| self.has_exchanges()) {
+            try_push(&mut rates, exchange.is_some(), CONTEXT)?;
+        }
+        Ok(rates)
+    }
+
+    /// Sets α of all exchanges, from the middle of a sweep, and the frequencies at which their sticks ring.
+    pub(super) fn set_exchanges(&mut self, sweep: Sweep, interrupt: &Interrupt<'_>) -> Result<()> {
+        let first = self.set.numbers().iter().position(|&h| h > 0);
+        let Some(i) = first.filter(|_| self.has_exchanges()) else {
+            return Ok(());
+        };
+        let number = self.set.numbers()[i] as f64;
+        let omega = NOMINAL * (sweep.start * sweep.stop).sqrt();
+        let flexibility = without_reference(self, (i, omega / number), interrupt)?;
+        let n = self.coordinates();
+        for c in 0..n {
+            let Some(mut exchange) = self.exchanges[c] else {
+                continue;
+            };
+            let at_nominal = flexibility[c * n + c].norm();
+            exchange.stiffness = (E * NOMINAL * at_nominal).recip();
+            // The mass −1/(Gω²) at the nominal harmonic, then at the ring of that mass.
+            let near = omega * (at_nominal / exchange.compliance).sqrt();
+            let there = without_reference(self, (i, near / number), interrupt)?;
+            exchange.ring = near * (there[c * n + c].norm() / exchange.compliance).sqrt();
+            self.stiffness[c] = exchange.stiffness;
+            self.exchanges[c] = Some(exchange);
+        }
+        Ok(())
+    }
+
+    /// Turns a table of the i-th carried harmonic into that of the exchanged motions.
+    pub(super) fn exchange(&self, i: usize, table: &mut Table) {
+        let number = self.set.numbers()[i];
+        let outputs = self.coordinates() + 1;
+        let s = Exchange::rate(number);
+        for (c, exchange) in self.exchanges.iter().enumerate() {
+            let Some(exchange) = exchange else { continue };
+            for values in [&mut table.value, &mut table.slope] {
+                for entry in values.iter_mut().skip(c).step_by(outputs) {
+                    *entry *= s;
+                }
+            }
+            table.value[c * outputs + c] += s * exchange.compliance - exchange.stiffness.recip();
+        }
+    }
+
+    /// The packed relative motions of a point, of exchanged ones the motion itself.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn relative_motion(&self, motion: &[f64], forces: &[f64]) -> Result<Vec<f64>> {
+        let mut found = try_copy(motion, CONTEXT)?;
+        let m = self.set.packed_len();
+        for (c, exchange) in self.exchanges.iter().enumerate() {
+            let Some(exchange) = exchange else { continue };
+            for (i, &number) in self.set.numbers().iter().enumerate() {
+                let y = exchange.motion(
+                    number,
+                    self.set.get_at(motion, c * m, i),
+                    self.set.get_at(forces, c * m, i),
+                );
+                self.set.set(&mut found[c * m..(c + 1) * m], i, y);
+            }
+        }
+        Ok(found)
+    }
+
+    /// A start for the exchanged motions, from packed relative ones whose forces are not known.
+    pub fn exchange_start(&self, motion: &mut [f64]) {
+        let m = self.set.packed_len();
+        for (c, motion) in motion.chunks_exact_mut(m).enumerate() {
+            if self.exchanges[c].is_none() {
+                continue;
+            }
+            for (i, &number) in self.set.numbers().iter().enumerate() {
+                let y = self.set.get(motion, i);
+                self.set.set(motion, i, Exchange::rate(number) * y);
+            }
+        }
+    }
+}
+
+/// The flexibility of the structure without reference stiffness in the i-th carried harmonic, (1 − Gκ)⁻¹G, column-major.
+fn without_reference(
+    condensed: &Condensed,
+    (i, omega): (usize, f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<Complex64>> {
+    let n = condensed.coordinates();
+    let mut workspace = Workspace::new(condensed, None)?;
+    let table = &workspace.evaluate(condensed, i, omega, false, interrupt)?.value;
+    let mut found = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    let mut lu = Lu::new(n, n)?;
+    let a = lu.matrix();
+    for c in 0..n {
+        for r in 0..n {
+            let g = table[c * (n + 1) + r];
+            found[c * n + r] = g;
+            a[c * n + r] = Complex64::from(f64::from(u8::from(c == r))) - g * condensed.kappa(c, i);
+        }
+    }
+    match lu.factor(interrupt) {
+        // A resonance: the flexibility with reference stiffness is as good a scale.
+        Err(e) if e.status == Status::Singular => return Ok(found),
+        factored => factored?,
+    }
+    lu.solve_columns(&mut found, false, interrupt)?;
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::condense::Condensed;
+    use crate::condense::frequency_cache::FrequencyCache;
+    use crate::condense::test_chains::{DAMPED, structure};
+    use crate::contact::Contact;
+    use crate::interrupt::Interrupt;
+    use crate::options::SolverOptions;
+    use num_complex::Complex64;
+
+    /// Whatever the forces are, the motion that follows from the exchanged one is that of the structure under them.
+    #[test]
+    fn exchanged_motions_are_those_of_the_structure() {
+        let interrupt = Interrupt::none();
+        for sectors in [1, 9] {
+            let mut model = structure(sectors, DAMPED[0].0);
+            model.add_contact(&Contact::jenkins(1, None, 1e7, 0.3, 1.0)).unwrap();
+            // A mean.
+            model
+                .add_contact(&Contact::unilateral(None, Some(2), 3.0, 0.1))
+                .unwrap();
+            let options = |exchange| SolverOptions {
+                harmonics: 5,
+                exchange,
+                ..SolverOptions::default()
+            };
+            let [plain, exchanged] = [false, true].map(|exchange| {
+                let condensed = Condensed::new(&model, &options(exchange), (0.6, 0.9), &interrupt).unwrap();
+                let tables = FrequencyCache::new(&condensed, 0, (0.7, 0.7), &interrupt).unwrap();
+                (condensed, tables)
+            });
+            let ((plain, mut of_plain), (exchanged, mut of_exchanged)) = (plain, exchanged);
+            let own: Vec<usize> = (0..2).filter(|&c| exchanged.is_exchanged(c)).collect();
+            let [own] = own[..] else { panic!("{own:?}") };
+            assert!(!plain.has_exchanges() && exchanged.is_exchanged(own));
+            of_plain.tabulate(&plain, 0.7, &interrupt).unwrap();
+            of_exchanged.tabulate(&exchanged, 0.7, &interrupt).unwrap();
+            let set = exchanged.set();
+            assert!(set.has_mean());
+            let (m, unit) = (set.packed_len(), plain.length() / exchanged.length());
+            let (mut x, mut forces) = (vec![0.0; 2 * m], vec![0.0; 2 * m]);
+            let force = |c: usize, i: usize| {
+                let imaginary = if i == 0 { 0.0 } else { 0.3 * i as f64 };
+                Complex64::new(0.2 + c as f64, imaginary)
+            };
+            for i in 0..set.numbers().len() {
+                for c in 0..2 {
+                    set.set(&mut forces[c * m..(c + 1) * m], i, force(c, i));
+                }
+                // The other contact moves such that f − κ y = f for it: by nothing.
+                let table = &of_exchanged.current()[i].value;
+                let mut z = table[2 * 3 + own];
+                for c in 0..2 {
+                    z -= table[c * 3 + own] * force(c, i);
+                }
+                set.set(&mut x[own * m..(own + 1) * m], i, z);
+            }
+            let y = exchanged.relative_motion(&x, &forces).unwrap();
+            for i in 0..set.numbers().len() {
+                // Without exchange y = y_lin − G (f − κ y): both rows solved, with κ of the contact alone.
+                let table = &of_plain.current()[i].value;
+                let (mut right, kappa) = (table[2 * 3 + own] * unit, plain.kappa(own, i));
+                for c in 0..2 {
+                    right -= table[c * 3 + own] * force(c, i);
+                }
+                let exact = right / (1.0 - table[own * 3 + own] * kappa);
+                let found = set.get(&y[own * m..(own + 1) * m], i);
+                // The creep of the mean is divided out with its digits.
+                let digits = if i == 0 { 1e-8 } else { 1e-11 };
+                let off = (found - exact).norm();
+                assert!(off <= digits * exact.norm(), "{sectors}, {i}: {found} for {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_of_exchanged_tables_are_differences() {
+        let interrupt = Interrupt::none();
+        let mut model = structure(1, DAMPED[0].0);
+        model.add_contact(&Contact::jenkins(1, None, 1e7, 0.3, 1.0)).unwrap();
+        let options = SolverOptions {
+            harmonics: 5,
+            exchange: true,
+            ..SolverOptions::default()
+        };
+        let condensed = Condensed::new(&model, &options, (0.6, 0.9), &interrupt).unwrap();
+        let at = |omega: f64| {
+            let mut tables = FrequencyCache::new(&condensed, 0, (0.6, 0.9), &interrupt).unwrap();
+            tables.tabulate(&condensed, omega, &interrupt).unwrap();
+            tables
+        };
+        let step = 1e-5;
+        let [below, here, above] = [0.7 - step, 0.7, 0.7 + step].map(at);
+        for i in 0..condensed.set().numbers().len() {
+            let values = above.current()[i].value.iter().zip(&below.current()[i].value);
+            for ((a, b), slope) in values.zip(&here.current()[i].slope) {
+                let difference = (a - b) / (2.0 * step);
+                assert!(
+                    (difference - slope).norm() <= 1e-5 * (1.0 + slope.norm()),
+                    "{difference} for {slope}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Near-rigid contacts that really slip, with a tolerance, against integration in time from event to event
+//! (relative error below 1e-8; rigid Coulomb friction from a separate program, which 2e6 and 4e8 meet within 4e-5).
+
+use crate::common::sweep;
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::SolverOptions;
+use hbvib::results::Branch;
+use num_complex::Complex64;
+
+const MASSES: usize = 8;
+
+fn solver() -> SolverOptions {
+    SolverOptions {
+        response_dof: Some(0),
+        ..SolverOptions::default()
+    }
+}
+
+/// Eight masses 1 between springs 1, held at both ends, with a slider of stiffness `kt` at the fifth.
+fn chain(kt: f64) -> Model {
+    let (mut k, mut m) = (vec![0.0; MASSES * MASSES], vec![0.0; MASSES * MASSES]);
+    for i in 0..MASSES {
+        k[i * MASSES + i] = 2.0;
+        m[i * MASSES + i] = 1.0;
+        if i > 0 {
+            k[i * MASSES + i - 1] = -1.0;
+            k[(i - 1) * MASSES + i] = -1.0;
+        }
+    }
+    let mut model = Model::new(MASSES).unwrap();
+    for (kind, matrix) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
+        model.set_matrix(kind, &MatrixView::dense(MASSES, matrix)).unwrap();
+    }
+    model.set_rayleigh(0.02, 0.0).unwrap();
+    model.add_contact(&Contact::jenkins(4, None, kt, 0.3, 1.0)).unwrap();
+    model.add_force(0, 1, 0.2.into()).unwrap();
+    model
+}
+
+fn fundamental(branch: &Branch, point: usize) -> Complex64 {
+    let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * MASSES];
+    branch.harmonics_at(point, &mut x).unwrap();
+    x[MASSES]
+}
+
+/// Frequency, and the fundamental of the first mass with kt = 3e4 and of rigid friction.
+const IN_TIME: [(f64, [f64; 2], [f64; 2]); 6] = [
+    (0.55, [0.447_888_817, -0.048_134_908], [0.447_875_105, -0.048_128_599]),
+    (0.565, [0.442_824_802, -0.151_274_543], [0.442_854_383, -0.151_222_216]),
+    (0.605, [0.411_752_919, -0.323_261_827], [0.411_814_054, -0.323_240_826]),
+    (0.62, [0.215_612_352, -0.390_626_962], [0.215_679_151, -0.390_667_713]),
+    (0.665, [0.042_595_499, -0.543_098_003], [0.042_632_108, -0.543_261_528]),
+    (1.15, [0.304_294_226, -0.309_169_812], [0.304_322_254, -0.309_104_565]),
+];
+
+#[test]
+fn single_frequencies_with_real_slip_are_within_the_tolerance() {
+    for (omega, stiff, rigid) in IN_TIME {
+        for (kt, [re, im]) in [(3e4, stiff), (2e6, rigid), (4e8, rigid)] {
+            let branch = sweep(&chain(kt), &solver(), omega, omega, &[]);
+            let name = format!("kt {kt:e}, {omega}");
+            assert_eq!(branch.status(), Status::Ok, "{name}");
+            let exact = Complex64::new(re, im);
+            let error = (fundamental(&branch, 0) - exact).norm() / exact.norm();
+            let estimate = branch.error_estimate()[0];
+            println!(
+                "{name}: H {}, error {error:.1e}, estimate {estimate:.1e}",
+                branch.harmonics()
+            );
+            assert!(error <= 1e-3, "{name}: {error:e}");
+            // Estimates were 1e-8 and less beside errors of 1e-4.
+            assert!(
+                error <= 1e-4 + 4.0 * estimate,
+                "{name}: {error:e}, estimated {estimate:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sweep_through_the_onset_of_slip_takes_few_harmonics() {
+    for kt in [3e4, 2e6, 4e8] {
+        let branch = sweep(&chain(kt), &solver(), 0.3, 0.5505, &[0.55]);
+        assert_eq!(branch.status(), Status::Ok, "{kt:e}");
+        assert!(branch.harmonics() <= 63 && branch.points() < 200, "{kt:e}");
+        let exact = Complex64::new(0.447_875_105, -0.048_128_599);
+        let point = branch.at(0)[0].point;
+        let error = (fundamental(&branch, point) - exact).norm() / exact.norm();
+        assert!(error <= 1e-3, "{kt:e}: {error:e}");
+    }
+}
+
+/// The force does the work that damping and contact take, and the loop of the contact is that of its law.
+#[test]
+fn energies_and_loops_are_those_of_the_motion_of_the_contact() {
+    let (omega, limit) = (0.605, 0.3);
+    let branch = sweep(&chain(2e6), &solver(), omega, omega, &[]);
+    let energy = branch.energy_at(0).unwrap();
+    let work = -std::f64::consts::PI * 0.2 * fundamental(&branch, 0).im;
+    let taken = energy.structural_loss + energy.friction_loss;
+    assert!((taken / work - 1.0).abs() < 1e-8, "{taken} for {work}");
+    let summary = branch.contact_summary(0, 0).unwrap();
+    assert!((summary.work / energy.friction_loss - 1.0).abs() < 1e-8);
+    assert!(summary.slip_share > 0.1 && summary.slip_share < 1.0);
+    let n = 400;
+    let found = branch.contact_loop(0, 0, n).unwrap();
+    assert!(found.force.iter().all(|f| f.abs() <= limit * (1.0 + 1e-12)));
+    // The loop of a rigid slider: work of the force along the motion, sample by sample.
+    let around = (0..n).map(|j| {
+        let (next, before) = (found.motion[(j + 1) % n], found.motion[j]);
+        0.5 * (found.force[j] + found.force[(j + 1) % n]) * (next - before)
+    });
+    let around: f64 = around.sum();
+    assert!(
+        (around / summary.work - 1.0).abs() < 0.02,
+        "{around} for {}",
+        summary.work
+    );
+    // Where it sticks it rests, but for what the harmonics leave out.
+    let largest = found.motion.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+    assert!((largest / summary.half_range[0] - 1.0).abs() < 0.01);
+}
