@@ -4,6 +4,7 @@
 mod common;
 
 mod derivatives;
+mod engine_orders;
 mod peaks;
 mod readings;
 mod refused;

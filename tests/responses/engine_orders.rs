@@ -1,0 +1,127 @@
+//! Engine orders 2 and 3 in one run on one sector: each harmonic has its nodal diameter, and every blade is that of the whole wheel.
+
+use crate::common::Wheel;
+use hbvib::{
+    Branch, Component, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
+    VerifyOptions, forced_response, verify,
+};
+
+const FORCES: [(usize, f64); 2] = [(2, 0.05), (3, 0.04)];
+
+/// Degrees of freedom of a sector, a blade on a disk, and sectors.
+const NDOF: usize = 2;
+const SECTORS: usize = 8;
+
+const MASS: [f64; 4] = [1.0, 0.0, 0.0, 3.0];
+const OWN: [f64; 4] = [1.0, -1.0, -1.0, 4.0];
+const NEXT: [f64; 4] = [0.0, 0.0, 0.0, -1.0];
+
+/// A wheel whose blades rub against the ground, under harmonics 2 and 3 of the speed of rotation: one sector, and the whole as a plain
+/// structure.
+fn models() -> (Model, Model) {
+    let contact = Contact::jenkins(0, None, 0.6, 0.3, 0.2);
+    let mut sector = Model::cyclic(NDOF, SECTORS).unwrap();
+    let dense = |a: &'static [f64; 4]| MatrixView::dense(NDOF, a);
+    sector.set_matrix(MatrixKind::Mass, &dense(&MASS)).unwrap();
+    sector.set_matrix(MatrixKind::Stiffness, &dense(&OWN)).unwrap();
+    sector.set_coupling(MatrixKind::Stiffness, &dense(&NEXT)).unwrap();
+    sector.set_wave(1);
+    sector.add_contact(&contact).unwrap();
+    let mut wheel = Wheel::new(NDOF, SECTORS);
+    wheel.set(MatrixKind::Mass, &MASS, None, None);
+    wheel.set(MatrixKind::Stiffness, &OWN, Some(&NEXT), None);
+    wheel.add_contact(&contact);
+    for (harmonic, force) in FORCES {
+        sector.add_force(0, harmonic, force.into()).unwrap();
+        wheel.add_force(0, harmonic, force.into(), 1);
+    }
+    for model in [&mut sector, &mut wheel.model] {
+        model.set_rayleigh(0.0, 0.02).unwrap();
+    }
+    (sector, wheel.model)
+}
+
+fn solve(model: &Model, (start, stop): (f64, f64), responses: &[Response<'_>], solver: &SolverOptions) -> Branch {
+    let range = ForcedOptions {
+        omega_start: start,
+        omega_stop: stop,
+        responses,
+        ..ForcedOptions::default()
+    };
+    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
+}
+
+fn exactly(harmonics: usize) -> SolverOptions {
+    SolverOptions {
+        harmonics,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    }
+}
+
+const MEASURES: [Measure; 5] = [
+    Measure::Harmonic(2),
+    Measure::Harmonic(3),
+    Measure::Peak,
+    Measure::Rms,
+    Measure::Range,
+];
+
+#[test]
+fn every_blade_is_that_of_the_whole_wheel() {
+    let (sector, wheel) = models();
+    let sectors = [0, 1, 5, 7];
+    let dofs: Vec<[usize; 1]> = sectors.iter().map(|s| [s * NDOF]).collect();
+    let (mut of_sector, mut of_wheel) = (Vec::new(), Vec::new());
+    for measure in MEASURES {
+        for component in [Component::Displacement, Component::Acceleration] {
+            for (s, dof) in sectors.iter().zip(&dofs) {
+                let one = Response {
+                    measure,
+                    component,
+                    ..Response::default()
+                };
+                of_sector.push(Response {
+                    dofs: &[0],
+                    sector: *s,
+                    ..one
+                });
+                of_wheel.push(Response { dofs: dof, ..one });
+            }
+        }
+    }
+    // A third and a half of the resonances of the diameters 3 and 2 lie in this range.
+    let mut slips = 0.0_f64;
+    for omega in [0.25, 0.3, 0.34, 0.38, 0.45, 0.52] {
+        let a = solve(&sector, (omega, omega), &of_sector, &exactly(7));
+        let b = solve(&wheel, (omega, omega), &of_wheel, &exactly(7));
+        slips = slips.max(a.slip_fraction()[0]);
+        for ((a, b), response) in a.responses().iter().zip(b.responses()).zip(&of_sector) {
+            let (x, y) = (a.values()[0], b.values()[0]);
+            assert!((x - y).abs() < 1e-9 * y, "{response:?} at {omega}: {x} {y}");
+            let (x, y) = (a.complex()[0], b.complex()[0]);
+            if x.re.is_finite() {
+                assert!((x - y).norm() < 1e-9 * y.norm(), "{response:?} at {omega}: {x} {y}");
+            }
+        }
+    }
+    assert!(slips > 0.0);
+}
+
+#[test]
+fn the_response_by_itself_is_rms_and_no_point_is_rounding() {
+    let (sector, _) = models();
+    let branch = solve(&sector, (0.2, 0.6), &[], &SolverOptions::default());
+    assert_eq!(branch.status(), hbvib::Status::Ok);
+    assert_eq!(branch.responses().len(), 1);
+    assert_eq!(branch.responses()[0].response().measure, Measure::Rms);
+    let largest = branch.amplitude().iter().fold(0.0_f64, |m, x| m.max(*x));
+    assert!(branch.amplitude().iter().all(|x| *x > 1e-2 * largest));
+    // Both engine orders have a resonance, and the tolerance holds against integration in time at each.
+    assert!(branch.peaks().len() >= 2, "{:?}", branch.peaks());
+    for peak in branch.peaks() {
+        let (options, mut hooks) = (VerifyOptions::default(), Hooks::default());
+        let checked = verify(&sector, &branch, peak.point, &options, &mut hooks).unwrap();
+        assert!(checked.same && checked.motion_error < 2e-3, "{}", checked.motion_error);
+    }
+}
