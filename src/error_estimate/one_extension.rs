@@ -83,21 +83,8 @@ pub(super) fn extend_once(
     } else {
         None
     };
-    let mut extended = None;
-    if let Some(guess) = guess {
-        let residual = system.residual();
-        if system.evaluate(&guess)? && system.residual() <= CLOSER * residual {
-            let found = extend(system, (&guess, &before), enough, extent.first_step, interrupt)?;
-            extended = found.filter(|found| found.certified);
-        }
-        if extended.is_none() && !system.evaluate(&before)? {
-            return Ok(None);
-        }
-    }
-    if extended.is_none() {
-        extended = extend(system, (&before, &before), enough, extent.first_step, interrupt)?;
-    }
-    let Some(extended) = extended else {
+    let starts = (&before[..], guess.as_deref());
+    let Some(extended) = extended_from(system, starts, enough, extent.first_step, interrupt)? else {
         return Ok(None);
     };
     let mut z = extended.corrected()?;
@@ -112,7 +99,6 @@ pub(super) fn extend_once(
     let change = norm(&change) / size;
     let (x, dx) = system.problem.observe(&extended.at, &extended.next);
     let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
-    let watched = watched(system, solved, &extended, length)?;
     let rates = condensed.rates()?;
     let tail = tail(set, solved.condensed.set(), (&z, &rates))?;
     let Some((beyond, late)) = beyond_extension(system, condensed, (&extended.at, omega), interrupt)? else {
@@ -123,10 +109,11 @@ pub(super) fn extend_once(
     for z in &mut z {
         *z *= length;
     }
-    let mut responses = try_vec(watched.values.len(), f64::NAN, CONTEXT)?;
-    for (error, (value, change)) in responses.iter_mut().zip(watched.values.iter().zip(&watched.changes)) {
-        // The lateness of near-rigid sliders is known of the response that every point has.
-        *error = known(relative(beyond * change, *value) + relative(late * length, response));
+    // The lateness of near-rigid sliders is known of the response that every point has.
+    let besides = (beyond, relative(late * length, response));
+    let mut watched = watched(system, solved, (&extended, length), besides)?;
+    for error in &mut watched.errors {
+        *error = known(*error);
     }
     let of_response = relative(
         beyond * (response - solved.response).norm() + next + late * length,
@@ -136,8 +123,8 @@ pub(super) fn extend_once(
         certified,
         too_large: !certified && extent.short,
         motion: known(beyond * change + extended.missing * norm(&extended.next[..n]) / size),
-        response: known(responses.iter().copied().reduce(f64::max).unwrap_or(of_response)),
-        responses,
+        response: known(watched.errors.iter().copied().reduce(f64::max).unwrap_or(of_response)),
+        responses: watched.errors,
         frequency: known(0.0),
         damping: known(0.0),
         harmonics: set.numbers().last().copied().unwrap_or(0),
@@ -156,23 +143,47 @@ pub(super) fn extend_once(
     }))
 }
 
+/// The solution of the extended problem from a guess, where that is closer, or else from the point; `None` where it is not found.
+fn extended_from<'p>(
+    system: &mut ExtendedSystem<HarmonicBalance<'p>>,
+    (before, guess): (&[f64], Option<&[f64]>),
+    enough: impl Fn(&HarmonicBalance<'p>, &[f64], &[f64], &[f64]) -> bool,
+    first_step: FirstStep,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<ExtendedSolution>> {
+    if let Some(guess) = guess {
+        let residual = system.residual();
+        if system.evaluate(guess)? && system.residual() <= CLOSER * residual {
+            let found = extend(system, (guess, before), &enough, first_step, interrupt)?;
+            if let Some(found) = found.filter(|found| found.certified) {
+                return Ok(Some(found));
+            }
+        }
+        if !system.evaluate(before)? {
+            return Ok(None);
+        }
+    }
+    extend(system, (before, before), &enough, first_step, interrupt)
+}
+
 /// The responses that were asked for with more harmonics.
 struct Watched {
     values: Vec<Complex64>,
-    /// Changes from the point, with what may still be missing.
-    changes: Vec<f64>,
+    /// Relative errors of the point, with what may still be missing.
+    errors: Vec<f64>,
 }
 
-/// Reads the responses at the corrected solution Z + δ.
+/// Reads the responses at the corrected solution Z + δ, in a unit of this length; their errors are a multiple of their changes, and
+/// what is missing besides.
 fn watched(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     solved: &Solved<'_>,
-    extended: &ExtendedSolution,
-    length: f64,
+    (extended, length): (&ExtendedSolution, f64),
+    (beyond, besides): (f64, f64),
 ) -> Result<Watched> {
     let mut found = Watched {
         values: Vec::new(),
-        changes: Vec::new(),
+        errors: Vec::new(),
     };
     if solved.watched.is_empty() {
         return Ok(found);
@@ -185,8 +196,13 @@ fn watched(
         let (value, change) = seen.observed();
         let corrected = (value + change) * length;
         let missing = extended.missing * change.norm() * length;
+        let change = (corrected - before).norm() + missing;
         try_push(&mut found.values, corrected, CONTEXT)?;
-        try_push(&mut found.changes, (corrected - before).norm() + missing, CONTEXT)?;
+        try_push(
+            &mut found.errors,
+            relative(beyond * change, corrected) + besides,
+            CONTEXT,
+        )?;
     }
     Ok(found)
 }
