@@ -116,7 +116,7 @@ impl<'a> HarmonicBalance<'a> {
         Ok(())
     }
 
-    /// What all further responses are at `v` = (u, ω), with their derivatives along a direction.
+    /// All further responses at `v` = (u, ω), with their derivatives along a direction.
     ///
     /// # Errors
     /// Those of [`Gauges::read`].
