@@ -1,4 +1,4 @@
-//! What a branch tells of its responses at every stored point, against its own harmonics, sampled in time.
+//! Values of the responses at every stored point of a branch, against its own harmonics, sampled in time.
 
 use crate::common::chains::chain;
 use hbvib::{Branch, Component, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response};
