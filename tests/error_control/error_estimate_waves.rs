@@ -27,11 +27,11 @@ fn estimates_of_waves_in_both_directions_are_near_the_true_error() {
     assert_eq!(branch.status(), Status::Ok);
     let most = branch.harmonics_used().iter().fold(0.0_f64, |m, &h| m.max(h));
     assert!(most < 100.0, "{most} harmonics");
-    for i in 0..at.len() {
+    for (i, omega) in at.iter().enumerate() {
         let ([found], [wanted]) = (branch.at(i), truth.at(i)) else {
-            panic!("not one solution at {}", at[i]);
+            panic!("not one solution at {omega}");
         };
         let error = (found.amplitude / wanted.amplitude - 1.0).abs();
-        assert!(error < 1e-3, "{error:e} at {}", found.omega);
+        assert!(error < 1e-3, "{error:e} at {omega}");
     }
 }
