@@ -6,5 +6,6 @@ mod common;
 mod error_estimate;
 mod error_estimate_laws;
 mod error_estimate_modes;
+mod error_estimate_waves;
 mod error_estimate_wells;
 mod tolerance;

@@ -163,9 +163,9 @@ mod tests {
             x[N] = 1.0;
             factors.solve(&mut x);
             let size = norm(&x);
-            for (i, entry) in column.iter().enumerate() {
+            for (i, column) in column.iter().enumerate() {
                 let moved: f64 = (0..N).map(|j| product(i, j) * scales.0 * x[j]).sum();
-                let residual = moved + entry * scales.1 * x[N];
+                let residual = moved + column * scales.1 * x[N];
                 assert!(residual.abs() < 1e-9 * size, "{rank}: row {i}, {residual:e}");
             }
             assert!((dot(&row, &x) - 1.0).abs() < 1e-9, "{rank}");
