@@ -63,4 +63,6 @@ def check(found: Branch, slip: FloatArray, energy: Energy, samples: int) -> None
     rounding = _ROUNDING * (abs(energy.kinetic_mean) + abs(energy.potential_mean))
     allowed = same * max(abs(loss), abs(energy.friction_loss)) + rounding
     if np.any(np.abs(found.slip(0) - slip) > same) or abs(loss - energy.friction_loss) > allowed:
-        raise UnsupportedError("the contacts of the saved model do not slip as those of the branch", Status.E_UNSUPPORTED)
+        raise UnsupportedError("the contacts of the saved model do not slip as those of the branch; near-rigid ones that "
+                               "were solved with a tolerance are not computed again: use the branch in memory",
+                               Status.E_UNSUPPORTED)

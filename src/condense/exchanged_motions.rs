@@ -16,8 +16,8 @@ use std::f64::consts::E;
 const CONTEXT: &str = "the near-rigid contacts";
 
 /// Number of harmonics for which α is chosen, whatever the number of those carried, so that motions are the same for
-/// all. On the chain of eight masses of `tests/robustness/near_rigid_slip.rs` a third as many have half the error where
-/// few harmonics are carried, and twice the error where slip reverses without a stick.
+/// all. On 45 random chains with kt/k from 300 to 1e8 and slip the geometric mean of the errors with 15 to 255 harmonics is the
+/// same within 15 % for 160 and 500, up to a fifth more for 60, and up to a third more for 20.
 const NOMINAL: f64 = 160.0;
 
 /// Selects the coordinates whose motions are exchanged: those of one near-rigid slider alone, which have no reference stiffness

@@ -129,6 +129,13 @@ for name, (solved, of) in cases.items():
                 worst = max(worst, abs(a - b).max() / max(abs(a).max(), 1e-300))
     allowed = 4 / 128 if name == "sampled" else 1e-8  # shares of slip are multiples of the samples
     check(f"{name}: loops and summaries are those of the branch", worst < allowed, worst)
+stiff = hbvib.Model(mass=1, stiffness=1, rayleigh=(0.02, 0))
+stiff.add_contact("jenkins", 0, kt=1e6, mu=0.3, preload=1)
+stiff.add_force(0, 0.5)
+slides = stiff.forced_response(1.1)
+check("a near-rigid slider has a loop in memory", np.ptp(slides.loop(0, 0).motion) > 0.1 and slides.slip(0)[0] > 0.1)
+raises("not of a saved branch, whose motion is cut off", NotImplementedError, pickle.loads(pickle.dumps(slides)).loop, 0, 0,
+       words="use the branch in memory")
 twice = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(branch))))
 check("also when it was pickled twice", np.allclose(twice.loop(0, 0).force, branch.loop(0, 0).force, atol=1e-12))
 
