@@ -211,7 +211,7 @@ class _BranchPoints(_Owner):
         >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
         >>> model.add_force(0, 0.2)
         >>> branch = model.forced_response((0.8, 1.6), responses=[hbvib.Response(0, "rms"), hbvib.Response(0, "peak")])
-        >>> [len(found.peaks.omega) for found in branch.responses]
+        >>> [len(found.peaks().omega) for found in branch.responses]
         [1, 1]
         """
         curve: Branch = cast("Branch", self)

@@ -31,7 +31,8 @@ Parts = Union[
     Part,
     Literal["full", "lower", "upper", "general", "symmetric", "symmetric_lower", "symmetric_upper"], int]
 Quantities = Union[
-    Quantity, Literal["amplitude", "peak_amplitude", "peak_omega", "mode_omega", "mode_damping"], int]
+    Quantity,
+    Literal["amplitude", "peak_amplitude", "peak_omega", "mode_omega", "mode_damping", "response", "response_peak_omega"], int]
 Scalings = Union[Scaling, Literal["additive", "factor"], int]
 SectorFrames = Union[SectorFrame, Literal["cartesian", "cylindrical"], int]
 SteadyMethods = Union[SteadyMethod, Literal["shooting", "marching"], int]

@@ -105,7 +105,7 @@ class _Sensitivity(_Owner):
         values, reasons, onset = np.empty(len(given)), np.empty(len(given), np.int64), ctypes.c_int64()
         quantity = _member(Quantity, of)
         if response is not None:
-            of_peak = quantity == Quantity.PEAK_OMEGA
+            of_peak = quantity in (Quantity.PEAK_OMEGA, Quantity.RESPONSE_PEAK_OMEGA)
             quantity = (Quantity.RESPONSE_PEAK_OMEGA if of_peak else Quantity.RESPONSE) + response
         with _Guard() as guard:
             hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)

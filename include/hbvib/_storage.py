@@ -44,10 +44,11 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
     for found in requests(branch):
         lists[f"at/{about['at']}"] = found
         about["at"] += 1
-    about["responses"] = [response_contents(found.response) for found in branch.responses]
-    for r, found in enumerate(branch.responses):
-        lists[f"response/{r}/peaks"] = found.peaks()
-        arrays.update({f"response/{r}/{reading.name.lower()}": values for reading, values in zip(Reading, found._readings)})
+    about["responses"] = [response_contents(watched.response) for watched in branch.responses]
+    for r, watched in enumerate(branch.responses):
+        lists[f"response/{r}/peaks"] = watched.peaks()
+        for reading, values in zip(Reading, watched._readings):
+            arrays[f"response/{r}/{reading.name.lower()}"] = values
     arrays["at_values"] = branch._at
     for name, values in lists.items():
         arrays.update({f"{name}/{key}": column for key, column in values._asdict().items()})

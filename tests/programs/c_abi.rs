@@ -188,6 +188,11 @@ fn rotation_and_damping_are_those_of_closed_forms() {
 }
 
 #[test]
+fn responses_are_those_of_other_calls() {
+    silent("responses", |_| vec![]);
+}
+
+#[test]
 fn batches_find_the_peaks_of_designs() {
     silent("batch", |_| vec![]);
 }

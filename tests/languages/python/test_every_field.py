@@ -79,6 +79,31 @@ def guessed(**o):
     return of_branch(branch_of("hbvib_forced_response", folded, new("hbvib_forced_options", **{**values, **o})))
 
 
+def gauges(*measures):
+    given = [new("hbvib_response", measure=measure, n=1, dofs=np.array([k])) for k, measure in enumerate(measures)]
+    array = (hbvib.structs["hbvib_response"] * len(given))(*given)
+    array.kept = given
+    return array
+
+
+def watched(**o):
+    options = new("hbvib_forced_options", omega_start=0.6, omega_stop=0.9)
+    values = {"responses": gauges(2, 3), "responses_len": 2, **o}
+    options.kept = values["responses"]
+    options.responses = ctypes.addressof(options.kept) if options.kept is not None else None
+    options.responses_len = values["responses_len"]
+    branch = branch_of("hbvib_forced_response", plain, options)
+    count = call("hbvib_branch_responses", branch.handle)
+    return of_branch(branch), tuple(bits(branch._reading(r, hbvib.Reading.VALUE)) for r in range(count))
+
+
+def read(**o):
+    values = dict(measure=1, harmonic=3, n=2, dofs=np.array([0, 1]), weights=np.array([1.0, -0.5]))
+    value = ctypes.c_double()
+    call("hbvib_response_of", new("hbvib_response", **{**values, **o}), 2, 1.15, rows(high), high.size, value, None, None)
+    return bits(np.array([value.value]))
+
+
 def followed(model):
     def run(**o):
         values = dict(log10_start=-1.0, log10_stop=0.5)
@@ -219,6 +244,19 @@ TABLE = {
             (same("the imaginary part of the mean has no effect"), guessed, with_entry(high, 0, 0, 50.0j)),
         ],
         "guess_len": [(refused("guess_len"), guessed, -1), (refused("guess_len"), guessed, 3), (CHANGES, guessed, 4)],
+        "responses": [(CHANGES, watched, gauges(4, 3)), (refused("responses"), watched, NONE)],
+        "responses_len": [(CHANGES, watched, 1), (refused("responses_len"), watched, -1)],
+    },
+    "hbvib_response": {
+        "struct_size": [(refused("struct_size"), read, 8)],
+        "measure": [(CHANGES, read, 2), (CHANGES, read, 3), (CHANGES, read, 4), (CHANGES, read, 0), (refused("measure"), read, 5)],
+        "harmonic": [(CHANGES, read, 1), (refused("harmonic"), read, -1)],
+        "n": [(CHANGES, read, 1), (refused("n"), read, -1)],
+        "dofs": [(CHANGES, read, np.array([1, 0])), (refused("dofs"), read, np.array([0, 2])), (refused("dofs"), read, NONE)],
+        "weights": [(CHANGES, read, NONE), (refused("weights"), read, np.array([0.0, NAN]))],
+        "sector": [(refused("sector"), read, 1), (refused("sector"), read, -1)],
+        "component": [(CHANGES, read, 1), (CHANGES, read, 2), (refused("component"), read, 3)],
+        "reserved": [(refused("reserved"), read, 1)],
     },
     "hbvib_mode_options": {
         "struct_size": [(refused("struct_size"), followed(plain), 8)],

@@ -124,6 +124,7 @@ turning.set_speed(0.7)
 still = turning.clone()
 still.set_speed(0.0)
 branch = still.forced_response((1.0, 1.8), harmonics=5, at=[1.3, 1.5], response_dof=0)
+seen = still.forced_response((1.0, 1.8), harmonics=5, responses=[hbvib.Response(0), hbvib.Response(1, "rms")])
 crest = int(np.argmax(branch.amplitude))  # where contacts slip
 X = branch.harmonics(3)[:4]
 friction = dict(kt=1.0, kn=1.0, mu=0.3, preload=0.5)
@@ -164,9 +165,11 @@ ANALYSES = {
         "samples": [(same("No effect on friction_2d, friction_3d and cubic, which are always exact."), 64), (refused("samples"), 3)],
         "jacobian": [(CHANGES, True)], "kt": [(CHANGES, 2.0)], "kn": [(CHANGES, 2.0)], "mu": [(CHANGES, 0.4)],
         "preload": [(CHANGES, 0.6)]}),
-    "sensitivity": (*analysis(still.sensitivity, branch=branch, point=crest, parameters=[hbvib.Parameter("mu")], of="amplitude"), {
+    "sensitivity": (*analysis(still.sensitivity, branch=seen, point=crest, parameters=[hbvib.Parameter("mu")], of="amplitude",
+                              response=0), {
         "branch": [], "point": [(CHANGES, crest + 1), (refused("point"), 10**6)], "parameters": [(CHANGES, [hbvib.Parameter("kt")])],
-        "of": [(refused("peak"), "peak_omega"), (refused("amplitude"), "speed")]}),
+        "of": [(refused("peak"), "peak_omega"), (refused("amplitude"), "speed")],
+        "response": [(CHANGES, 1), (refused("response 7"), 7)]}),
     "harmonics": (*analysis(branch.harmonics, point=3, first_dof=0, n_dof=2), {
         "point": [(CHANGES, 4), (refused("point"), -1)], "first_dof": [(CHANGES, 1), (refused("first_dof"), 9)],
         "n_dof": [(CHANGES, 3), (refused("n_dof"), 9)]}),

@@ -65,7 +65,8 @@ ours = {"HBVIB_GROUND": hbvib.GROUND, "HBVIB_DIAMETER_OF_ENGINE_ORDER": hbvib.DI
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
-    "ParameterKind Scaling Quantity Derivative Follow AeroForm FlexibilityWay"
+    "ParameterKind Scaling Quantity Derivative Follow AeroForm FlexibilityWay Measure "
+    "Component Reading"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)
