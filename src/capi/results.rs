@@ -61,7 +61,9 @@ pub enum hbvib_field {
     /// Angular frequency.
     HBVIB_OMEGA = 0,
     /// Peak amplitude of the response degree of freedom: of the fundamental, or of the harmonic that
-    /// hbvib_reduction names.
+    /// hbvib_reduction names. With responses in hbvib_forced_options the measure of the first one;
+    /// where forces act in several harmonics and none in the first, the RMS of that degree of
+    /// freedom.
     HBVIB_AMPLITUDE = 1,
     /// Nonlinear modes only: damping ratio D.
     HBVIB_DAMPING_RATIO = 2,
