@@ -61,9 +61,9 @@ pub unsafe extern "C" fn hbvib_branch_response(
     use hbvib_reading as r;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
+        unsafe { check_out(out, 4) }?;
         let all = kept.branch.responses();
         let of = &all[index(response, all.len(), 2, "response")?];
-        unsafe { check_out(out, 4) }?;
         let real = |values: &[f64]| (hbvib_scalar::HBVIB_REAL, values.as_ptr());
         let (scalar, data) = match reading {
             k if k == r::HBVIB_READING_VALUE as i32 => real(of.values()),
@@ -110,6 +110,7 @@ pub unsafe extern "C" fn hbvib_branch_response_peaks(
 ) -> hbvib_status {
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
+        check_pointer(peaks, 7, "peaks")?;
         let all = kept.branch.responses();
         let of = &all[index(response, all.len(), 2, "response")?];
         let lists = Lists {
