@@ -206,6 +206,7 @@ impl<'a> ForcedDiscretised<'a> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
         };
+        let index = self.resolutions.index();
         let Equations {
             resolution,
             problem,
@@ -214,8 +215,7 @@ impl<'a> ForcedDiscretised<'a> {
         } = &mut *self.resolutions.current;
         let condensed = &resolution.condensed;
         problem.response(point.unknowns(), point.parameter(), response);
-        self.responses
-            .read(problem, &point.v, &point.tangent, condensed.length())?;
+        self.responses.read(problem, (point, index), condensed.length())?;
         let solved = Solved {
             condensed,
             motion: point.unknowns(),

@@ -26,7 +26,6 @@ pub(super) struct WatchedResponses<'a> {
     pub watched: Vec<Complex64>,
     /// Points that were read lately, the last one first.
     recent: Vec<(Key, Vec<Seen>)>,
-    memory: Vec<Seen>,
 }
 
 fn key((point, resolution): PointAt<'_>) -> Key {
@@ -42,7 +41,6 @@ impl<'a> WatchedResponses<'a> {
             seen: Vec::new(),
             watched: Vec::new(),
             recent: Vec::new(),
-            memory: Vec::new(),
         }
     }
 
@@ -52,18 +50,15 @@ impl<'a> WatchedResponses<'a> {
     }
 
     /// Reads the values at a point whose error is estimated, in a unit of this length.
-    pub fn read(
-        &mut self,
-        problem: &mut HarmonicBalance<'_>,
-        point: &[f64],
-        tangent: &[f64],
-        length: f64,
-    ) -> Result<()> {
-        problem.see_all(point, tangent, &mut self.memory)?;
-        self.watched.clear();
-        for seen in &self.memory {
-            try_push(&mut self.watched, seen.observed().0 * length, CONTEXT)?;
+    pub fn read(&mut self, problem: &mut HarmonicBalance<'_>, at: PointAt<'_>, length: f64) -> Result<()> {
+        let mut watched = core::mem::take(&mut self.watched);
+        watched.clear();
+        if !self.list.is_empty() {
+            for seen in self.read_at(problem, at)? {
+                try_push(&mut watched, seen.observed().0 * length, CONTEXT)?;
+            }
         }
+        self.watched = watched;
         Ok(())
     }
 

@@ -307,17 +307,9 @@ impl Locator {
                 *v += ratio * d;
             }
         }
-        // Of many responses each has its search, in arcs that are short: most guesses need no damping.
-        let undamped = self.response.is_some() && fixed.is_none();
-        let mut outcome = self
+        let outcome = self
             .corrector
-            .correct(problem, &mut v, &self.row, metric, !undamped, interrupt)?;
-        if undamped && matches!(outcome, Outcome::Failed) {
-            v.copy_from_slice(&guess);
-            outcome = self
-                .corrector
-                .correct(problem, &mut v, &self.row, metric, true, interrupt)?;
-        }
+            .correct(problem, &mut v, &self.row, metric, true, interrupt)?;
         let Outcome::Converged(corrected) = outcome else {
             return Ok(None);
         };

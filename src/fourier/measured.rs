@@ -25,8 +25,6 @@ pub struct Reading {
     pub complex: Complex64,
     /// Time of the largest magnitude, or of the largest value of a range, in [0, 2π) of the reduced time τ; NaN for the others.
     pub instant: f64,
-    /// Largest other stationary magnitude, whose lead would be a kink; NaN where there is none.
-    pub second: f64,
 }
 
 /// Memory for reading signals of one harmonic set.
@@ -97,29 +95,26 @@ impl Reader {
                     value,
                     complex: nothing,
                     instant: f64::NAN,
-                    second: f64::NAN,
                 }
             }
             Measure::Peak => {
-                let (first, second) = self.extremes(set, packed, interrupt, f64::abs)?;
+                let first = self.extremes(set, packed, interrupt, f64::abs)?;
                 self.add_instant(set, first.tau, if first.x < 0.0 { -1.0 } else { 1.0 });
                 Reading {
                     value: first.x.abs(),
                     complex: nothing,
                     instant: first.tau,
-                    second,
                 }
             }
             Measure::Range => {
-                let (high, _) = self.extremes(set, packed, interrupt, |x| x)?;
-                let (low, _) = self.extremes(set, packed, interrupt, |x| -x)?;
+                let high = self.extremes(set, packed, interrupt, |x| x)?;
+                let low = self.extremes(set, packed, interrupt, |x| -x)?;
                 self.add_instant(set, high.tau, 1.0);
                 self.add_instant(set, low.tau, -1.0);
                 Reading {
                     value: high.x - low.x,
                     complex: nothing,
                     instant: high.tau,
-                    second: f64::NAN,
                 }
             }
         })
@@ -137,22 +132,21 @@ impl Reader {
             value: complex.norm(),
             complex,
             instant: f64::NAN,
-            second: f64::NAN,
         }
     }
 
-    /// The stationary instant with the largest `size`, and the size of the next one.
+    /// The stationary instant with the largest `size`.
     fn extremes(
         &mut self,
         set: &HarmonicSet,
         packed: &[f64],
         interrupt: &Interrupt<'_>,
         size: impl Fn(f64) -> f64,
-    ) -> Result<(Extremum, f64)> {
+    ) -> Result<Extremum> {
         self.turning_points.find(set, packed, &mut self.extrema, interrupt)?;
         let mean = if set.has_mean() { packed[0] } else { 0.0 };
         let mut best = Extremum { tau: 0.0, x: mean };
-        let (mut largest, mut second) = (f64::NEG_INFINITY, f64::NAN);
+        let mut largest = f64::NEG_INFINITY;
         let mirrored = |e: &Extremum| Extremum {
             tau: (e.tau + PI) % TAU,
             x: -e.x,
@@ -166,15 +160,10 @@ impl Reader {
             };
             let of = size(e.x);
             if of > largest {
-                if largest.is_finite() {
-                    second = largest;
-                }
                 (best, largest) = (e, of);
-            } else if second.is_nan() || of > second {
-                second = of;
             }
         }
-        Ok((best, second))
+        Ok(best)
     }
 
     /// Adds the weights of the value at an instant.
