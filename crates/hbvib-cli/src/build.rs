@@ -3,6 +3,7 @@
 use crate::check::near;
 use crate::contacts::contacts;
 use crate::counted::counted;
+use crate::events;
 use crate::faces::{self, Sector};
 use crate::job::{Amplitude, Job};
 use crate::mesh::Mesh;
@@ -12,7 +13,6 @@ use hbvib_io::{Dof, Files, Matrix, Report, Symmetry};
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::fmt::Display;
-use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -49,7 +49,7 @@ impl Built {
     pub fn warn(&self, strict: bool) -> Outcome<()> {
         let warnings = &self.report.warnings;
         for warning in warnings {
-            let _ = writeln!(std::io::stderr(), "hbvib: warning: {warning}");
+            events::warning(warning);
         }
         if strict && !warnings.is_empty() {
             return Err(format!(

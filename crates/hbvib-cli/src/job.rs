@@ -401,20 +401,6 @@ impl Job {
         let mut job: Self = toml::from_str(&text)
             .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
         path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        let named = [
-            job.forced.is_some(),
-            job.mode.is_some(),
-            job.campbell.is_some(),
-            job.study.is_some(),
-            job.map.is_some(),
-            job.tornado.is_some(),
-        ];
-        if !named.contains(&true) {
-            return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
-                path.display()
-            ));
-        }
         if job.forced.is_some() && job.mode.is_some() {
             return Err(format!(
                 "{}: names two analyses: needs one of [forced] and [mode]",
@@ -428,6 +414,28 @@ impl Job {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
         Ok(job)
+    }
+
+    /// Refuses a job that names no analysis.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn needs_analysis(&self, path: &Path) -> Result<(), String> {
+        let named = [
+            self.forced.is_some(),
+            self.mode.is_some(),
+            self.campbell.is_some(),
+            self.study.is_some(),
+            self.map.is_some(),
+            self.tornado.is_some(),
+        ];
+        if !named.contains(&true) {
+            return Err(format!(
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
+                path.display()
+            ));
+        }
+        Ok(())
     }
 
     /// A path of the job.
