@@ -42,6 +42,17 @@ pub struct Built {
 }
 
 impl Built {
+    /// Name of each contact: that of its entry, with the number of the pair where there are several.
+    pub fn labels(&self) -> Vec<String> {
+        let of = |(name, range): &(String, Range<usize>)| -> Vec<String> {
+            match range.len() {
+                1 => vec![name.clone()],
+                pairs => (0..pairs).map(|pair| format!("{name}[{pair}]")).collect(),
+            }
+        };
+        self.names.iter().flat_map(of).collect()
+    }
+
     /// Tells the warnings.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
-use crate::{campbell, map, print, study, tornado};
+use crate::{campbell, map, motion_files, print, study, tornado};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -67,6 +67,7 @@ pub fn check(path: &Path, strict: bool, json: bool) -> Outcome<u8> {
 /// # Errors
 /// A sentence.
 pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
+    motion_files::check(job, built)?;
     if let Some(part) = &job.campbell {
         campbell::check(part, &built.model)?;
     }

@@ -47,6 +47,13 @@ impl<'a> Files<'a> {
         }
     }
 
+    /// Writes a file of a series, whose list is named instead of each of them.
+    pub fn write_part(&mut self, path: &Path, write: &dyn Fn(&Path) -> Outcome<()>) {
+        let count = self.written.len();
+        self.write(Some(path), write);
+        self.written.truncate(count);
+    }
+
     /// Tells an output that could not be made.
     pub fn fail(&mut self, sentence: String) {
         events::error(&sentence);

@@ -1,5 +1,6 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
@@ -352,6 +353,19 @@ pub struct OutputPart {
     pub slip_csv: Option<PathBuf>,
     /// The same as a figure, a row for each contact.
     pub slip_figure: Option<PathBuf>,
+    /// Motion of the mesh over the period at points of the curve, for ParaView: a list of times (.pvd) beside a folder with its name.
+    pub vtu: Option<PathBuf>,
+    /// Universal file: nodes (2411), the response over frequency (58), shapes at points of the curve (55).
+    pub uff: Option<PathBuf>,
+    /// All harmonics of all points by node and direction, with units (NetCDF).
+    pub netcdf: Option<PathBuf>,
+    /// Shapes at points of the curve, for CalculiX and what reads its results.
+    pub frd: Option<PathBuf>,
+    /// Points and times of vtu, uff and frd.
+    #[serde(default)]
+    pub motion: MotionPart,
+    #[serde(default)]
+    pub units: UnitsPart,
     #[serde(default)]
     pub hysteresis: Vec<HysteresisPart>,
 }

@@ -7,7 +7,7 @@ use crate::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use crate::progress::watched;
 use crate::responses::{self, ResponsePart};
 use crate::solver::solver;
-use crate::{campbell, check, contact_tables, map, output, study, tornado, verification};
+use crate::{campbell, check, contact_tables, map, motion_files, output, study, tornado, verification};
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
     nonlinear_mode,
@@ -45,7 +45,8 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
 fn written(job: &Job, built: &Built, branch: &Branch, files: &mut Files<'_>) {
     if branch.points() > 0 {
         output::write(job, branch, files);
-        contact_tables::write(job, branch, &built.names, files);
+        contact_tables::write(job, branch, built, files);
+        motion_files::write(job, branch, built, files);
     }
     files.tell(&output::summary(branch));
     files.tell(&responses::summary(branch));
