@@ -19,6 +19,7 @@ mod dmig;
 mod error;
 mod harwell_boeing;
 mod lines;
+mod matlab;
 mod matrix;
 mod matrix_market;
 mod named_matrices;

@@ -11,6 +11,7 @@ import sys
 import tempfile
 
 import numpy as np
+import scipy.io
 import scipy.sparse as sp
 
 place = importlib.util.spec_from_file_location("hbvib_io", os.path.join(os.environ["HBVIB_INCLUDE"], "hbvib/io.py"))
@@ -218,7 +219,9 @@ def other_formats():
     refused("file.full", struct.pack("<60i", *range(60)), "HBMAT")
     refused("job.sim", b"\x00\x01\x02" * 40, "*MATRIX OUTPUT")
     refused("job.op2", b"\x04\x00\x00\x00" * 40, "OUTPUT4")
-    refused("k.mat", b"MATLAB 5.0 MAT-file, Platform: posix" + b"\x00\x01IM" * 30, "loadmat")
+    refused("k73.mat", b"MATLAB 7.3 MAT-file, Platform: GLNXA64" + b" " * 88 + b"\x00\x02IM" + b"\x00" * 400 + b"\x89HDF", "save -v7")
+    refused("old.mat", struct.pack("<5i", 0, 2, 2, 0, 2) + b"k\x00" + struct.pack("<4d", 1, 2, 3, 4), "save -v7")
+    refused("k.mat", b"MATLAB 5.0 MAT-file, Platform: posix" + b"\x00\x01IM" * 30, "MATLAB file")
     refused("k.h5", b"\x89HDF\r\n\x1a\n" + b"\x00" * 60, "HDF5")
     for path, words in ((folder, "is a folder"), (os.path.join(folder, "nothing.mtx"), "cannot be read")):
         try:
@@ -347,7 +350,41 @@ def numpy_files():
     bad("is missing", data=[1.0], shape=[6, 6], format="csc")
 
 
-for case in (superelements, op4_kinds, abaqus_labels, harwell_boeing, matrix_market, dmig, elements, numpy_files,
+def matlab_files():
+    rng = np.random.default_rng(6)
+    k = sp.random(6, 6, 0.4, random_state=rng).toarray() + np.eye(6)
+    m = np.diag(np.arange(1.0, 7))
+    path = os.path.join(folder, "k.mat")
+    dofs = [[node, d] for node in (4, 9) for d in (1, 2, 3)]
+    for compressed in (False, True):
+        for form in (np.asarray, sp.csc_matrix):
+            for kind in (float, complex):
+                scipy.io.savemat(path, dict(K=form(k.astype(kind)), M=form(m), area=np.ones(3), title="wheel", part=dict(a=1),
+                                            dofs=np.array(dofs)), do_compression=compressed)
+                found = io.read(path)
+                same("MATLAB", found.stiffness, k)
+                same("MATLAB", found.mass, m)
+                assert found.dofs.tolist() == dofs and any("title" in line and "part" in line for line in found.facts)
+    both = k + 1j * k.T
+    scipy.io.savemat(path, dict(D=sp.csc_matrix(both), k=both.astype(np.complex64)))
+    found = io.read(path)
+    assert np.array_equal(found.structural.toarray(), both) and np.array_equal(found.stiffness.toarray(), both.astype(np.complex64))
+    scipy.io.savemat(path, dict(anything=m.astype(np.int8)))
+    same("whole numbers", io.read(path).stiffness, m)
+    # The other byte order: a variable by hand.
+    def part(kind, data):
+        return struct.pack(">ii", kind, len(data)) + data + b"\x00" * (-len(data) % 8)
+    body = (part(6, struct.pack(">II", 6, 0)) + part(5, struct.pack(">ii", 2, 2)) + struct.pack(">hh4s", 1, 1, b"K")
+            + part(9, struct.pack(">4d", 2, -1, -1, 3)))
+    head = b"MATLAB 5.0 MAT-file, by hand".ljust(124) + b"\x01\x00MI"
+    same("high byte first", io.read(write("big.mat", head + part(14, body))).stiffness, [[2, -1], [-1, 3]])
+    refused("cut.mat", head + part(14, body)[:-9], "byte 128")
+    refused("type.mat", head + part(3, body), "type 3 at byte 128")
+    refused("nan.mat", head + part(14, body).replace(struct.pack(">d", 2), struct.pack(">d", np.inf)), "K(1, 1) is not finite")
+    refused("none.mat", head, "no matrix")
+
+
+for case in (superelements, op4_kinds, abaqus_labels, harwell_boeing, matrix_market, dmig, elements, numpy_files, matlab_files,
              other_formats):
     case()
 sys.stdout.write("ok\n")
