@@ -8,6 +8,7 @@
 #![warn(unsafe_code)]
 
 mod abaqus;
+mod ansys_full;
 mod bytes_read;
 mod calculix;
 #[allow(unsafe_code, reason = "the C interface")]

@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::lines::Lines;
 use crate::matrix::{Matrices, Matrix};
 use crate::{
-    Result, abaqus, calculix, dmig, harwell_boeing, matlab, matrix_market, npy, numpy_archive, op4, op4_binary,
-    unreadable, user_element,
+    Result, abaqus, ansys_full, calculix, dmig, harwell_boeing, matlab, matrix_market, npy, numpy_archive, op4,
+    op4_binary, unreadable, user_element,
 };
 use std::fs::File;
 use std::io::Read;
@@ -23,6 +23,7 @@ const START: u64 = 4096;
 /// | Nastran OP4, text or binary | `.op4`, or the head of a matrix | matrices whose names begin with K, M, B, K4 |
 /// | Nastran DMIG | a line that begins with `DMIG`, `.pch` | matrices by name, as OP4; nodes and directions |
 /// | NumPy and scipy | `.npz`, `.npy` | matrices named K, M, C, D or stiffness, mass, ..., or one matrix |
+/// | Ansys .full | the head of the file | stiffness, mass; nodes and directions |
 /// | MATLAB 5 | `.mat` of `save -v6` and `-v7` | as NumPy |
 /// | Abaqus and CalculiX superelements | `*USER ELEMENT`, `*MATRIX, TYPE=` | stiffness, mass; nodes and directions |
 /// | Abaqus | `.mtx` | one matrix: MASS or DMP in the name of the file tell which |
@@ -53,6 +54,9 @@ pub fn read(path: &Path) -> Result<Matrices> {
     }
     if matlab::is_head(&start) {
         return matlab::matrices(path);
+    }
+    if ansys_full::kind(&start).is_some_and(ansys_full::is_full) {
+        return ansys_full::matrices(path);
     }
     if let Some(sentence) = unreadable::format(path, &start) {
         return Err(Error::new(path, 0, sentence));

@@ -1,6 +1,7 @@
 //! Files of formats that are not read, known by their first bytes or their extension: a sentence says which format it is, and
 //! how to export another one.
 
+use crate::ansys_full;
 use std::path::Path;
 
 /// Names the format of a file that is not read; `None` for one that may be.
@@ -17,8 +18,19 @@ pub(crate) fn format(path: &Path, start: &[u8]) -> Option<String> {
         format!("an HDF5 file, as MATLAB's .mat of version 7.3, which is not read: {matlab}")
     } else if start.starts_with(b"MATLAB") || (extension == "mat" && !is_text(start)) {
         format!("a MATLAB file (.mat) without the head of version 5, which is not read: {matlab}")
+    } else if let Some(kind) = ansys_full::kind(start) {
+        let name = match kind {
+            2 => "element matrices (.emat)",
+            8 => "a superelement (.sub)",
+            12 => "results (.rst)",
+            _ => "no assembled matrices",
+        };
+        format!(
+            "an Ansys binary file with {name}, which is not read: write its matrices by *SMAT or *DMAT and *EXPORT with MMF (Matrix \
+             Market), or those of the model by HBMAT with FORM = ASCII (Harwell-Boeing)"
+        )
     } else if extension == "full" {
-        "an Ansys binary .full file, which is not read: write its matrices by HBMAT with FORM = ASCII (Harwell-Boeing), \
+        "no Ansys .full file by its head, which is not read: write its matrices by HBMAT with FORM = ASCII (Harwell-Boeing), \
          or by *EXPORT with MMF (Matrix Market)"
             .into()
     } else if matches!(extension.as_str(), "sim" | "odb") {

@@ -384,7 +384,47 @@ def matlab_files():
     refused("none.mat", head, "no matrix")
 
 
-for case in (superelements, op4_kinds, abaqus_labels, harwell_boeing, matrix_market, dmig, elements, numpy_files, matlab_files,
+def ansys_full():
+    """The layout that pymapdl-reader documents; a real file of Ansys 16.2 gave the matrices of that reader to the last bit."""
+    k = np.array([[9.0, 1, 2, 3], [1, 7, -1, 0], [2, -1, 6, 0.5], [3, 0, 0.5, 5]])
+    m = np.diag([4.0, 3, 2, 1]) + 0.25
+    # Nodes 8 and 3 with two degrees of freedom each; the first one is held.
+    for order in "<>":
+        def words(numbers, kind="i", flags=0x80000000):
+            data = struct.pack(order + "%d%s" % (len(numbers), kind), *numbers)
+            return struct.pack(order + "iI", len(data) // 4, flags) + data + struct.pack(order + "i", len(data) // 4)
+
+        def file(change=None):
+            first, second = [0] * 100, [0] * 100
+            first[0], second[0:2], second[7] = 4, [-4, 4], 2
+            after = words([1, 2]) + words([8, 3])
+            node_dofs = words([2, 2]) + words([-1, 1, 2, 3])
+
+            def rows(a):
+                return b"".join(words([i + 1 for i in range(j, 4)]) + words([a[i, j] for i in range(j, 4)], "d", 0) for j in range(4))
+            start = 2 * 103 + len(after) // 4
+            at = np.cumsum([start, len(node_dofs) // 4, len(rows(k)) // 4])
+            second[8], second[33] = 10, 10
+            second[35], second[18], second[26] = at
+            for place, value in (change or {}).items():
+                second[place] = value
+            return words(first) + words(second) + after + node_dofs + rows(k) + rows(m)
+
+        found = io.read(write("model.full", file()))
+        assert found.dofs.tolist() == [[3, 1], [3, 2], [8, 2]], found.dofs
+        picked = np.ix_([2, 3, 1], [2, 3, 1])
+        same("full", found.stiffness, k[picked])
+        same("full", found.mass, m[picked])
+        refused("model.full", file({0: 4}), "frontal")
+        refused("model.full", file({13: 1}), "unsymmetric")
+        refused("model.full", file({20: 1}), "constraint equations")
+        refused("model.full", file({1: 5}), "5 equations")
+        refused("model.full", file({18: 100000}), "cut off or damaged at byte 400000")
+        refused("model.full", file()[:-6], "cut off")
+        refused("model.sub", file().replace(struct.pack(order + "ii", 4, 0), struct.pack(order + "ii", 8, 0), 1), "superelement (.sub)")
+
+
+for case in (superelements, op4_kinds, abaqus_labels, harwell_boeing, matrix_market, dmig, elements, numpy_files, matlab_files, ansys_full,
              other_formats):
     case()
 sys.stdout.write("ok\n")
