@@ -75,6 +75,27 @@ Examples:
     /// The job needs no analysis.
     #[command(after_help = "Example:\n  hbvib modes job.toml > modes.csv")]
     Modes(JobArguments),
+    /// Writes a first job, with comments, that runs: from matrices, or from a mesh whose matrices CalculiX makes.
+    ///
+    /// The response is that about the first natural frequency, and the force acts where its mode moves most.
+    #[command(after_help = "\
+Examples:
+  hbvib init --stiffness k.mtx --mass m.mtx
+  hbvib init --matrices wheel.sti --mesh wheel.inp --sectors 24 --engine-order 3
+  hbvib init --mesh wheel.inp --fixed BORE --sectors 24 --engine-order 3 --contact RING:RIM   # ccx makes the matrices
+  hbvib init --mesh blade.inp --young 210e3 --density 7.85e-9                                 # mm, N, t")]
+    Init(Box<InitArguments>),
+    /// Converts matrix files between the formats that are read and written.
+    ///
+    /// Read: Matrix Market, CalculiX, Abaqus, user elements, OP4, DMIG, Ansys .full and Harwell-Boeing, NumPy, MATLAB. Written: OP4,
+    /// DMIG, user elements, NumPy and scipy, Matrix Market.
+    #[command(after_help = "\
+Examples:
+  hbvib convert wheel.sti --output wheel.op4
+  hbvib convert --stiffness k.mtx --mass m.mtx --output wheel.pch   # DMIG
+  hbvib convert wheel.op4 --output wheel.mtx                        # wheel_stiffness.mtx, wheel_mass.mtx
+  hbvib convert wheel.op4 --format op4-binary --output other.op4")]
+    Convert(ConvertArguments),
     /// Prints the JSON schema of a job, for editors that complete and check TOML.
     #[command(after_help = "Example:\n  hbvib schema > job.schema.json")]
     Schema,
@@ -91,6 +112,90 @@ Examples:
     /// Prints the manual page of the command.
     #[command(after_help = "Example:\n  hbvib man > hbvib.1 && man ./hbvib.1")]
     Man,
+}
+
+/// Files and choices of a first job.
+#[derive(Debug, clap::Args)]
+pub struct InitArguments {
+    /// File of the stiffness matrix.
+    #[arg(long, value_name = "FILE", requires = "mass", conflicts_with = "matrices")]
+    pub stiffness: Option<PathBuf>,
+    /// File of the mass matrix.
+    #[arg(long, value_name = "FILE", requires = "stiffness")]
+    pub mass: Option<PathBuf>,
+    /// File of the damping matrix.
+    #[arg(long, value_name = "FILE")]
+    pub damping: Option<PathBuf>,
+    /// One file with all matrices (CalculiX, OP4, DMIG, user elements).
+    #[arg(long, value_name = "FILE")]
+    pub matrices: Option<PathBuf>,
+    /// Mesh of Abaqus, CalculiX or gmsh (.inp); without matrices CalculiX makes them.
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// Number of sectors of a wheel.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub sectors: usize,
+    /// Engine order of the excitation.
+    #[arg(long, value_name = "EO", default_value_t = 0, allow_negative_numbers = true)]
+    pub engine_order: i64,
+    /// Sets of nodes of both faces of a sector.
+    #[arg(long, value_name = "SET", default_value = "LEFT")]
+    pub left: String,
+    #[arg(long, value_name = "SET", default_value = "RIGHT")]
+    pub right: String,
+    /// Sets of nodes that are clamped, where CalculiX makes the matrices.
+    #[arg(long, value_name = "SET", value_delimiter = ',')]
+    pub fixed: Vec<String>,
+    /// Sets of nodes on both sides of a contact.
+    #[arg(long, value_name = "A:B", value_delimiter = ',')]
+    pub contact: Vec<String>,
+    /// Young's modulus, where CalculiX makes the matrices; the defaults are steel in SI units.
+    #[arg(long, value_name = "E", default_value_t = 2.1e11)]
+    pub young: f64,
+    /// Poisson's ratio.
+    #[arg(long, value_name = "NU", default_value_t = 0.3)]
+    pub poisson: f64,
+    /// Density.
+    #[arg(long, value_name = "RHO", default_value_t = 7850.0)]
+    pub density: f64,
+    /// Program of CalculiX.
+    #[arg(long, value_name = "PROGRAM", default_value = "ccx")]
+    pub ccx: String,
+    /// File of the job.
+    #[arg(long, short, value_name = "FILE", default_value = "job.toml")]
+    pub output: PathBuf,
+    /// Replaces a job that is there.
+    #[arg(long)]
+    pub overwrite: bool,
+}
+
+/// Files that are converted.
+#[derive(Debug, clap::Args)]
+pub struct ConvertArguments {
+    /// File with one matrix or several.
+    #[arg(value_name = "FILE", required_unless_present_any = ["stiffness", "mass"])]
+    pub matrices: Option<PathBuf>,
+    /// File of the stiffness matrix.
+    #[arg(long, value_name = "FILE")]
+    pub stiffness: Option<PathBuf>,
+    /// File of the mass matrix.
+    #[arg(long, value_name = "FILE")]
+    pub mass: Option<PathBuf>,
+    /// File of the damping matrix.
+    #[arg(long, value_name = "FILE")]
+    pub damping: Option<PathBuf>,
+    /// File of the matrix of structural damping.
+    #[arg(long, value_name = "FILE")]
+    pub structural: Option<PathBuf>,
+    /// File that is written; its name tells the format: .op4, .pch (DMIG), .inp (user element), .npz, .mtx.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Format that is written: op4, op4-binary, dmig, user-element, npz, matrix-market.
+    #[arg(long, value_name = "FORMAT")]
+    pub format: Option<String>,
+    /// Replaces a file that is there.
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 /// A job, and how strictly it is taken.

@@ -37,6 +37,8 @@ pub struct Built {
     /// Names of its contacts.
     pub names: Names,
     pub nodes: Nodes,
+    /// Real part of the diagonal of the stiffness.
+    pub stiffness_diagonal: Vec<f64>,
     /// Report on the matrices, with what was taken as fixed or counted once.
     pub report: Report,
 }
@@ -148,8 +150,23 @@ pub fn built(job: &Job) -> Outcome<Built> {
         model,
         names,
         nodes,
+        stiffness_diagonal: diagonal(&given),
         report,
     })
+}
+
+/// Real part of the diagonal of the stiffness.
+fn diagonal(given: &Given) -> Vec<f64> {
+    let stiffness = given.own.iter().find(|(kind, _)| *kind == MatrixKind::Stiffness);
+    let Some((_, a)) = stiffness else { return Vec::new() };
+    let mut diagonal = vec![0.0; a.rows];
+    let parts = if a.is_complex { 2 } else { 1 };
+    for (k, v) in a.values.chunks_exact(parts).enumerate() {
+        if a.row[k] == a.column[k] {
+            diagonal[a.row[k] as usize] += v[0];
+        }
+    }
+    diagonal
 }
 
 /// Adds the contacts of a job, and returns their names.

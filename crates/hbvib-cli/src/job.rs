@@ -412,9 +412,8 @@ impl Job {
     /// A sentence with file and line; the nearest known key for one that is unknown.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
-        let mut job: Self = toml::from_str(&text)
-            .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
-        path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
+        let job = Self::parse(&text, path.parent().unwrap_or(Path::new("")));
+        let job = job.map_err(|e| format!("{}: {e}", path.display()))?;
         if job.forced.is_some() && job.mode.is_some() {
             return Err(format!(
                 "{}: names two analyses: needs one of [forced] and [mode]",
@@ -427,6 +426,17 @@ impl Job {
         if !job.response.is_empty() && job.forced.is_none() {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
+        Ok(job)
+    }
+
+    /// A job from its text, with the folder on which its paths depend.
+    ///
+    /// # Errors
+    /// A sentence with the line; the nearest known key for one that is unknown.
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, String> {
+        let job: Result<Self, _> = toml::from_str(text);
+        let mut job = job.map_err(|e| format!("{}{}", e.to_string().trim_end(), hint(e.message())))?;
+        folder.clone_into(&mut job.folder);
         Ok(job)
     }
 

@@ -11,10 +11,13 @@ mod arguments;
 mod build;
 mod campbell;
 mod canvas;
+mod ccx_deck;
 mod check;
 mod contact_figures;
+mod contact_guess;
 mod contact_tables;
 mod contacts;
+mod convert;
 mod counted;
 mod end;
 mod events;
@@ -22,6 +25,8 @@ mod faces;
 mod figure;
 mod files;
 mod frd;
+mod init;
+mod init_job;
 mod job;
 mod job_motion;
 mod job_studies;
@@ -86,6 +91,8 @@ fn done(verb: &Verb) -> Outcome<u8> {
         Verb::Run(of) => run_job::run(&of.job, of.strict),
         Verb::Check { of, json } => check::check(&of.job, of.strict, *json),
         Verb::Modes(of) => modes_table::modes(&of.job, of.strict),
+        Verb::Init(of) => init::init(of),
+        Verb::Convert(of) => convert::convert(of),
         Verb::Schema => schema(),
         Verb::Completions { shell } => print(&manual::completions(*shell)).map(|()| 0),
         Verb::Man => print(&manual::page()?).map(|()| 0),

@@ -13,10 +13,10 @@ pub struct Mesh {
     /// By names in capital letters.
     sets: HashMap<String, Vec<i64>>,
     elements: Vec<Element>,
+    /// Numbers of the elements of sets, by names in capital letters.
+    element_sets: HashMap<String, Vec<i64>>,
     /// Words of an element whose lines go on.
     open: Vec<i64>,
-    /// Keywords in capital letters, each once.
-    keywords: BTreeSet<String>,
 }
 
 /// Where the lines of a mesh belong.
@@ -25,8 +25,10 @@ enum Section {
     Nodes(Option<String>),
     /// To a set, whose lines may be ranges.
     Set(String, bool),
-    /// To elements of a type, and to a set of them.
-    Elements(String, Shape, Option<String>),
+    /// To a set of elements, whose lines may be ranges.
+    ElementSet(String, bool),
+    /// To elements of a shape, and to a set of them.
+    Elements(Shape, Option<String>),
     Other,
 }
 
@@ -53,8 +55,6 @@ impl Mesh {
             }
             if let Some(keyword) = line.strip_prefix('*') {
                 mesh.finish_element().map_err(|e| format!("line {}: {e}", k + 1))?;
-                let word = keyword.split(',').next().unwrap_or("");
-                mesh.keywords.insert(word.trim().to_uppercase());
                 section = keyword_section(keyword);
                 continue;
             }
@@ -62,17 +62,69 @@ impl Mesh {
             match &section {
                 Section::Nodes(set) => mesh.add_node(&words, set.as_deref()),
                 Section::Set(name, ranges) => mesh.add_to_set(&words, name, *ranges),
-                Section::Elements(kind, shape, set) => mesh.add_element(&words, kind, *shape, set.as_deref()),
+                Section::ElementSet(name, ranges) => mesh.add_to_element_set(&words, name, *ranges),
+                Section::Elements(shape, set) => mesh.add_element(&words, *shape, set.as_deref()),
                 Section::Other => Ok(()),
             }
             .map_err(|e| format!("line {}: {e}", k + 1))?;
         }
         mesh.finish_element()?;
+        mesh.sets_of_elements();
         Ok(mesh)
     }
 
+    fn add_to_element_set(&mut self, words: &[&str], set: &str, ranges: bool) -> Outcome<()> {
+        let mut found = Vec::new();
+        for word in words {
+            match word.parse() {
+                Ok(number) => found.push(number),
+                Err(_) => found.extend(
+                    self.element_sets
+                        .get(&word.to_uppercase())
+                        .into_iter()
+                        .flatten()
+                        .copied(),
+                ),
+            }
+        }
+        if let (true, &[first, last, ref step @ ..]) = (ranges, &found[..]) {
+            let step = step.first().copied().unwrap_or(1);
+            if step <= 0 {
+                return Err("needs first, last and step of a range of elements".into());
+            }
+            let within = |number: &i64| (first..=last).contains(number) && number.abs_diff(first) % step as u64 == 0;
+            found = self.elements.iter().map(|e| e.number).filter(within).collect();
+        }
+        self.element_sets.entry(set.to_owned()).or_default().extend(found);
+        Ok(())
+    }
+
+    /// A set of elements is that of their nodes, too, unless there is one of nodes with its name.
+    fn sets_of_elements(&mut self) {
+        let place: HashMap<i64, usize> = self.elements.iter().enumerate().map(|(i, e)| (e.number, i)).collect();
+        let mut all: HashMap<String, Vec<usize>> = HashMap::new();
+        for (i, element) in self.elements.iter().enumerate() {
+            if let Some(set) = &element.set {
+                all.entry(set.clone()).or_default().push(i);
+            }
+        }
+        for (name, numbers) in &self.element_sets {
+            all.entry(name.clone())
+                .or_default()
+                .extend(numbers.iter().filter_map(|n| place.get(n)));
+        }
+        for (name, elements) in all {
+            let nodes: BTreeSet<i64> = elements
+                .iter()
+                .flat_map(|i| &self.elements[*i].nodes)
+                .copied()
+                .collect();
+            self.sets.entry(name).or_insert_with(|| nodes.into_iter().collect());
+        }
+    }
+
     /// Adds words of an element: its number and its nodes, on one line or several.
-    fn add_element(&mut self, words: &[&str], kind: &str, shape: Shape, set: Option<&str>) -> Outcome<()> {
+    fn add_element(&mut self, words: &[&str], shape: Shape, set: Option<&str>) -> Outcome<()> {
         for word in words {
             let number = word
                 .parse()
@@ -82,7 +134,6 @@ impl Mesh {
                 let all = std::mem::take(&mut self.open);
                 self.elements.push(Element {
                     number: all[0],
-                    kind: kind.to_owned(),
                     shape,
                     nodes: all[1..].to_vec(),
                     set: set.map(str::to_owned),
@@ -178,13 +229,6 @@ impl Mesh {
         at.ok_or_else(|| format!("node {number} is not in {}", self.path.display()))
     }
 
-    /// Numbers of all nodes, ascending.
-    pub fn numbers(&self) -> Vec<i64> {
-        let mut numbers: Vec<i64> = self.positions.keys().copied().collect();
-        numbers.sort_unstable();
-        numbers
-    }
-
     /// Elements in the order of the file: those that fill space, where there are any; else all.
     pub fn drawn(&self) -> Vec<&Element> {
         let solid = self.elements.iter().any(|element| element.shape.is_solid());
@@ -192,21 +236,11 @@ impl Mesh {
         self.elements.iter().filter(shown).collect()
     }
 
-    /// All elements that have a shape.
-    pub fn elements(&self) -> &[Element] {
-        &self.elements
-    }
-
     /// Names of the sets of nodes in capital letters, with the number of nodes, in order.
     pub fn set_names(&self) -> Vec<(&str, usize)> {
         let mut names: Vec<(&str, usize)> = self.sets.iter().map(|(name, set)| (name.as_str(), set.len())).collect();
         names.sort_unstable();
         names
-    }
-
-    /// Whether the file has a keyword, named in capital letters.
-    pub fn has_keyword(&self, keyword: &str) -> bool {
-        self.keywords.contains(keyword)
     }
 
     /// Path of the file, for sentences.
@@ -233,10 +267,8 @@ fn keyword_section(keyword: &str) -> Section {
     match (word.as_str(), set) {
         ("NODE", set) => Section::Nodes(set),
         ("NSET", Some(set)) => Section::Set(set, ranges),
-        ("ELEMENT", _) => match Shape::of_type(&kind) {
-            Some(shape) => Section::Elements(kind, shape, elements),
-            None => Section::Other,
-        },
+        ("ELSET", _) => elements.map_or(Section::Other, |set| Section::ElementSet(set, ranges)),
+        ("ELEMENT", _) => Shape::of_type(&kind).map_or(Section::Other, |shape| Section::Elements(shape, elements)),
         _ => Section::Other,
     }
 }
@@ -283,8 +315,7 @@ mod tests {
             (drawn[0].number, &drawn[0].nodes[..], drawn[0].set.as_deref()),
             (7, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10][..], Some("WHEEL"))
         );
-        assert_eq!(mesh.elements().len(), 3);
-        assert!(mesh.has_keyword("MATERIAL") && !mesh.has_keyword("STEP"));
+        assert_eq!((mesh.elements.len(), mesh.set("wheel").map(<[_]>::len)), (3, Some(11)));
         assert!(
             Mesh::parse("*ELEMENT, TYPE=C3D4\n1,1,2,3\n*NSET,NSET=a\n1\n")
                 .unwrap_err()

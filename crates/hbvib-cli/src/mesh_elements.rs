@@ -21,8 +21,6 @@ pub enum Shape {
 #[derive(Clone, Debug)]
 pub struct Element {
     pub number: i64,
-    /// Type as the mesh names it, in capital letters.
-    pub kind: String,
     pub shape: Shape,
     pub nodes: Vec<i64>,
     /// Set that its keyword names, in capital letters.
