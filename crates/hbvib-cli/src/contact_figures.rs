@@ -1,8 +1,9 @@
 //! Figures of contacts: force over motion, and slip fraction over frequency.
 
 use crate::build::Outcome;
+use crate::curve::Curve;
 use crate::figure::{bounds, draw, scientific};
-use hbvib::{Branch, ContactLoop, Special};
+use hbvib::{ContactLoop, Special};
 use plotters::prelude::{ChartBuilder, LineSeries, PathElement, Rectangle};
 use plotters::style::{BLACK, Color, HSLColor, Palette, Palette99, RGBColor, WHITE};
 use std::f64::consts::TAU;
@@ -71,9 +72,10 @@ struct Stretch {
 ///
 /// # Errors
 /// A sentence.
-pub fn slip_figure(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<()> {
-    let stretches = stretches(branch, labels.len());
-    let hertz = || (0..branch.points()).map(|p| branch.omega()[p] / TAU);
+pub fn slip_figure(path: &Path, curve: &Curve<'_>, labels: &[String]) -> Outcome<()> {
+    let stretches = stretches(curve, labels.len());
+    let omega = curve.omega();
+    let hertz = || omega.iter().map(|w| w / TAU);
     draw(path, |area| {
         let contacts = labels.len().max(1) as f64;
         let mut chart = ChartBuilder::on(area)
@@ -107,16 +109,16 @@ fn colour(level: u32) -> RGBColor {
 }
 
 /// Neighbours of one colour in a row, the larger slip last. A point reaches halfway to its neighbours.
-fn stretches(branch: &Branch, contacts: usize) -> Vec<Stretch> {
-    let points = branch.points();
-    let hertz = |p: usize| branch.omega()[p] / TAU;
+fn stretches(curve: &Curve<'_>, contacts: usize) -> Vec<Stretch> {
+    let (points, omega) = (curve.points(), curve.omega());
+    let hertz = |p: usize| omega[p] / TAU;
     let mut all: Vec<Stretch> = Vec::new();
     for contact in 0..contacts {
         let mut open: Option<Stretch> = None;
         for p in 0..points {
             let before = 0.5 * (hertz(p) + hertz(p.saturating_sub(1)));
             let after = 0.5 * (hertz(p) + hertz((p + 1).min(points - 1)));
-            let slip = branch.slip_fraction_at(p).and_then(|all| all.get(contact));
+            let slip = curve.slip(p).get(contact);
             // Any slip has a colour.
             let level = (slip.copied().unwrap_or(0.0) * LEVELS).ceil() as u32;
             let (from, to) = (before.min(after).min(hertz(p)), before.max(after).max(hertz(p)));

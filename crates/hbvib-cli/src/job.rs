@@ -29,6 +29,7 @@ pub struct Job {
     pub study: Option<StudyPart>,
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
+    pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
@@ -341,6 +342,14 @@ pub struct VerifyPart {
     pub csv: Option<PathBuf>,
 }
 
+/// A response of the same job that was stopped, and goes on.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RestartPart {
+    /// File of [output], npz; the new one may have its name.
+    pub from: PathBuf,
+}
+
 /// Files that are written.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -422,6 +431,9 @@ impl Job {
         }
         if job.verify.is_some() && job.forced.is_none() {
             return Err(format!("{}: [verify] needs [forced]", path.display()));
+        }
+        if job.restart.is_some() && job.forced.is_none() {
+            return Err(format!("{}: [restart] needs [forced]", path.display()));
         }
         if !job.response.is_empty() && job.forced.is_none() {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));

@@ -19,6 +19,7 @@ mod contact_tables;
 mod contacts;
 mod convert;
 mod counted;
+mod curve;
 mod end;
 mod events;
 mod faces;
@@ -30,6 +31,7 @@ mod init_job;
 mod job;
 mod job_motion;
 mod job_studies;
+mod line_chart;
 mod manual;
 mod map;
 mod mesh;
@@ -45,11 +47,14 @@ mod node_table;
 mod normals;
 mod npz;
 mod output;
+mod plot;
 mod points;
 mod progress;
 mod responses;
+mod restart;
 mod run_job;
 mod solver;
+mod stored_response;
 mod study;
 mod tornado;
 mod uff;
@@ -93,6 +98,7 @@ fn done(verb: &Verb) -> Outcome<u8> {
         Verb::Modes(of) => modes_table::modes(&of.job, of.strict),
         Verb::Init(of) => init::init(of),
         Verb::Convert(of) => convert::convert(of),
+        Verb::Plot(of) => plot::plot(of),
         Verb::Schema => schema(),
         Verb::Completions { shell } => print(&manual::completions(*shell)).map(|()| 0),
         Verb::Man => print(&manual::page()?).map(|()| 0),
