@@ -23,6 +23,7 @@ struct Faces {
     /// Degrees of freedom of nodes whose image is fixed.
     fixed: Vec<usize>,
     facts: Vec<String>,
+    pairs: Vec<(i64, i64, f64)>,
 }
 
 /// The model of a sector.
@@ -32,6 +33,8 @@ pub struct Sector {
     pub images: HashMap<i64, i64>,
     /// Nodes that were fixed as their image is.
     pub facts: Vec<String>,
+    /// Left and right node of each pair, and the distance of the right one from the image of the left one.
+    pub pairs: Vec<(i64, i64, f64)>,
 }
 
 impl Sector {
@@ -41,6 +44,7 @@ impl Sector {
             model,
             images: HashMap::new(),
             facts: Vec::new(),
+            pairs: Vec::new(),
         }
     }
 }
@@ -89,6 +93,7 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         model,
         images,
         facts: faces.facts,
+        pairs: faces.pairs,
     })
 }
 
@@ -128,6 +133,7 @@ fn in_order(part: &FacesPart, left: &[Node], right: &[Node]) -> Outcome<Faces> {
         coordinates,
         fixed: Vec::new(),
         facts: Vec::new(),
+        pairs: Vec::new(),
     })
 }
 
@@ -159,6 +165,7 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
         coordinates: None,
         fixed: Vec::new(),
         facts: Vec::new(),
+        pairs: Vec::new(),
     };
     let mut coordinates = (Points::new(), Points::new());
     for (i, &j) in partner.iter().enumerate() {
@@ -167,6 +174,10 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
             Node::Dofs(_) => Err(format!("{name}[{i}] names degrees of freedom, others name nodes")),
         };
         let sides = (dofs_of("left", i, &left[i])?, dofs_of("right", j, &right[j])?);
+        if let (Node::Number(left), Node::Number(right)) = (&left[i], &right[j]) {
+            let apart = [0, 1, 2].map(|k| images[i][k] - at_right[j][k]);
+            faces.pairs.push((*left, *right, norm(&apart)));
+        }
         if let (None, _) | (_, None) = sides {
             // Fixed on one side is fixed on both: they are one node of the wheel.
             let moving = [

@@ -126,7 +126,10 @@ fn a_run_stopped_anywhere_goes_on_to_the_same_curve() {
         let found = all(python(&folder, &table.replace("whole", "curve")));
         assert_eq!(found.len(), wanted.len(), "{share}");
         for (a, b) in found.chunks_exact(3).zip(wanted.chunks_exact(3)) {
-            assert!((a[0] - b[0]).abs() < 0.5 && (a[2] / b[2] - 1.0).abs() < 1e-7, "{share}: {a:?} {b:?}");
+            assert!(
+                (a[0] - b[0]).abs() < 0.5 && (a[2] / b[2] - 1.0).abs() < 1e-7,
+                "{share}: {a:?} {b:?}"
+            );
         }
         // Both parts are one curve in all files.
         let lines = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap().lines().count() - 1;
