@@ -35,6 +35,9 @@ pub struct Job {
     /// Folder of the job file, on which all paths depend.
     #[serde(skip)]
     pub folder: PathBuf,
+    /// The text of the job.
+    #[serde(skip)]
+    pub text: String,
 }
 
 /// An unbalance that rotates with the frequency of the response.
@@ -370,6 +373,8 @@ pub struct OutputPart {
     pub netcdf: Option<PathBuf>,
     /// Shapes at points of the curve, for CalculiX and what reads its results.
     pub frd: Option<PathBuf>,
+    /// One page of HTML with figures and tables, which needs no network.
+    pub report: Option<PathBuf>,
     /// Points and times of vtu, uff and frd.
     #[serde(default)]
     pub motion: MotionPart,
@@ -449,6 +454,7 @@ impl Job {
         let job: Result<Self, _> = toml::from_str(text);
         let mut job = job.map_err(|e| format!("{}{}", e.to_string().trim_end(), hint(e.message())))?;
         folder.clone_into(&mut job.folder);
+        text.clone_into(&mut job.text);
         Ok(job)
     }
 

@@ -10,7 +10,7 @@ use crate::responses::{self, ResponsePart};
 use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
-use crate::{campbell, check, contact_tables, map, motion_files, output, study, tornado, verification};
+use crate::{campbell, check, contact_tables, html_report, map, motion_files, output, study, tornado, verification};
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
     nonlinear_mode,
@@ -51,6 +51,7 @@ fn written(job: &Job, built: &Built, curve: &Curve<'_>, files: &mut Files<'_>) {
         output::write(job, curve, files);
         contact_tables::write(job, curve, built, files);
         motion_files::write(job, curve, built, files);
+        html_report::write(job, curve, built, files);
     }
     files.tell(&output::summary(curve));
     files.tell(&responses::summary(curve));
