@@ -35,6 +35,9 @@ pub struct Sector {
     pub facts: Vec<String>,
     /// Left and right node of each pair, and the distance of the right one from the image of the left one.
     pub pairs: Vec<(i64, i64, f64)>,
+    /// Degrees of freedom of both faces, and those that are fixed.
+    pub dofs: Vec<usize>,
+    pub fixed: Vec<usize>,
 }
 
 impl Sector {
@@ -45,6 +48,8 @@ impl Sector {
             images: HashMap::new(),
             facts: Vec::new(),
             pairs: Vec::new(),
+            dofs: Vec::new(),
+            fixed: Vec::new(),
         }
     }
 }
@@ -94,6 +99,8 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         images,
         facts: faces.facts,
         pairs: faces.pairs,
+        dofs: faces.left.iter().chain(&faces.right).flatten().copied().collect(),
+        fixed,
     })
 }
 
