@@ -242,6 +242,7 @@ pub struct ReduceArguments {
 }
 
 /// Stored responses, and what is drawn of them.
+#[allow(clippy::struct_excessive_bools, reason = "switches of a command line")]
 #[derive(Debug, clap::Args)]
 pub struct PlotArguments {
     /// Files of [output], npz.
