@@ -101,3 +101,37 @@ def universal():
         dict(function, binary=0, func_type=1, data=y.real, x=np.array([0, 0.1, 0.3, 0.7, 2.0]), abscissa_spacing=0, ord_data_type=4),
     ]:
         file._write_set(one, "add")
+
+
+def small():
+    """Small files for mutations: small.mat, packed.mat and packed.npz of scipy and NumPy; small.full in the layout of Ansys' files."""
+    import struct
+
+    k = np.array([[4.0, -1, 0], [-1, 4, -1], [0, -1, 4]])
+    m = np.diag([1.0, 2, 3])
+    both = dict(K=sp.csc_matrix(k), M=m, dofs=np.array([[1, 1], [1, 2], [2, 1]]))
+    scipy.io.savemat("small.mat", both)
+    scipy.io.savemat("packed.mat", both, do_compression=True)
+    np.savez_compressed("packed.npz", K=k, M=m)
+
+    def words(numbers, kind="i", flags=0x80000000):
+        data = struct.pack("<%d%s" % (len(numbers), kind), *numbers)
+        return struct.pack("<iI", len(data) // 4, flags) + data + struct.pack("<i", len(data) // 4)
+
+    def rows(a):
+        return b"".join(words(range(j + 1, 4)) + words(a[j:, j].tolist(), "d", 0) for j in range(3))
+
+    first, second = [0] * 100, [0] * 100
+    first[0], second[0:2], second[7] = 4, [-4, 3], 1
+    after = words([1]) + words([2, 3, 1])
+    node_dofs = words([1, 1, 1]) + words([0, -1, 0])
+    at = np.cumsum([206 + len(after) // 4, len(node_dofs) // 4, len(rows(k)) // 4])
+    second[8] = second[33] = 6
+    second[35], second[18], second[26] = at.tolist()
+    with open("small.full", "wb") as file:
+        file.write(words(first) + words(second) + after + node_dofs + rows(k) + rows(m))
+
+
+if __name__ == "__main__":
+    universal()
+    small()
