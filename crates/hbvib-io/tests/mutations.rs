@@ -48,7 +48,7 @@ fn folder() -> PathBuf {
     place.join(format!("hbvib_io_mutations_{}", std::process::id()))
 }
 
-/// What a reader does with a file: the sentence of a refusal.
+/// A reader of a file, which returns the sentence of a refusal.
 type Reader = fn(&Path) -> Result<(), String>;
 
 fn matrices(path: &Path) -> Result<(), String> {
