@@ -242,7 +242,7 @@ module hbvib
 
    !> Options of hbvib_forced_response.
    type, bind(c) :: hbvib_forced_options
-      integer(c_int32_t) :: struct_size = 72, reserved = 0
+      integer(c_int32_t) :: struct_size = 72, together = 0
       real(c_double) :: omega_start = 0, omega_stop = 0
       type(c_ptr) :: at = c_null_ptr
       integer(c_int64_t) :: at_len = 0
@@ -351,11 +351,12 @@ module hbvib
 
    !> Distance of a point from the periodic motion that integration in time finds from it.
    type, bind(c) :: hbvib_verification
-      integer(c_int32_t) :: struct_size = 112, same_solution = 0, marched = 0, reserved = 0
+      integer(c_int32_t) :: struct_size = 128, same_solution = 0, marched = 0, reserved = 0
       integer(c_int64_t) :: harmonic = 0
       complex(c_double_complex) :: response = 0
       real(c_double) :: response_error = 0, motion_error = 0, above = 0, distance = 0, peak = 0, peak_error = 0, residual = 0
-      integer(c_int64_t) :: periods = 0, events = 0
+      integer(c_int64_t) :: periods = 0, events = 0, worst_response = -1
+      real(c_double) :: worst_response_error = NaN_c_double
    end type hbvib_verification
 
    !> Options of hbvib_floquet.
@@ -385,19 +386,22 @@ module hbvib
 
    !> Range of a parameter response.
    type, bind(c) :: hbvib_parameter_options
-      integer(c_int32_t) :: struct_size = 72, follow = 0
+      integer(c_int32_t) :: struct_size = 80, follow = 0
       type(c_ptr) :: parameter = c_null_ptr
       real(c_double) :: start = 0, stop = 0, omega = 0
       type(c_ptr) :: at = c_null_ptr
       integer(c_int64_t) :: at_len = 0
       real(c_double) :: log10_start = 0, log10_stop = 0
+      type(c_ptr) :: response = c_null_ptr
    end type hbvib_parameter_options
 
    !> Options of hbvib_batch_solve.
    type, bind(c) :: hbvib_batch_options
-      integer(c_int32_t) :: struct_size = 32, threads = 1
+      integer(c_int32_t) :: struct_size = 48, threads = 1
       real(c_double) :: omega_start = 0, omega_stop = 0
       integer(c_int32_t) :: keep = 0, reserved = 0
+      type(c_ptr) :: responses = c_null_ptr
+      integer(c_int64_t) :: responses_len = 0
    end type hbvib_batch_options
 
    abstract interface
@@ -1086,6 +1090,29 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_response_peaks
 
+      function hbvib_branch_leading_response(branch, point) bind(c) result(answer)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: point
+         integer(c_int64_t) :: answer
+      end function hbvib_branch_leading_response
+
+      function hbvib_branch_read_responses(branch, responses, responses_len, values, values_len, complex, complex_len, instants, &
+         instants_len, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         type(hbvib_response), intent(in) :: responses(*)
+         integer(c_int64_t), value :: responses_len
+         real(c_double), intent(inout), optional :: values(*)
+         integer(c_int64_t), value :: values_len
+         complex(c_double_complex), intent(inout), optional :: complex(*)
+         integer(c_int64_t), value :: complex_len
+         real(c_double), intent(inout), optional :: instants(*)
+         integer(c_int64_t), value :: instants_len
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_read_responses
+
       function hbvib_response_of(r, ndof, omega, x, x_len, value, amplitude, instant) bind(c) result(status)
          import
          type(hbvib_response), intent(in) :: r
@@ -1576,6 +1603,14 @@ module hbvib
          integer(c_int64_t), intent(inout), optional :: statuses(*), points(*)
          integer(c_int32_t) :: status
       end function hbvib_batch_peaks
+
+      function hbvib_batch_response_peaks(batch, response, capacity, amplitude, omega) bind(c) result(status)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int64_t), value :: response, capacity
+         real(c_double), intent(inout), optional :: amplitude(*), omega(*)
+         integer(c_int32_t) :: status
+      end function hbvib_batch_response_peaks
 
       function hbvib_batch_status(batch, design) bind(c) result(status)
          import

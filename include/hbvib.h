@@ -1666,8 +1666,9 @@ typedef struct hbvib_branch hbvib_branch;
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// Must be 0.
-  int32_t reserved;
+  /// 1: the tolerance holds for all responses in one norm, the root of the sum of |error|^2 over
+  /// that of |response|^2; 0: for each by itself.
+  int32_t together;
   /// First angular frequency, > 0, rad per time unit.
   double omega_start;
   /// Last angular frequency: below the first for a downward sweep, equal to it for one point.
@@ -2058,6 +2059,43 @@ hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch,
                                          double *value,
                                          int64_t *point,
                                          int64_t *peaks);
+
+/// Number of the response with the largest error at a stored point, in the norm that the tolerance
+/// has; HBVIB_E_INDEX where there is no such point, HBVIB_E_ARGUMENT where no error is known.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// Errors: HBVIB_E_HANDLE also. Threads: any number on one branch.
+int64_t hbvib_branch_leading_response(const hbvib_branch *branch, int64_t point);
+
+/// Reads responses at all stored points of any branch, whatever it was asked for: of a nonlinear
+/// mode, of a result over a parameter, or further gauges of a forced response. A hook or the cancel
+/// flag may stop it: the status is then HBVIB_STOPPED_BY_CALLER, and the arrays are untouched.
+///
+/// responses      array of responses, struct_size of the first apart; one without degrees of
+///                freedom is that of the response degree of freedom.
+/// responses_len  how many.
+/// values         receives the measures, responses_len x stored points; or NULL.
+/// values_len     numbers in it; 0 with NULL.
+/// complex        receives complex amplitudes, NaN where a measure has none; or NULL.
+/// complex_len    complex numbers in it; 0 with NULL.
+/// instants       receives phases as HBVIB_READING_INSTANT; or NULL.
+/// instants_len   numbers in it; 0 with NULL.
+/// hooks          phase, log and cancellation; progress is not called. NULL: none.
+/// Errors: HBVIB_E_DIMENSION (lengths, weights), HBVIB_E_INDEX (dofs, sector), HBVIB_E_ARGUMENT
+/// (fields, overlapping arrays), HBVIB_E_NOT_FINITE, HBVIB_E_SINGULAR, HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_CALLBACK, HBVIB_E_OUT_OF_MEMORY. Threads: any
+/// number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_read_responses(const hbvib_branch *branch,
+                                         const hbvib_response *responses,
+                                         int64_t responses_len,
+                                         double *values,
+                                         int64_t values_len,
+                                         double *complex,
+                                         int64_t complex_len,
+                                         double *instants,
+                                         int64_t instants_len,
+                                         const hbvib_hooks *hooks);
 
 /// Reads a response from any periodic motion: of a nonlinear mode, a synthesis, an integration in
 /// time. The fundamental is harmonic 1, and the sector must be 0.
@@ -3106,6 +3144,11 @@ typedef struct {
   int64_t periods;
   /// Number of changes of the contacts in one period, as in hbvib_time_info.
   int64_t events;
+  /// Number of the response of the branch with the largest error, from 0; -1 where it has none.
+  int64_t worst_response;
+  /// Its error: the distance of the measure of the point from that in time, relative to it; of
+  /// complex amplitudes where the measure has one. NaN where the branch has no responses.
+  double worst_response_error;
 } hbvib_verification;
 
 /// Fills the result of a check in time with zeros.
@@ -3533,6 +3576,9 @@ typedef struct {
   double log10_start;
   /// The same up to which it is sought.
   double log10_stop;
+  /// The response that is followed, not with HBVIB_FOLLOW_MODE_MAX_DAMPING; NULL: the amplitude
+  /// of the response degree of freedom.
+  const hbvib_response *response;
 } hbvib_parameter_options;
 
 /// Fills the options of a parameter response with zeros: parameter, range and omega must be set.
@@ -3544,8 +3590,9 @@ HBVIB_NODISCARD
 hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
 
 /// Follows a result over a parameter by arc-length continuation: the amplitude of a forced
-/// response at a fixed frequency, in a peak or in a fold, or the largest damping ratio of a
-/// nonlinear mode. Folds over the parameter are passed, minima and maxima refined. The harmonics
+/// response, or the response of the options, at a fixed frequency, in a peak or in a fold, or the
+/// largest damping ratio of a nonlinear mode. Folds over the parameter are passed, minima and
+/// maxima refined. The harmonics
 /// are chosen at each point by the tolerance of the solver, or the same at all points with a
 /// tolerance of 0. The branch has the fields HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, of a
 /// mode HBVIB_D_DAMPING and those of a mode, and hbvib_branch_optima; its points belong to
@@ -3631,6 +3678,12 @@ typedef struct {
   int32_t keep;
   /// Must be 0.
   int32_t reserved;
+  /// Array of the responses that are watched, struct_size of the first apart, or NULL: the
+  /// amplitude of the response degree of freedom. The first leads the peak of a design, and each
+  /// has its own: hbvib_batch_response_peaks.
+  const hbvib_response *responses;
+  /// Number of responses.
+  int64_t responses_len;
 } hbvib_batch_options;
 
 /// Fills the options of a batch: one thread, no branch kept. The frequencies must be set.
@@ -3701,6 +3754,22 @@ hbvib_status hbvib_batch_peaks(const hbvib_batch *batch,
                                double *peak_omega,
                                int64_t *statuses,
                                int64_t *points);
+
+/// The highest peak of a response of each design, in the order of their values.
+///
+/// response   number of the response of hbvib_batch_options, from 0.
+/// capacity   numbers that fit into each array: at least the number of designs.
+/// amplitude  receives measures, NaN without a maximum or where the design failed; or NULL.
+/// omega      receives angular frequencies; or NULL.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity: the arrays are untouched),
+/// HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any
+/// number on one batch.
+HBVIB_NODISCARD
+hbvib_status hbvib_batch_response_peaks(const hbvib_batch *batch,
+                                        int64_t response,
+                                        int64_t capacity,
+                                        double *amplitude,
+                                        double *omega);
 
 /// The status of a design, whose sentence hbvib_last_error then has: HBVIB_OK;
 /// HBVIB_STOPPED_NO_PEAK without a maximum; another positive number where the branch ended early

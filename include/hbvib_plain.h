@@ -460,7 +460,7 @@ struct hbvib_response {
 };
 struct hbvib_forced_options {
   uint32_t struct_size;
-  int32_t reserved;
+  int32_t together;
   double omega_start;
   double omega_stop;
   const double *at;
@@ -625,6 +625,8 @@ struct hbvib_verification {
   double residual;
   int64_t periods;
   int64_t events;
+  int64_t worst_response;
+  double worst_response_error;
 };
 struct hbvib_floquet_options {
   uint32_t struct_size;
@@ -667,6 +669,7 @@ struct hbvib_parameter_options {
   int64_t at_len;
   double log10_start;
   double log10_stop;
+  const hbvib_response *response;
 };
 struct hbvib_batch_options {
   uint32_t struct_size;
@@ -675,6 +678,8 @@ struct hbvib_batch_options {
   double omega_stop;
   int32_t keep;
   int32_t reserved;
+  const hbvib_response *responses;
+  int64_t responses_len;
 };
 uint32_t hbvib_version(void);
 const char *hbvib_version_string(void);
@@ -756,6 +761,8 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch, int64_t wanted, int64_t
 int64_t hbvib_branch_responses(const hbvib_branch *branch);
 hbvib_status hbvib_branch_response(const hbvib_branch *branch, int64_t response, int32_t reading, hbvib_view *out);
 hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch, int64_t response, int64_t capacity, double *omega, double *value, int64_t *point, int64_t *peaks);
+int64_t hbvib_branch_leading_response(const hbvib_branch *branch, int64_t point);
+hbvib_status hbvib_branch_read_responses(const hbvib_branch *branch, const hbvib_response *responses, int64_t responses_len, double *values, int64_t values_len, double *complex, int64_t complex_len, double *instants, int64_t instants_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_response_of(const hbvib_response *r, int64_t ndof, double omega, const double *x, int64_t x_len, double *value, double *amplitude, double *instant);
 hbvib_status hbvib_reduction_init(hbvib_reduction *r, size_t size_of_r);
 hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
@@ -806,6 +813,7 @@ hbvib_status hbvib_batch_solve(const hbvib_model *model, const hbvib_solver_opti
 hbvib_status hbvib_batch_free(hbvib_batch *batch);
 int64_t hbvib_batch_designs(const hbvib_batch *batch);
 hbvib_status hbvib_batch_peaks(const hbvib_batch *batch, int64_t capacity, double *peak_amplitude, double *peak_omega, int64_t *statuses, int64_t *points);
+hbvib_status hbvib_batch_response_peaks(const hbvib_batch *batch, int64_t response, int64_t capacity, double *amplitude, double *omega);
 hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);

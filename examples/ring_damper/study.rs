@@ -123,6 +123,7 @@ impl Request {
             omega_stop: RANGE.1 * TAU,
             threads,
             keep: false,
+            responses: &[],
         };
         let begin = Instant::now();
         let found = batch(
@@ -245,6 +246,7 @@ fn over_load(model: &Model, folder: &Path) -> Result<Optimum, Box<dyn Error>> {
             stop: LOADS.1,
             at: &[],
             follow: Follow::Peak(FIRST_PEAK * TAU),
+            response: None,
         };
         let found = parameter_response(model, &solver(tolerance), preload(), &range, &mut Hooks::default())?;
         let optima = found.optima().iter().filter(|o| !o.is_maximum);

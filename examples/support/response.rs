@@ -107,6 +107,7 @@ impl Response {
             at: &at,
             guess: None,
             responses: &[],
+            together: false,
         };
         let begin = Instant::now();
         let mut first = None;

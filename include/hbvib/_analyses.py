@@ -64,7 +64,7 @@ class _Analyses(_Matrices):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def forced_response(self, omega: ArrayLike, *, at: Optional[ArrayLike] = None, guess: Optional[ArrayLike] = None,
-                        responses: Optional[Responses] = None,
+                        responses: Optional[Responses] = None, together: bool = False,
                         progress: Union[bool, Callable[[Progress], Any], None] = None,
                         log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                         cancel: Optional[CancelFlag] = None,
@@ -77,6 +77,7 @@ class _Analyses(_Matrices):
                   forces and laws do not excite by themselves (a subharmonic, a mean) are carried where the guess has them.
         responses what is watched, a list of Response or of degrees of freedom: Branch.responses. The first one leads
                   amplitude and peaks of the branch, and a tolerance holds for each.
+        together  the tolerance holds for all responses in one norm, instead of for each.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points. True
                   shows a bar of tqdm, or a line on stderr where that is not installed.
         log       log(LogLevel, text), lines up to log_level.
@@ -98,7 +99,8 @@ class _Analyses(_Matrices):
         0.5834 [0.2]
         """
         start, stop = _range("omega", omega, "forced_response((0.8, 1.6), at=omega)", single=True)
-        options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
+        options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, together=int(bool(together)),
+                       **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
         watched = listed(responses)
         described(options, watched)
@@ -148,7 +150,7 @@ class _Analyses(_Matrices):
     @_with_options("hbvib_solver_options", SolverOptions)
     def parameter_response(self, parameter: Parameter, values: Sequence[float], *, omega: float,
                            follow: Follows = Follow.OMEGA, at: Optional[ArrayLike] = None,
-                           log10_amplitude: Sequence[float] = (0, 0),
+                           response: Union[Response, int, None] = None, log10_amplitude: Sequence[float] = (0, 0),
                            progress: Union[bool, Callable[[Progress], Any], None] = None,
                            log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                            cancel: Optional[CancelFlag] = None,
@@ -163,6 +165,7 @@ class _Analyses(_Matrices):
         follow    "omega": the response at this frequency; "peak": the peak; "fold": a fold over the frequency;
                   "mode_max_damping": the largest damping ratio along a nonlinear mode.
         at        values within the range at which every solution is computed exactly: Branch.at.
+        response  the Response that is followed, or a degree of freedom; None: the amplitude of the response dof.
         log10_amplitude   of the modal amplitudes between which the maximum of damping is sought at the start; equal ones:
                   from the onset of slip to a thousand times its amplitude.
         The rest as in forced_response. Options of the solver:
@@ -179,12 +182,13 @@ class _Analyses(_Matrices):
         ['minimum']
         """
         start, stop = _range("values", values, "parameter_response(parameter, (1, 2), at=values)")
-        described = parameter._description()
+        changed = parameter._description()
         options = _new("hbvib_parameter_options", start=start, stop=stop, omega=omega, follow=_member(Follow, follow),
                        log10_start=log10_amplitude[0], log10_stop=log10_amplitude[1],
                        **_counted_array("at", at))
-        options.described = described  # kept as long as the struct
-        options.parameter = ctypes.addressof(described)
+        options.changed = changed  # kept as long as the struct
+        options.parameter = ctypes.addressof(changed)
+        described(options, listed(None if response is None else [response]), single=True)
         return self._solve("hbvib_parameter_response", solver, options, at, (progress, log, log_level, cancel, phase))
 
     def forced_residual(self, omega: float, x: ArrayLike, *, jacobian: bool = False, d_omega: bool = False,

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from ._calls import _call, _Guard, _hooks, _Owner
 from ._convert import _array, _range
 from ._errors import ArgumentError, _sentence
 from ._library import lib, structs
+from ._responses import Response, Responses, described, listed
 from ._results import Progress
 from ._sensitivity import Parameter
 from ._structs import _new, _with_options
@@ -26,12 +27,30 @@ if TYPE_CHECKING:
     from ._results import FloatArray, IntArray
 
 
+class DesignPeaks(NamedTuple):
+    """The highest peak of a response in each design; NaN where there is none. Made by Batch.responses.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> watched = [0, hbvib.Response(0, "rms", component="velocity")]
+    >>> batch = model.batch((0.8, 1.6), hbvib.Parameter("preload"), [0.5, 1.0], responses=watched, harmonics=9)
+    >>> [peaks.amplitude.round(2).tolist() for peaks in batch.responses]
+    [[1.39, 0.58], [1.02, 0.51]]
+    """
+    response: Response
+    amplitude: FloatArray
+    omega: FloatArray
+
+
 class Batch:
     """The highest peaks of many designs, read-only arrays in the order of their values; made by Model.batch.
 
     peak_amplitude, peak_omega   NaN where the amplitude has no maximum within the range, or the design failed.
     status                       numbers of Status: OK, STOPPED_NO_PEAK, or why the design has no result or a part of one.
     points                       points of each curve.
+    responses                    the highest peak of each response that was asked for: response, amplitude, omega.
     Batches are pickled without their branches.
 
     >>> import hbvib
@@ -46,20 +65,22 @@ class Batch:
     peak_omega: FloatArray
     status: IntArray
     points: IntArray
+    responses: tuple[DesignPeaks, ...]
 
     def __init__(self, peak_amplitude: ArrayLike, peak_omega: ArrayLike, status: ArrayLike, points: ArrayLike,
-                 reasons: Optional[Mapping[int, str]] = None) -> None:
+                 reasons: Optional[Mapping[int, str]] = None, responses: Sequence[DesignPeaks] = ()) -> None:
         self.peak_amplitude, self.peak_omega = np.array(peak_amplitude, float), np.array(peak_omega, float)
         self.status, self.points = np.array(status, np.int64), np.array(points, np.int64)
         for array in (self.peak_amplitude, self.peak_omega, self.status, self.points):
             array.flags.writeable = False
+        self.responses = tuple(responses)
         self._reasons = dict(reasons or {})
         self._branches: dict[int, Branch] = {}
         self._owner: Optional[_BatchHandle] = None
         self._kept: tuple[Any, ...] = ()
 
     @classmethod
-    def _of(cls, handle: int, designs: int, kept: tuple[Any, ...]) -> Batch:
+    def _of(cls, handle: int, designs: int, kept: tuple[Any, ...], watched: Sequence[Response] = ()) -> Batch:
         owner = _BatchHandle(handle)
         amplitude, omega = np.empty(designs), np.empty(designs)
         status, points = np.empty(designs, np.int64), np.empty(designs, np.int64)
@@ -68,7 +89,10 @@ class Batch:
         for i in np.flatnonzero(status):
             lib.hbvib_batch_status(handle, int(i))
             reasons[int(i)] = _sentence(int(status[i]))
-        batch = cls(amplitude, omega, status, points, reasons)
+        peaks = [DesignPeaks(one, np.empty(designs), np.empty(designs)) for one in watched]
+        for r, of in enumerate(peaks):
+            _call("hbvib_batch_response_peaks", handle, r, designs, of.amplitude, of.omega)
+        batch = cls(amplitude, omega, status, points, reasons, peaks)
         batch._owner, batch._kept = owner, kept
         return batch
 
@@ -134,11 +158,14 @@ class Batch:
             first += len(batch)
         names = ("peak_amplitude", "peak_omega", "status", "points")
         amplitude, omega, status, points = (np.concatenate([getattr(batch, name) for batch in batches]) for name in names)
-        return Batch(amplitude, omega, status, points, reasons)
+        lists = [batch.responses for batch in batches]
+        peaks = [DesignPeaks(of[0].response, np.concatenate([one.amplitude for one in of]),
+                             np.concatenate([one.omega for one in of])) for of in zip(*lists)]
+        return Batch(amplitude, omega, status, points, reasons, peaks)
 
     def __reduce__(self) -> Any:
         """A pickle holds the peaks, not the branches."""
-        return Batch, (self.peak_amplitude, self.peak_omega, self.status, self.points, self._reasons)
+        return Batch, (self.peak_amplitude, self.peak_omega, self.status, self.points, self._reasons, self.responses)
 
 
 class _BatchHandle:
@@ -156,7 +183,7 @@ class _Batches(_Owner):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def batch(self, omega: ArrayLike, parameters: Union[Parameter, Sequence[Parameter]], values: ArrayLike, *,
-              threads: int = 1, keep: bool = False,
+              threads: int = 1, keep: bool = False, responses: Optional[Responses] = None,
               progress: Union[bool, Callable[[Progress], Any], None] = None, phase: Hook = None,
               cancel: Optional[CancelFlag] = None, **solver: Unpack[SolverOptions]) -> Batch:
         """The highest peak of each of many designs: this model with other values of parameters.
@@ -166,6 +193,7 @@ class _Batches(_Owner):
                     added times the value; one dimension where there is one parameter.
         threads     of this call, which releases the GIL; their number changes no bit of a result.
         keep        whether Batch.branch(i) gives the branch of a design.
+        responses   what is watched, as in forced_response: the first leads the peaks, Batch.responses has those of each.
         progress    progress(Progress) after designs of the calling thread: `point` counts the designs done. True shows a
                     bar.
         phase, cancel, progress   stop as in forced_response: designs that were not solved have STOPPED_BY_CALLER.
@@ -182,8 +210,8 @@ class _Batches(_Owner):
         >>> batch.peak_amplitude.round(4)
         array([1.3914, 0.5836, 0.6641])
         """
-        listed = [parameters] if isinstance(parameters, Parameter) else list(parameters)
-        given = [parameter._description() for parameter in listed]
+        several = [parameters] if isinstance(parameters, Parameter) else list(parameters)
+        given = [parameter._description() for parameter in several]
         array = (structs["hbvib_parameter"] * len(given))(*given)
         table = _array("values", values)
         if table.ndim == 1 and len(given) == 1:
@@ -192,6 +220,8 @@ class _Batches(_Owner):
             raise ValueError(f"values has shape {table.shape}, needs (designs, {len(given)})")
         start, stop = _range("omega", omega, "batch((0.8, 1.6), parameters, values)")
         options = _new("hbvib_batch_options", threads=threads, omega_start=start, omega_stop=stop, keep=int(bool(keep)))
+        watched = listed(responses)
+        described(options, watched)
         chosen = _solver_options("batch", solver)
         handle, found = ctypes.c_void_p(), None
         with _Guard() as guard:
@@ -199,6 +229,6 @@ class _Batches(_Owner):
             _call("hbvib_batch_solve", self.handle, chosen, options, hooks, array, len(given), len(table), table, handle,
                   guard=guard)
             if handle.value is not None:
-                found = guard.batch = Batch._of(handle.value, len(table), tuple(self._kept))
+                found = guard.batch = Batch._of(handle.value, len(table), tuple(self._kept), watched)
         assert found is not None
         return found

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from ._branch_fields import _BranchFields
 from ._branch_points import _BranchPoints
+from ._branch_responses import _BranchResponses
 from ._c import Field, Status
 from ._calls import _call
 from ._errors import ArgumentError, BusyError
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from ._responses import Response
 
 
-class Branch(_BranchFields, _BranchPoints):
+class Branch(_BranchFields, _BranchPoints, _BranchResponses):
     """Solutions along a curve, from a forced response or a nonlinear mode; made by the solves.
 
     Fields (`omega`, `amplitude`, ...) are read-only arrays over the points of the curve without a copy: each keeps the

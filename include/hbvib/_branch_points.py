@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, cast
 
 import numpy as np
 
-from ._c import Bifurcation, Field, Reading
+from ._c import Bifurcation, Field
 from ._calls import _call, _Owner, _stoppable
 from ._convert import _whole
 from ._errors import ArgumentError
 from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Synthesis, SynthesisPeaks, Wanted
-from ._responses import Response, WatchedResponse
 from ._stored_point import StoredPoint
 from ._structs import _new, _options, _record, _Record, _with_options
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction, SynthesisOptions
@@ -201,39 +200,6 @@ class _BranchPoints(_Owner):
         array([1.232])
         """
         return Points(*self._listed("hbvib_branch_peaks", (), [float, float, np.int64]))
-
-    @property
-    def responses(self) -> tuple[WatchedResponse, ...]:
-        """The responses that were asked for, in their order.
-
-        >>> import hbvib
-        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
-        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
-        >>> model.add_force(0, 0.2)
-        >>> branch = model.forced_response((0.8, 1.6), responses=[hbvib.Response(0, "rms"), hbvib.Response(0, "peak")])
-        >>> [len(found.peaks().omega) for found in branch.responses]
-        [1, 1]
-        """
-        curve: Branch = cast("Branch", self)
-        asked = curve._responses
-        if not asked and self._call("hbvib_branch_responses"):
-            asked = (Response(None, "rms"),)  # where forces act in several harmonics and none in the first
-        return tuple(self._watched(r, response, len(curve)) for r, response in enumerate(asked))
-
-    def _watched(self, r: int, response: Response, points: int) -> WatchedResponse:
-        readings = [self._reading(r, reading) for reading in Reading]
-        peaks = Points(*self._listed("hbvib_branch_response_peaks", (r,), [float, float, np.int64]))
-        return WatchedResponse(response, points, readings, peaks)
-
-    def _reading(self, r: int, reading: Reading) -> Any:
-        """A copy of a result of a response at all stored points."""
-        view = _new("hbvib_view")
-        _call("hbvib_branch_response", self.handle, r, reading, view)
-        dtype, count = (complex if reading == Reading.COMPLEX else float), view.shape[0]
-        if not view.data:
-            return np.empty(count, dtype)
-        numbers = (ctypes.c_double * (count * np.dtype(dtype).itemsize // 8)).from_address(view.data)
-        return np.frombuffer(numbers, dtype, count).copy()
 
     def folds(self) -> Points:
         """Turning points in frequency, in a nonlinear mode in amplitude: omega, amplitude, point number.

@@ -801,7 +801,7 @@ hooks: uint32 struct_size; int32 log_level; pointer user; progress_fn progress; 
     phase
 response: uint32 struct_size; int32 measure; int64 harmonic n; pointer dofs weights; int64 sector; int32 component
     reserved
-forced_options: uint32 struct_size; int32 reserved; double omega_start omega_stop; pointer at; int64 at_len; pointer
+forced_options: uint32 struct_size; int32 together; double omega_start omega_stop; pointer at; int64 at_len; pointer
     guess; int64 guess_len; pointer responses; int64 responses_len
 view: uint32 struct_size; int32 scalar rank reserved; pointer data; int64 shape[3] stride[3]
 reduction: uint32 struct_size; int32 reserved; int64 sectors degrees_of_freedom coordinates contacts never_slipping
@@ -825,14 +825,16 @@ time_options: uint32 struct_size; int32 method; double omega; int64 harmonics sa
 time_info: uint32 struct_size; int32 reserved; double period residual; int64 periods events
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
-    response_error motion_error above distance peak peak_error residual; int64 periods events
+    response_error motion_error above distance peak peak_error residual; int64 periods events worst_response; double
+    worst_response_error
 floquet_options: uint32 struct_size; int32 waves refine modes; double tolerance; int64 max_periods
 floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
     double orbit_change residual; int64 modes; double modes_change
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
 parameter_options: uint32 struct_size; int32 follow; pointer parameter; double start stop omega; pointer at; int64
-    at_len; double log10_start log10_stop
-batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved
+    at_len; double log10_start log10_stop; pointer response
+batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved; pointer responses;
+    int64 responses_len
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -926,6 +928,8 @@ branch_at: h l l p p p
 branch_responses: h -> int64
 branch_response: h l i view
 branch_response_peaks: h l l p p p p
+branch_leading_response: h l -> int64
+branch_read_responses: h response l p l p l p l hooks
 response_of: response l d p l p p p
 reduction_init: reduction z
 branch_reduction: h reduction
@@ -976,6 +980,7 @@ batch_solve: h solver_options batch_options hooks parameter l l p p
 batch_free: h
 batch_designs: h -> int64
 batch_peaks: h l p p p p
+batch_response_peaks: h l l p p
 batch_status: h l
 batch_branch: h l p
 contact_evaluate: contact l l d p l p l p l
@@ -1091,6 +1096,9 @@ if TYPE_CHECKING:
         def hbvib_branch_response(self, branch: Any, response: int, reading: int, out: Any) -> int: ...
         def hbvib_branch_response_peaks(self, branch: Any, response: int, capacity: int, omega: Any, value: Any, point:
             Any, peaks: Any) -> int: ...
+        def hbvib_branch_leading_response(self, branch: Any, point: int) -> int: ...
+        def hbvib_branch_read_responses(self, branch: Any, responses: Any, responses_len: int, values: Any, values_len:
+            int, complex: Any, complex_len: int, instants: Any, instants_len: int, hooks: Any) -> int: ...
         def hbvib_response_of(self, r: Any, ndof: int, omega: float, x: Any, x_len: int, value: Any, amplitude: Any,
             instant: Any) -> int: ...
         def hbvib_reduction_init(self, r: Any, size_of_r: int) -> int: ...
@@ -1168,6 +1176,8 @@ if TYPE_CHECKING:
         def hbvib_batch_designs(self, batch: Any) -> int: ...
         def hbvib_batch_peaks(self, batch: Any, capacity: int, peak_amplitude: Any, peak_omega: Any, statuses: Any,
             points: Any) -> int: ...
+        def hbvib_batch_response_peaks(self, batch: Any, response: int, capacity: int, amplitude: Any, omega:
+            Any) -> int: ...
         def hbvib_batch_status(self, batch: Any, design: int) -> int: ...
         def hbvib_batch_branch(self, batch: Any, design: int, out: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:

@@ -209,11 +209,11 @@ def _hooks(guard: _Guard, progress: Any, log: Any, log_level: Any, cancel: Optio
 
 
 def _stoppable(name: str, *arguments: Any, phase: Optional[Callable[..., Any]] = None,
-               cancel: Optional[CancelFlag] = None) -> int:
+               cancel: Optional[CancelFlag] = None, variant: str = "_with_hooks") -> int:
     """Calls a function that has no points to keep by its variant with hooks, so that Ctrl-C stops it as well."""
     with _Guard() as guard:
         hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
-        status = _call(name + "_with_hooks", *arguments, hooks, guard=guard)
+        status = _call(name + variant, *arguments, hooks, guard=guard)
     if status == Status.STOPPED_BY_CALLER:
         raise Stopped(_sentence(status), Status(status), 0)
     return status

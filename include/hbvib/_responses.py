@@ -68,10 +68,14 @@ class Response:
         >>> hbvib.Response(0, "rms").of([[3], [4j]])  # 3 + 4 cos(omega t + pi/2)
         4.123105625617661
         """
+        return self._of(harmonics, omega)[0]
+
+    def _of(self, harmonics: ArrayLike, omega: float) -> tuple[float, complex, float]:
+        """Value, complex amplitude and instant."""
         x = _array("harmonics", harmonics, np.complex128, [None, None])
-        value = ctypes.c_double()
-        _call("hbvib_response_of", self._description(), x.shape[1], omega, x, x.size, value, None, None)
-        return value.value
+        value, number, instant = ctypes.c_double(), np.empty(1, complex), ctypes.c_double()
+        _call("hbvib_response_of", self._description(), x.shape[1], omega, x, x.size, value, number, instant)
+        return value.value, complex(number[0]), instant.value
 
     def _description(self) -> Any:
         count = 0 if self.dofs is None else len(self.dofs)
@@ -96,13 +100,21 @@ def listed(given: Optional[Responses]) -> list[Response]:
     return [one if isinstance(one, Response) else Response(_whole(one, name="responses")) for one in found]
 
 
-def described(options: Any, given: list[Response]) -> None:
-    """Writes responses into the options of a forced response, which keep them."""
+def structures(given: Sequence[Response]) -> tuple[Any, Any]:
+    """An array of structs of responses, and what it points to."""
+    each = [one._description() for one in given]
+    return (structs["hbvib_response"] * len(given))(*each), each
+
+
+def described(options: Any, given: list[Response], single: bool = False) -> None:
+    """Writes responses into options, which keep them."""
     if given:
-        structures = [one._description() for one in given]
-        array = (structs["hbvib_response"] * len(given))(*structures)
-        options.__dict__.setdefault("arrays", []).extend([array, structures])
-        options.responses, options.responses_len = ctypes.addressof(array), len(given)
+        array, each = structures(given)
+        options.__dict__.setdefault("arrays", []).extend([array, each])
+        if single:
+            options.response = ctypes.addressof(array)
+        else:
+            options.responses, options.responses_len = ctypes.addressof(array), len(given)
 
 
 class WatchedResponse:

@@ -284,6 +284,21 @@ class SavedBranch(Branch):
             found.append(WatchedResponse(Response(**about), len(self), readings, self._list(Points, f"response/{r}/peaks")))
         return tuple(found)
 
+    def _read(self, asked: list[Response], stored: int,
+              stop: dict[str, Any]) -> tuple[FloatArray, ComplexArray, FloatArray]:
+        """Of the harmonics of the file, of sector 0."""
+        shape = len(asked), stored
+        value, number, instant = np.empty(shape), np.empty(shape, complex), np.empty(shape)
+        for point in range(stored):
+            x, omega = self.harmonics(point), self.point(point).omega
+            for r, one in enumerate(asked):
+                value[r, point], number[r, point], instant[r, point] = one._of(x, omega)
+        return value, number, instant
+
+    def leading_response(self, point: int) -> int:
+        raise UnsupportedError("a file does not tell the norm of its tolerance: compare the errors of its responses",
+                               Status.E_UNSUPPORTED)
+
     def optima(self) -> Optima:
         return self._list(Optima, "optima")
 

@@ -488,6 +488,9 @@ class VerificationInfo(NamedTuple):
         the size of the errors of the integration.
     periods   Number of periods that were integrated.
     events   Number of changes of the contacts in one period, as in hbvib_time_info.
+    worst_response   Number of the response of the branch with the largest error, from 0; -1 where it has none.
+    worst_response_error   Its error: the distance of the measure of the point from that in time, relative to it; of
+        complex amplitudes where the measure has one. NaN where the branch has no responses.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -511,4 +514,6 @@ class VerificationInfo(NamedTuple):
     residual: float
     periods: int
     events: int
+    worst_response: int
+    worst_response_error: float
 # END GENERATED

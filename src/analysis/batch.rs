@@ -41,6 +41,7 @@ pub struct Batch {
     peaks: Vec<DesignPeak>,
     branches: Vec<Option<Branch>>,
     status: Status,
+    responses: usize,
 }
 
 impl Batch {
@@ -61,6 +62,12 @@ impl Batch {
         self.branches.get(design)?.as_ref()
     }
 
+    /// Number of the responses that were asked for.
+    #[must_use]
+    pub fn responses(&self) -> usize {
+        self.responses
+    }
+
     /// `Ok`, or `StoppedByCaller` where some designs were not solved.
     #[must_use]
     pub fn status(&self) -> Status {
@@ -72,7 +79,7 @@ impl Batch {
 struct Work<'a> {
     model: &'a Model,
     solver: &'a SolverOptions,
-    options: &'a BatchOptions,
+    options: &'a BatchOptions<'a>,
     parameters: &'a [Parameter<'a>],
     values: &'a [f64],
     designs: usize,
@@ -184,7 +191,7 @@ impl Work<'_> {
 pub fn batch(
     model: &Model,
     solver: &SolverOptions,
-    options: &BatchOptions,
+    options: &BatchOptions<'_>,
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
 ) -> Result<Batch> {
@@ -209,7 +216,7 @@ pub fn batch(
 pub fn batch_within(
     model: &Model,
     solver: &SolverOptions,
-    options: &BatchOptions,
+    options: &BatchOptions<'_>,
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
     threads: (&Surroundings<'_>, Together),
@@ -255,6 +262,7 @@ pub fn batch_within(
         peaks: try_vec(designs, DesignPeak::not_solved(), CONTEXT)?,
         branches: Vec::new(),
         status: Status::Ok,
+        responses: options.responses.len(),
     };
     if options.keep {
         batch

@@ -1,11 +1,11 @@
 //! The highest peak of one design.
 
 use crate::analysis::forced_response::{forced_response, special_points};
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Result, Status, try_push};
 use crate::hooks::Hooks;
 use crate::model::Model;
 use crate::options::{BatchOptions, SolverOptions};
-use crate::results::Branch;
+use crate::results::{Branch, Special};
 use crate::sensitivity::{Parameter, design};
 
 /// The highest maximum of the amplitude of a design within the range.
@@ -22,6 +22,20 @@ pub struct DesignPeak {
     pub points: usize,
     /// Sentence of another status than `Ok`.
     pub reason: Option<Error>,
+    /// Amplitude and angular frequency of the highest peak of each response that was asked for; NaN without a maximum. None
+    /// where the design failed.
+    pub responses: Vec<(f64, f64)>,
+}
+
+/// Amplitude and frequency of the highest of some peaks; NaN without one.
+fn highest(peaks: &[Special]) -> (f64, f64) {
+    let mut found = (f64::NAN, f64::NAN);
+    for peak in peaks {
+        if found.0.is_nan() || peak.amplitude > found.0 {
+            found = (peak.amplitude, peak.omega);
+        }
+    }
+    found
 }
 
 impl DesignPeak {
@@ -33,6 +47,7 @@ impl DesignPeak {
             status: Status::StoppedByCaller,
             points: 0,
             reason: None,
+            responses: Vec::new(),
         }
     }
 
@@ -46,22 +61,21 @@ impl DesignPeak {
     }
 
     /// The highest peak of a branch.
-    fn of(branch: &Branch) -> Self {
+    fn of(branch: &Branch) -> Result<Self> {
         let mut found = Self {
             status: branch.status(),
             points: branch.points(),
             reason: branch.reason().cloned(),
             ..Self::not_solved()
         };
-        for peak in branch.peaks() {
-            if found.amplitude.is_nan() || peak.amplitude > found.amplitude {
-                (found.amplitude, found.omega) = (peak.amplitude, peak.omega);
-            }
+        (found.amplitude, found.omega) = highest(branch.peaks());
+        for response in branch.responses() {
+            try_push(&mut found.responses, highest(response.peaks()), "the peaks of a design")?;
         }
         if found.status == Status::Ok && branch.peaks().is_empty() {
             found.status = Status::StoppedNoPeak;
         }
-        found
+        Ok(found)
     }
 }
 
@@ -76,17 +90,19 @@ pub(super) struct Solved {
 pub(super) fn solve_design(
     model: &Model,
     solver: &SolverOptions,
-    options: &BatchOptions,
+    options: &BatchOptions<'_>,
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
 ) -> Solved {
-    // A branch that is kept draws its curve.
-    let solve = if options.keep { forced_response } else { special_points };
+    // A branch that is kept draws its curve, and the peaks of responses are sought between close points.
+    let is_curve = options.keep || options.responses.iter().any(|one| !one.is_plain()) || options.responses.len() > 1;
+    let solve = if is_curve { forced_response } else { special_points };
     let solved: Result<Branch> =
         design(model, parameters, values).and_then(|model| solve(&model, solver, &options.range(), hooks));
-    match solved {
-        Ok(branch) => Solved {
-            peak: DesignPeak::of(&branch),
+    let peak = solved.and_then(|branch| Ok((DesignPeak::of(&branch)?, branch)));
+    match peak {
+        Ok((peak, branch)) => Solved {
+            peak,
             branch: options.keep.then_some(branch),
         },
         Err(e) => Solved {

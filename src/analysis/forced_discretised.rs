@@ -114,7 +114,7 @@ impl<'a> ForcedDiscretised<'a> {
             (&'a ModelCache, &'a SharedWaves),
         ),
         (level, guess): (usize, Option<Vec<f64>>),
-        (responses, response): (&'a [Response<'a>], usize),
+        (responses, together, response): (&'a [Response<'a>], bool, usize),
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let resolution = levels.at(level)?;
@@ -124,8 +124,8 @@ impl<'a> ForcedDiscretised<'a> {
         if solver.stability.is_some() {
             branch.tell_stability();
         }
-        let responses = WatchedResponses::new(responses);
-        branch.watch(responses.list, responses.is_observed())?;
+        let responses = WatchedResponses::new(responses, together);
+        branch.watch((responses.list, together), responses.is_observed())?;
         let estimates = solver.estimate_error || levels.is_automatic();
         let equations = boxed(|| Equations::new(resolution, &settings, (responses.list, response), guess, interrupt))?;
         Ok(Self {
@@ -222,6 +222,7 @@ impl<'a> ForcedDiscretised<'a> {
             omega: point.parameter(),
             response: response[observed(condensed)] * condensed.length(),
             watched: &self.responses.watched,
+            together: self.responses.together,
             sticks: Some(problem.forces().all_stuck()),
             iterations: self.first_iterations,
         };

@@ -205,7 +205,7 @@ fn follow(
             settings,
             models,
             (level, given),
-            (range.responses, response_dof),
+            (range.responses, range.together, response_dof),
             interrupt,
         )
     })?;

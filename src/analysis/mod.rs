@@ -32,6 +32,7 @@ pub mod parameter_range;
 pub mod parameter_response;
 mod perturbed_motion;
 pub mod point_error;
+mod record_peak;
 mod residual_numbering;
 pub mod response_of_motion;
 mod sampling;
@@ -41,6 +42,7 @@ pub mod synthesis;
 pub mod time_response;
 mod tracked_damping;
 mod unbounded_response;
+mod verified_responses;
 pub mod verify;
 mod watched_responses;
 

@@ -167,6 +167,7 @@ impl<'a> ModeDiscretised<'a> {
             omega,
             response: equations.response[condensed.set().fundamental()] * condensed.length(),
             watched: &[],
+            together: false,
             sticks: Some(equations.problem.forces().all_stuck()),
             iterations: 0,
         };

@@ -4,7 +4,7 @@ use crate::analysis::parameter_curve::Wanted;
 use crate::continuation::Settings;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Result, fail};
-use crate::options::SolverOptions;
+use crate::options::{Response, SolverOptions};
 
 /// The result that a parameter response follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,8 @@ pub struct ParameterRange<'a> {
     pub at: &'a [f64],
     /// The result that is followed.
     pub follow: Follow,
+    /// The response that is followed; `None`: the amplitude of the response degree of freedom.
+    pub response: Option<Response<'a>>,
 }
 
 impl ParameterRange<'_> {

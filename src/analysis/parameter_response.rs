@@ -12,7 +12,7 @@ use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::options::{ForcedOptions, SolverOptions};
+use crate::options::{ForcedOptions, Response, SolverOptions, check_responses};
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
@@ -59,6 +59,11 @@ pub fn parameter_response(
     }
     parameter.check(model)?;
     range.check()?;
+    let mode = matches!(range.follow, Follow::ModeMaxDamping { .. });
+    if mode && range.response.is_some() {
+        return fail!(Argument, "response: the largest damping ratio of a mode has none");
+    }
+    check_responses(range.response.as_slice(), model.ndof(), model.structure().sectors())?;
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::FirstPoint, 0.0)?;
     let first = design(model, core::slice::from_ref(&parameter), &[range.start])?;
@@ -81,7 +86,7 @@ pub fn parameter_response(
     let mut data = ParameterData::default();
     let mut found = follow(models, solver, (range, omega, kind), &mut data, hooks, &interrupt)?;
     if kind == ResponsePoint::Peak && found.status() != Status::StoppedByCaller {
-        find_higher_peaks((model, parameter), solver, &found, &mut data, hooks)?;
+        find_higher_peaks((model, parameter), solver, (&found, range.response), &mut data, hooks)?;
         if found.status() == Status::StoppedPeakVanished {
             let reason = where_next((model, parameter), solver, range, (&found, &data), hooks)?;
             found.set_ending(Status::StoppedPeakVanished, Some(reason), (false, false));
@@ -115,7 +120,8 @@ fn follow(
         max_points: solver.max_points.max(SolverOptions::default().max_points),
         ..*solver
     };
-    let branch = forced_response(first, &seek, &sweep(omega, kind), hooks)?;
+    let watched = range.response.as_slice();
+    let branch = forced_response(first, &seek, &sweep((omega, kind), watched), hooks)?;
     if branch.status() == Status::StoppedByCaller {
         return Branch::stopped(first, solver);
     }
@@ -134,7 +140,7 @@ fn follow(
         ResponsePoint::Fold => (nearest(branch.folds()), "fold"),
     };
     let Some(point) = point else {
-        let sweep = sweep(omega, kind);
+        let sweep = sweep((omega, kind), &[]);
         return fail!(
             NoConvergence,
             "at the start of the range the response has no {name} within {} .. {}",
@@ -162,7 +168,7 @@ fn follow(
     };
     let mut tracked = TrackedResponse::new(
         (model, parameter),
-        (&options, branch.response_dof()),
+        (&options, branch.response_dof(), range.response),
         (range.start, range.stop),
         (&begin, own.length(), omega),
         kind,
@@ -185,11 +191,12 @@ fn follow(
 }
 
 /// The sweep in which a point of a response is sought.
-fn sweep(omega: f64, kind: ResponsePoint) -> ForcedOptions<'static> {
+fn sweep<'a>((omega, kind): (f64, ResponsePoint), responses: &'a [Response<'a>]) -> ForcedOptions<'a> {
     let width = if kind == ResponsePoint::Fixed { 0.0 } else { NEAR };
     ForcedOptions {
         omega_start: (1.0 - width) * omega,
         omega_stop: (1.0 + width) * omega,
+        responses,
         ..ForcedOptions::default()
     }
 }
@@ -216,6 +223,7 @@ fn where_next(
     let around = ForcedOptions {
         omega_start: (1.0 - AROUND) * omega,
         omega_stop: (1.0 + AROUND) * omega,
+        responses: range.response.as_slice(),
         ..ForcedOptions::default()
     };
     let mut quiet = Hooks {
@@ -249,7 +257,7 @@ fn where_next(
 fn find_higher_peaks(
     (model, parameter): (&Model, Parameter<'_>),
     solver: &SolverOptions,
-    found: &Branch,
+    (found, response): (&Branch, Option<Response<'_>>),
     data: &mut ParameterData,
     hooks: &Hooks<'_>,
 ) -> Result<()> {
@@ -271,7 +279,7 @@ fn find_higher_peaks(
             response_dof: Some(found.response_dof()),
             ..*solver
         };
-        let range = sweep(omega, ResponsePoint::Peak);
+        let range = sweep((omega, ResponsePoint::Peak), response.as_slice());
         let mut quiet = Hooks {
             cancelled: hooks.cancelled,
             ..Hooks::default()

@@ -2,13 +2,13 @@
 
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Artificial, Condensed, ModelCache};
-use crate::error::{Result, fail};
+use crate::error::{Result, fail, try_push};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::options::{Content, DampingForm, SolverOptions};
+use crate::options::{Content, DampingForm, Response, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
 
@@ -72,6 +72,7 @@ pub fn estimate_at_with(
         ..*solver
     };
     let condensed = branch.condensed_at(point);
+    let (responses, watched) = watched(branch, point)?;
     let solved = Solved {
         condensed,
         motion,
@@ -81,13 +82,15 @@ pub fn estimate_at_with(
             .and_then(|x| x.get(observed(condensed)))
             .copied()
             .unwrap_or(Complex64::ZERO),
-        watched: &[],
+        watched: &watched,
+        together: branch.together(),
         sticks: None,
         iterations: ITERATIONS,
     };
     let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
-        return ForcedEstimator::new(model, solver, branch.response_dof(), models, interrupt).at(&solved);
+        let estimator = ForcedEstimator::new(model, solver, branch.response_dof(), models, interrupt);
+        return estimator.watching(&responses).at(&solved);
     };
     let wave;
     let model = if model.structure().engine_order() == data.info.engine_order {
@@ -112,6 +115,22 @@ pub fn estimate_at_with(
             damping_unit: at.damping_ratio.abs().max(NO_DAMPING),
         },
     )
+}
+
+/// The responses of a branch, and their values at a point as an estimate watches them.
+fn watched(branch: &Branch, point: usize) -> Result<(Vec<Response<'_>>, Vec<Complex64>)> {
+    let (mut responses, mut values) = (Vec::new(), Vec::new());
+    for series in branch.responses() {
+        let complex = series.complex()[point];
+        let value = if complex.re.is_nan() {
+            series.values()[point].into()
+        } else {
+            complex
+        };
+        try_push(&mut responses, series.response(), "the responses")?;
+        try_push(&mut values, value, "the responses")?;
+    }
+    Ok((responses, values))
 }
 
 /// Position of the harmonic whose amplitude a forced response reports: the lowest above zero.

@@ -134,7 +134,7 @@ pub fn sensitivity_with(
         let responses = (branch.response_dof(), solution.1);
         let at = ForcedPoint::new(solution.0, responses, omega, interrupt)?;
         let at = match watched(branch, of) {
-            Some(series) => at.watching(&series.response(), solution.1)?,
+            Some(series) => at.watching((&series.response(), branch.response_dof()), solution.1)?,
             None => at,
         };
         forced.insert(at).adjoint(motion, omega)?

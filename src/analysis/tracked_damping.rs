@@ -312,6 +312,7 @@ impl Tracked for TrackedDamping<'_> {
             omega,
             response: Complex64::ZERO,
             watched: &[],
+            together: false,
             sticks: Some(false),
             iterations: 0,
         };

@@ -5,7 +5,9 @@
 //! over the period and the degrees of freedom, ‖x‖² = |X₀|² + ½ Σₕ |Xₕ|², so that parts of a distance add up by
 //! their squares.
 
+use crate::analysis::record_peak::{over, peak};
 use crate::analysis::time_response::TimeResponse;
+use crate::analysis::verified_responses::{VerifiedResponse, verified};
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
@@ -47,6 +49,8 @@ pub struct Verification {
     pub distance: f64,
     /// Contribution of each harmonic 0 ..= H to `motion_error`; their squares sum to its square.
     pub harmonic_errors: Vec<f64>,
+    /// The responses that the branch was asked for.
+    pub responses: Vec<VerifiedResponse>,
     /// Largest displacement of the response degree of freedom over the period in time.
     pub peak: f64,
     /// Relative difference of the largest displacement of the point from it.
@@ -62,6 +66,15 @@ pub struct Verification {
     pub ndof: usize,
     /// Coefficients 0 ..= H of all degrees of freedom in time, harmonic by harmonic.
     pub harmonics: Vec<Complex64>,
+}
+
+impl Verification {
+    /// Number and error of the response with the largest error; `None` where the branch was asked for none.
+    #[must_use]
+    pub fn worst_response(&self) -> Option<(usize, f64)> {
+        let errors = self.responses.iter().map(|of| of.error).enumerate();
+        errors.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
 }
 
 /// Compares a stored point of a forced response with the periodic motion that [`time_response`](crate::time_response) finds from
@@ -145,11 +158,11 @@ pub fn verify(
         Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, &options_in_time)?,
         Err(e) => return Err(e),
     };
-    let (dof, same_within) = (branch.response_dof(), options.same_within);
-    let found = match compare(&x, time, dof, same_within, &interrupt) {
+    let (of, same_within) = ((model, branch, point), options.same_within);
+    let found = match compare(&x, (time, omega), of, same_within, &interrupt) {
         Err(e) if e.status == Status::StoppedByCaller => {
             let time = TimeResponse::stopped(model, &options_in_time)?;
-            compare(&x, time, dof, same_within, &Interrupt::none())?
+            compare(&x, (time, omega), of, same_within, &Interrupt::none())?
         }
         outcome => outcome?,
     };
@@ -181,8 +194,8 @@ fn times(highest: usize) -> usize {
 
 fn compare(
     x: &[Complex64],
-    time: TimeResponse,
-    dof: usize,
+    (time, omega): (TimeResponse, f64),
+    (model, branch, point): (&Model, &Branch, usize),
     same_within: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Verification> {
@@ -206,6 +219,8 @@ fn compare(
     }
     let moves = |h: &usize| x[h * ndof..(h + 1) * ndof].iter().any(|z| *z != Complex64::ZERO);
     let harmonic = (1..count).find(moves).unwrap_or(1.min(count - 1));
+    let dof = branch.response_dof();
+    let responses = verified((model, branch, point), omega, (&time, harmonic), interrupt)?;
     let at = harmonic * ndof + dof;
     let response = time.harmonics[at];
     let [own, peak] = series.peaks(x, &time, dof);
@@ -221,6 +236,7 @@ fn compare(
         above: over(part_above, whole),
         distance,
         harmonic_errors: errors,
+        responses,
         peak,
         peak_error: over((own - peak).abs(), peak),
         residual: time.residual,
@@ -229,11 +245,6 @@ fn compare(
         ndof,
         harmonics: time.harmonics,
     })
-}
-
-/// Ratio of a distance to a size; 0 if both vanish.
-fn over(distance: f64, size: f64) -> f64 {
-    if distance == 0.0 { 0.0 } else { distance / size }
 }
 
 /// Values of Fourier series at equidistant times.
@@ -286,47 +297,5 @@ impl Series {
             peak(times, |i| self.at(x, time.ndof, dof, i)),
             peak(times, |i| time.samples[i * time.ndof + dof]),
         ]
-    }
-}
-
-/// Largest modulus over a period of equidistant values, on the parabola through the largest and its neighbours.
-fn peak(times: usize, value: impl Fn(usize) -> f64) -> f64 {
-    let (mut best, mut top) = (0, 0.0);
-    for i in 0..times {
-        let x = value(i).abs();
-        if x > top {
-            (best, top) = (i, x);
-        }
-    }
-    let sign = value(best).signum();
-    let beside = |i: usize| sign * value(i % times);
-    let (before, after) = (beside(best + times - 1), beside(best + 1));
-    let bend = before - 2.0 * top + after;
-    if bend < 0.0 {
-        top -= (after - before).powi(2) / (8.0 * bend);
-    }
-    top
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_peak_of_a_wave_between_two_times_is_its_amplitude() {
-        let step = TAU / 1024.0;
-        for shift in [0.0, 0.3, 0.5, 0.9] {
-            let wave = |i: usize| -2.0 * ((i as f64 + shift) * step).cos();
-            // A distance of s steps from the nearest time leaves s²(1 − s²)·step⁴/8, largest for s = ½.
-            let bound = 3.0 / 128.0 * step.powi(4);
-            assert!((peak(1024, wave) / 2.0 - 1.0).abs() < 1.01 * bound, "{shift}");
-        }
-        assert!(peak(8, |_| 0.0).abs() < f64::MIN_POSITIVE);
-    }
-
-    #[test]
-    fn nothing_is_no_distance_from_nothing() {
-        assert!(over(0.0, 0.0).abs() < f64::MIN_POSITIVE);
-        assert!(over(1.0, 0.0).is_infinite());
     }
 }

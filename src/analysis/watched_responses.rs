@@ -20,6 +20,8 @@ type Key = (u64, u64, usize);
 pub(super) struct WatchedResponses<'a> {
     /// The responses that were asked for.
     pub list: &'a [Response<'a>],
+    /// Whether the tolerance holds for their norm.
+    pub together: bool,
     /// Their readings at the point recorded last.
     pub seen: Vec<SeenWithError>,
     /// Their values at the point that is estimated, in the caller's unit.
@@ -35,9 +37,10 @@ fn key((point, resolution): PointAt<'_>) -> Key {
 
 impl<'a> WatchedResponses<'a> {
     /// Nothing read yet.
-    pub fn new(list: &'a [Response<'a>]) -> Self {
+    pub fn new(list: &'a [Response<'a>], together: bool) -> Self {
         Self {
             list,
+            together,
             seen: Vec::new(),
             watched: Vec::new(),
             recent: Vec::new(),

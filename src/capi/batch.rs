@@ -12,6 +12,7 @@ use super::sensitivities::{hbvib_parameter, loaded, parameter};
 use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
+use super::solve_responses::{Watched, hbvib_response};
 use super::thread_start::together;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
@@ -19,7 +20,7 @@ use crate::analysis::DesignPeak;
 use crate::analysis::batch::{Batch, Surroundings, batch_within};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
-use crate::options::{BatchOptions, MOST_THREADS};
+use crate::options::{BatchOptions, MOST_THREADS, Response, check_responses};
 
 /// The peaks of many designs, created by hbvib_batch_solve.
 pub struct hbvib_batch(());
@@ -63,6 +64,12 @@ pub struct hbvib_batch_options {
     pub keep: i32,
     /// Must be 0.
     pub reserved: i32,
+    /// Array of the responses that are watched, struct_size of the first apart, or NULL: the
+    /// amplitude of the response degree of freedom. The first leads the peak of a design, and each
+    /// has its own: hbvib_batch_response_peaks.
+    pub responses: *const hbvib_response,
+    /// Number of responses.
+    pub responses_len: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_batch_options {
@@ -77,6 +84,8 @@ unsafe impl VersionedStruct for hbvib_batch_options {
             omega_stop: 0.0,
             keep: 0,
             reserved: 0,
+            responses: core::ptr::null(),
+            responses_len: 0,
         }
     }
 }
@@ -130,7 +139,11 @@ pub unsafe extern "C" fn hbvib_batch_solve(
     call(|| {
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
-        let options = batch_options(&unsafe { load(options, 3) }?).with_argument(3)?;
+        let o = unsafe { load(options, 3) }?;
+        let watched = unsafe { Watched::new(o.responses, o.responses_len, model.ndof(), 3) }.with_argument(3)?;
+        let responses = unsafe { watched.responses(3) }.with_argument(3)?;
+        check_responses(&responses, model.ndof(), model.structure().sectors()).with_argument(3)?;
+        let options = batch_options(&o, &responses).with_argument(3)?;
         let hooks = unsafe { load_hooks(hooks, 4) }?;
         let count = super::arrays::count(count, 6, "count")?;
         if count == 0 {
@@ -165,7 +178,7 @@ pub unsafe extern "C" fn hbvib_batch_solve(
     })
 }
 
-fn batch_options(o: &hbvib_batch_options) -> Result<BatchOptions> {
+fn batch_options<'a>(o: &hbvib_batch_options, responses: &'a [Response<'a>]) -> Result<BatchOptions<'a>> {
     check_reserved(o.reserved, 3, "hbvib_batch_options")?;
     if !matches!(o.keep, 0 | 1) {
         return fail!(Argument, "keep = {}, needs 0 or 1", o.keep);
@@ -174,6 +187,7 @@ fn batch_options(o: &hbvib_batch_options) -> Result<BatchOptions> {
         return fail!(Argument, "threads = {}, needs 1 .. {MOST_THREADS}", o.threads);
     };
     let options = BatchOptions {
+        responses,
         omega_start: o.omega_start,
         omega_stop: o.omega_stop,
         threads,
@@ -258,6 +272,47 @@ unsafe fn fill<T>(
         *to = value(peak);
     }
     Ok(())
+}
+
+/// The highest peak of a response of each design, in the order of their values.
+///
+/// response   number of the response of hbvib_batch_options, from 0.
+/// capacity   numbers that fit into each array: at least the number of designs.
+/// amplitude  receives measures, NaN without a maximum or where the design failed; or NULL.
+/// omega      receives angular frequencies; or NULL.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity: the arrays are untouched),
+/// HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any
+/// number on one batch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_batch_response_peaks(
+    batch: *const hbvib_batch,
+    response: i64,
+    capacity: i64,
+    amplitude: *mut f64,
+    omega: *mut f64,
+) -> hbvib_status {
+    call(|| {
+        let batch = read::<Batch>(batch, 1)?;
+        let response = index(response, batch.responses(), 2, "response")?;
+        let peaks = batch.peaks();
+        let n = peaks.len();
+        if count(capacity, 3, "capacity")? < n {
+            return fail!(Dimension, "capacity = {capacity}, needs {n}").with_argument(3);
+        }
+        disjoint(
+            &[],
+            &[
+                Range::new(amplitude, n, 4, "amplitude")?,
+                Range::new(omega, n, 5, "omega")?,
+            ],
+        )?;
+        let of = |peak: &DesignPeak| peak.responses.get(response).copied().unwrap_or((f64::NAN, f64::NAN));
+        unsafe {
+            fill(amplitude, peaks, (4, "amplitude"), |peak| of(peak).0)?;
+            fill(omega, peaks, (5, "omega"), |peak| of(peak).1)?;
+        }
+        Ok(Status::Ok)
+    })
 }
 
 /// The status of a design, whose sentence hbvib_last_error then has: HBVIB_OK;

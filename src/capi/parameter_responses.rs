@@ -10,6 +10,7 @@ use super::sensitivities::{hbvib_parameter, parameter};
 use super::solve::{follow, hbvib_branch};
 use super::solve_hooks::hbvib_hooks;
 use super::solve_options::{hbvib_solver_options, solver_options};
+use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::analysis::{self, Follow, ParameterRange};
@@ -59,6 +60,9 @@ pub struct hbvib_parameter_options {
     pub log10_start: f64,
     /// The same up to which it is sought.
     pub log10_stop: f64,
+    /// The response that is followed, not with HBVIB_FOLLOW_MODE_MAX_DAMPING; NULL: the amplitude
+    /// of the response degree of freedom.
+    pub response: *const hbvib_response,
 }
 
 unsafe impl VersionedStruct for hbvib_parameter_options {
@@ -77,6 +81,7 @@ unsafe impl VersionedStruct for hbvib_parameter_options {
             at_len: 0,
             log10_start: 0.0,
             log10_stop: 0.0,
+            response: ptr::null(),
         }
     }
 }
@@ -95,8 +100,9 @@ pub unsafe extern "C" fn hbvib_parameter_options_init(
 }
 
 /// Follows a result over a parameter by arc-length continuation: the amplitude of a forced
-/// response at a fixed frequency, in a peak or in a fold, or the largest damping ratio of a
-/// nonlinear mode. Folds over the parameter are passed, minima and maxima refined. The harmonics
+/// response, or the response of the options, at a fixed frequency, in a peak or in a fold, or the
+/// largest damping ratio of a nonlinear mode. Folds over the parameter are passed, minima and
+/// maxima refined. The harmonics
 /// are chosen at each point by the tolerance of the solver, or the same at all points with a
 /// tolerance of 0. The branch has the fields HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, of a
 /// mode HBVIB_D_DAMPING and those of a mode, and hbvib_branch_optima; its points belong to
@@ -128,7 +134,13 @@ pub unsafe extern "C" fn hbvib_parameter_response(
         check_pointer(o.parameter, 3, "hbvib_parameter_options: parameter")?;
         let described = unsafe { load(o.parameter, 3) }?;
         let changed = unsafe { parameter(&described, model.ndof()) }.map_err(|e| e.in_argument(3))?;
-        let range = unsafe { parameter_range(&o) }.with_argument(3)?;
+        let given = i64::from(!o.response.is_null());
+        let watched = unsafe { Watched::new(o.response, given, model.ndof(), 3) }.with_argument(3)?;
+        let responses = unsafe { watched.responses(3) }.with_argument(3)?;
+        let range = ParameterRange {
+            response: responses.first().copied(),
+            ..unsafe { parameter_range(&o) }.with_argument(3)?
+        };
         unsafe {
             follow(hooks, out, range.at.len(), |hooks| {
                 analysis::parameter_response(&model, &solver, changed, &range, hooks)
@@ -154,6 +166,7 @@ unsafe fn parameter_range<'a>(o: &hbvib_parameter_options) -> Result<ParameterRa
             },
             other => return fail!(Argument, "follow = {other}, needs a value of enum hbvib_follow: 0 .. 3"),
         },
+        response: None,
     };
     range.check()?;
     if !matches!(range.follow, Follow::ModeMaxDamping { .. }) {

@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{check_pointer, count, input};
+use super::arrays::{Range, check_pointer, count, disjoint, input, optional_len, output};
 use super::boundary::{WithArgument, call, call_count};
 use super::handles::{KeptBranch, read};
 use super::indices::{at_least_1, index};
@@ -10,11 +10,13 @@ use super::matrices::hbvib_scalar;
 use super::results::hbvib_view;
 use super::results_special_points::Lists;
 use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out};
 use crate::analysis;
 use crate::error::{Status, fail};
+use crate::options::check_responses;
 use core::ptr;
 use num_complex::Complex64;
 
@@ -120,6 +122,96 @@ pub unsafe extern "C" fn hbvib_branch_response_peaks(
             count: (peaks, 7),
         };
         unsafe { lists.fill(of.peaks(), (capacity, 3)) }
+    })
+}
+
+/// Number of the response with the largest error at a stored point, in the norm that the tolerance
+/// has; HBVIB_E_INDEX where there is no such point, HBVIB_E_ARGUMENT where no error is known.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// Errors: HBVIB_E_HANDLE also. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_leading_response(branch: *const hbvib_branch, point: i64) -> i64 {
+    call_count(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let point = index(point, kept.branch.stored(), 2, "point")?;
+        match kept.branch.leading_response(point) {
+            Some(response) => Ok(response),
+            None => fail!(Argument, "no error of a response is known at point {point}").with_argument(2),
+        }
+    })
+}
+
+/// Reads responses at all stored points of any branch, whatever it was asked for: of a nonlinear
+/// mode, of a result over a parameter, or further gauges of a forced response. A hook or the cancel
+/// flag may stop it: the status is then HBVIB_STOPPED_BY_CALLER, and the arrays are untouched.
+///
+/// responses      array of responses, struct_size of the first apart; one without degrees of
+///                freedom is that of the response degree of freedom.
+/// responses_len  how many.
+/// values         receives the measures, responses_len x stored points; or NULL.
+/// values_len     numbers in it; 0 with NULL.
+/// complex        receives complex amplitudes, NaN where a measure has none; or NULL.
+/// complex_len    complex numbers in it; 0 with NULL.
+/// instants       receives phases as HBVIB_READING_INSTANT; or NULL.
+/// instants_len   numbers in it; 0 with NULL.
+/// hooks          phase, log and cancellation; progress is not called. NULL: none.
+/// Errors: HBVIB_E_DIMENSION (lengths, weights), HBVIB_E_INDEX (dofs, sector), HBVIB_E_ARGUMENT
+/// (fields, overlapping arrays), HBVIB_E_NOT_FINITE, HBVIB_E_SINGULAR, HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_CALLBACK, HBVIB_E_OUT_OF_MEMORY. Threads: any
+/// number on one branch.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_branch_read_responses(
+    branch: *const hbvib_branch,
+    responses: *const hbvib_response,
+    responses_len: i64,
+    values: *mut f64,
+    values_len: i64,
+    complex: *mut f64,
+    complex_len: i64,
+    instants: *mut f64,
+    instants_len: i64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
+    call(|| {
+        let hooks = unsafe { load_hooks(hooks, 10) }?;
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let branch = &kept.branch;
+        let watched = unsafe { Watched::new(responses, responses_len, branch.ndof(), 2) }.with_argument(2)?;
+        let list = unsafe { watched.responses(2) }.with_argument(2)?;
+        check_responses(&list, branch.ndof(), branch.reduction().sectors).with_argument(2)?;
+        let points = branch.stored();
+        let needed = list.len().saturating_mul(points);
+        let lengths = "responses_len * stored points";
+        let values_len = optional_len(values, values_len, needed, 4, lengths)?;
+        let complex_len = optional_len(complex, complex_len, needed, 6, lengths)?;
+        let instants_len = optional_len(instants, instants_len, needed, 8, lengths)?;
+        disjoint(
+            &[],
+            &[
+                Range::new(values, values_len, 4, "values")?,
+                Range::new::<Complex64>(complex.cast(), complex_len, 6, "complex")?,
+                Range::new(instants, instants_len, 8, "instants")?,
+            ],
+        )?;
+        let found = unsafe { with_interrupt(&hooks, |interrupt| branch.read_responses_with(&list, interrupt)) }?;
+        for (i, one) in found.iter().enumerate() {
+            let place = i * points..(i + 1) * points;
+            unsafe {
+                if values_len > 0 {
+                    output(values, values_len, 4, "values")?[place.clone()].copy_from_slice(one.values());
+                }
+                if complex_len > 0 {
+                    let all = output::<Complex64>(complex.cast(), complex_len, 6, "complex")?;
+                    all[place.clone()].copy_from_slice(one.complex());
+                }
+                if instants_len > 0 {
+                    output(instants, instants_len, 8, "instants")?[place].copy_from_slice(one.instants());
+                }
+            }
+        }
+        Ok(Status::Ok)
     })
 }
 

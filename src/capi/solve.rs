@@ -11,7 +11,7 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
-use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
+use super::versioned_struct::{VersionedStruct, init, load};
 use crate::analysis;
 use crate::error::{Result, fail};
 use crate::hooks::Hooks;
@@ -51,8 +51,9 @@ impl Kept for KeptBranch {
 pub struct hbvib_forced_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// Must be 0.
-    pub reserved: i32,
+    /// 1: the tolerance holds for all responses in one norm, the root of the sum of |error|^2 over
+    /// that of |response|^2; 0: for each by itself.
+    pub together: i32,
     /// First angular frequency, > 0, rad per time unit.
     pub omega_start: f64,
     /// Last angular frequency: below the first for a downward sweep, equal to it for one point.
@@ -85,7 +86,7 @@ unsafe impl VersionedStruct for hbvib_forced_options {
     fn defaults() -> Self {
         Self {
             struct_size: 0,
-            reserved: 0,
+            together: 0,
             omega_start: 0.0,
             omega_stop: 0.0,
             at: ptr::null(),
@@ -155,7 +156,9 @@ unsafe fn forced_options<'a>(
     responses: &'a [Response<'a>],
     ndof: usize,
 ) -> Result<ForcedOptions<'a>> {
-    check_reserved(o.reserved, 3, "hbvib_forced_options")?;
+    if !matches!(o.together, 0 | 1) {
+        return fail!(Argument, "together = {}, needs 0 or 1", o.together);
+    }
     let at_len = count(o.at_len, 3, "at_len")?;
     let given = count(o.guess_len, 3, "guess_len")?;
     let guess = if o.guess.is_null() && given == 0 {
@@ -174,6 +177,7 @@ unsafe fn forced_options<'a>(
         at: unsafe { input(o.at, at_len, 3, "at") }?,
         guess,
         responses,
+        together: o.together == 1,
     };
     options.check()?;
     options.check_guess(ndof)?;

@@ -104,6 +104,11 @@ pub struct hbvib_verification {
     pub periods: i64,
     /// Number of changes of the contacts in one period, as in hbvib_time_info.
     pub events: i64,
+    /// Number of the response of the branch with the largest error, from 0; -1 where it has none.
+    pub worst_response: i64,
+    /// Its error: the distance of the measure of the point from that in time, relative to it; of
+    /// complex amplitudes where the measure has one. NaN where the branch has no responses.
+    pub worst_response_error: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_verification {
@@ -127,6 +132,8 @@ unsafe impl VersionedStruct for hbvib_verification {
             residual: 0.0,
             periods: 0,
             events: 0,
+            worst_response: -1,
+            worst_response_error: f64::NAN,
         }
     }
 }
@@ -212,7 +219,10 @@ pub unsafe extern "C" fn hbvib_verify(
             unsafe { output(errors, errors_len, 8, "errors") }?.copy_from_slice(&found.harmonic_errors);
         }
         if !out.is_null() {
+            let worst = found.worst_response();
             let value = hbvib_verification {
+                worst_response: worst.map_or(-1, |(r, _)| r as i64),
+                worst_response_error: worst.map_or(f64::NAN, |(_, error)| error),
                 same_solution: i32::from(found.same),
                 marched: i32::from(found.marched),
                 harmonic: found.harmonic as i64,

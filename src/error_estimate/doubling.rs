@@ -1,10 +1,11 @@
 //! The response of a point as its harmonics are doubled: how much of the change is still missing.
 //!
 //! With X₀ the response of the point, Xₖ that of the k-th extension and dₖ = |Xₖ − Xₖ₋₁| the next change is about
-//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q. The largest relative change of several responses counts.
+//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q. The largest relative change of several responses counts, or that
+//! of their norm.
 
 use crate::error::{Result, try_copy};
-use crate::error_estimate::estimate::{CONTEXT, Estimate, MARGIN};
+use crate::error_estimate::estimate::{CONTEXT, Estimate, MARGIN, norm_of_responses, relative};
 use num_complex::Complex64;
 
 /// The next change, relative to the whole, at which the response has settled, and at which it will do where no further
@@ -22,6 +23,8 @@ const MISSING: (f64, f64) = (0.5, 2.0);
 #[derive(Clone, Debug)]
 pub(super) struct Doubling {
     point: Vec<Complex64>,
+    /// Whether the norm of several responses counts.
+    together: bool,
     last: Vec<Complex64>,
     /// First change, and the last two.
     first: f64,
@@ -34,9 +37,10 @@ impl Doubling {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(point: &[Complex64]) -> Result<Self> {
+    pub fn new(point: &[Complex64], together: bool) -> Result<Self> {
         Ok(Self {
             point: try_copy(point, CONTEXT)?,
+            together,
             last: try_copy(point, CONTEXT)?,
             first: 0.0,
             changes: [0.0; 2],
@@ -46,13 +50,23 @@ impl Doubling {
 
     /// Adds the responses of the next extension.
     pub fn add(&mut self, responses: &[Complex64]) {
-        let change = largest(responses, &self.last, responses);
+        let change = self.difference(responses, &self.last);
         if self.extensions == 0 {
             self.first = change;
         }
         self.changes = [self.changes[1], change];
         self.last.copy_from_slice(responses);
         self.extensions += 1;
+    }
+
+    /// The difference of responses from others, relative to them; 0 where nothing differs.
+    fn difference(&self, responses: &[Complex64], others: &[Complex64]) -> f64 {
+        let differences = responses.iter().zip(others).map(|(a, b)| (a - b).norm());
+        if self.together {
+            return relative(differences.fold(0.0, f64::hypot), norm_of_responses(responses).into());
+        }
+        let each = differences.zip(responses).map(|(d, size)| relative(d, *size));
+        each.fold(0.0, f64::max)
     }
 
     /// Number of extensions.
@@ -62,7 +76,7 @@ impl Doubling {
 
     /// Size of the whole change so far, relative to the response.
     pub fn whole(&self) -> f64 {
-        largest(&self.last, &self.point, &self.last)
+        self.difference(&self.last, &self.point)
     }
 
     /// The next change, relative to the whole one; infinite where it is not known.
@@ -144,15 +158,6 @@ impl Doubling {
     }
 }
 
-/// The largest difference of responses over their size; 0 where nothing differs.
-fn largest(a: &[Complex64], b: &[Complex64], sizes: &[Complex64]) -> f64 {
-    let differences = a.iter().zip(b).map(|(a, b)| (a - b).norm());
-    let relative = differences
-        .zip(sizes)
-        .map(|(d, size)| if d == 0.0 { 0.0 } else { d / size.norm() });
-    relative.fold(0.0, f64::max)
-}
-
 #[cfg(test)]
 mod tests {
     use super::Doubling;
@@ -161,7 +166,7 @@ mod tests {
     /// Responses whose error falls by a factor q with each doubling.
     fn series(q: f64, extensions: usize) -> Doubling {
         let at = |k: i32| Complex64::new(1.0 + 1e-3 * q.powi(k), -2.0);
-        let mut series = Doubling::new(&[at(0)]).unwrap();
+        let mut series = Doubling::new(&[at(0)], false).unwrap();
         for k in 1..=extensions {
             series.add(&[at(k as i32)]);
         }

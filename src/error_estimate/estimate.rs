@@ -52,8 +52,8 @@ pub struct Estimate {
     pub too_large: bool,
     /// Relative error of the relative motions at the contacts, in norm.
     pub motion: f64,
-    /// Relative error of the complex fundamental of the response degree of freedom, or the largest one of the responses that
-    /// were asked for.
+    /// Relative error of the complex fundamental of the response degree of freedom, or that of the responses that were asked
+    /// for: the largest one, or that of their norm.
     pub response: f64,
     /// Relative error of each response that was asked for.
     pub responses: Vec<f64>,
@@ -134,6 +134,8 @@ pub struct Solved<'a> {
     pub response: Complex64,
     /// The responses that were asked for, in that unit.
     pub watched: &'a [Complex64],
+    /// Whether their error is that of one norm.
+    pub together: bool,
     /// Whether all contacts stick, if that is known.
     pub sticks: Option<bool>,
     /// Newton iterations of a solution without a neighbour, by which the work of an estimate is bounded.
@@ -213,6 +215,11 @@ impl Solved<'_> {
             .transfer(self.condensed.set(), self.motion, factor, &mut extended[..motions]);
         Ok(extended)
     }
+}
+
+/// The norm of several responses.
+pub(super) fn norm_of_responses(responses: &[Complex64]) -> f64 {
+    responses.iter().map(|x| x.norm()).fold(0.0, f64::hypot)
 }
 
 /// A difference relative to a number; 0 if the difference is 0.

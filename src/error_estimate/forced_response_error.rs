@@ -269,7 +269,7 @@ impl<'a> ForcedEstimator<'a> {
     #[inline(never)]
     fn extend_by_doubling(&mut self, solved: &Solved<'_>, extent: Extent, mut work: Work) -> Result<Option<Estimate>> {
         let mut highest = extent.least;
-        let mut series = Doubling::new(observed(&solved.response, solved.watched))?;
+        let mut series = Doubling::new(observed(&solved.response, solved.watched), solved.together)?;
         let mut last: Option<Estimate> = None;
         loop {
             let stage = Extent {

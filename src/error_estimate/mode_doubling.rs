@@ -30,7 +30,7 @@ impl ModeSeries {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new((omega, damping): (f64, f64), unit: f64, tolerance: f64) -> Result<Self> {
-        let start = || Doubling::new(&[1.0.into()]);
+        let start = || Doubling::new(&[1.0.into()], false);
         Ok(Self {
             omega,
             damping,

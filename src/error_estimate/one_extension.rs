@@ -2,7 +2,9 @@
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::error_estimate::estimate::{CONTEXT, ROUNDING, SHARE, has_converged_tail, omits_nothing, relative, tail};
+use crate::error_estimate::estimate::{
+    CONTEXT, ROUNDING, SHARE, has_converged_tail, norm_of_responses, omits_nothing, relative, tail,
+};
 use crate::error_estimate::extended_newton::{ExtendedSolution, FirstStep, extend};
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::jump_error::beyond_extension;
@@ -123,7 +125,11 @@ pub(super) fn extend_once(
         certified,
         too_large: !certified && extent.short,
         motion: known(beyond * change + extended.missing * norm(&extended.next[..n]) / size),
-        response: known(watched.errors.iter().copied().reduce(f64::max).unwrap_or(of_response)),
+        response: known(if watched.errors.is_empty() {
+            of_response
+        } else {
+            watched.error
+        }),
         responses: watched.errors,
         frequency: known(0.0),
         damping: known(0.0),
@@ -171,6 +177,8 @@ struct Watched {
     values: Vec<Complex64>,
     /// Relative errors of the point, with what may still be missing.
     errors: Vec<f64>,
+    /// The largest one, or that of the norm.
+    error: f64,
 }
 
 /// Reads the responses at the corrected solution Z + δ, in a unit of this length; their errors are a multiple of their changes, and
@@ -184,6 +192,7 @@ fn watched(
     let mut found = Watched {
         values: Vec::new(),
         errors: Vec::new(),
+        error: 0.0,
     };
     if solved.watched.is_empty() {
         return Ok(found);
@@ -192,11 +201,13 @@ fn watched(
     try_push(&mut v, solved.omega, CONTEXT)?;
     let mut seen = Vec::new();
     system.problem.see_all(&v, &extended.next, &mut seen)?;
+    let mut whole = 0.0_f64;
     for (seen, before) in seen.iter().zip(solved.watched) {
         let (value, change) = seen.observed();
         let corrected = (value + change) * length;
         let missing = extended.missing * change.norm() * length;
         let change = (corrected - before).norm() + missing;
+        whole = whole.hypot(beyond * change);
         try_push(&mut found.values, corrected, CONTEXT)?;
         try_push(
             &mut found.errors,
@@ -204,5 +215,10 @@ fn watched(
             CONTEXT,
         )?;
     }
+    found.error = if solved.together {
+        relative(whole, norm_of_responses(&found.values).into()) + besides
+    } else {
+        found.errors.iter().copied().fold(0.0, f64::max)
+    };
     Ok(found)
 }

@@ -1,14 +1,14 @@
 //! Options of a batch of designs.
 
 use crate::error::{Result, fail};
-use crate::options::ForcedOptions;
+use crate::options::{ForcedOptions, Response};
 
 /// Most threads of one batch.
 pub const MOST_THREADS: usize = 1024;
 
 /// Options of a batch of designs.
 #[derive(Clone, Copy, Debug)]
-pub struct BatchOptions {
+pub struct BatchOptions<'a> {
     /// First angular frequency of the response of each design, rad per time unit, above zero.
     pub omega_start: f64,
     /// Last angular frequency; below the first for downward sweeps.
@@ -17,26 +17,31 @@ pub struct BatchOptions {
     pub threads: usize,
     /// Whether the branch of each design is kept.
     pub keep: bool,
+    /// Responses that are watched: the first leads the peak of a design, and each has its own. None: the amplitude of the
+    /// response degree of freedom.
+    pub responses: &'a [Response<'a>],
 }
 
-impl Default for BatchOptions {
+impl Default for BatchOptions<'_> {
     fn default() -> Self {
         Self {
             omega_start: 0.0,
             omega_stop: 0.0,
             threads: 1,
             keep: false,
+            responses: &[],
         }
     }
 }
 
-impl BatchOptions {
+impl<'a> BatchOptions<'a> {
     /// The range of frequency.
     #[must_use]
-    pub fn range(&self) -> ForcedOptions<'static> {
+    pub fn range(&self) -> ForcedOptions<'a> {
         ForcedOptions {
             omega_start: self.omega_start,
             omega_stop: self.omega_stop,
+            responses: self.responses,
             ..ForcedOptions::default()
         }
     }

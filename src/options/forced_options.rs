@@ -21,6 +21,8 @@ pub struct ForcedOptions<'a> {
     /// Responses that are watched: the first one leads the amplitude and the peaks of the branch, and a tolerance holds for each. None:
     /// the fundamental of the response degree of freedom.
     pub responses: &'a [Response<'a>],
+    /// Whether the tolerance holds for the responses in one norm, (Σ|error|²/Σ|response|²)^½, instead of for each by itself.
+    pub together: bool,
 }
 
 impl ForcedOptions<'_> {

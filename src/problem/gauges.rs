@@ -20,7 +20,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the responses";
 
 /// One gauge on a condensed model.
-struct Gauge {
+pub struct Gauge {
     measure: Measure,
     order: i32,
     /// Per carried harmonic the rows of its degrees of freedom, each times its weight and the turn to its sector.
@@ -28,7 +28,11 @@ struct Gauge {
 }
 
 impl Gauge {
-    fn new(condensed: &Condensed, response: &Response<'_>, default: usize) -> Result<Self> {
+    /// The gauge of a response; one without degrees of freedom has the `default` one.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, response: &Response<'_>, default: usize) -> Result<Self> {
         let mut rows = Vec::new();
         for (i, block) in condensed.blocks().iter().enumerate() {
             let turn = block.next.powu(u32::try_from(response.sector).unwrap_or(u32::MAX));
@@ -53,7 +57,8 @@ impl Gauge {
     }
 
     /// Whether the measure depends on a carried harmonic.
-    fn reads(&self, condensed: &Condensed, i: usize) -> bool {
+    #[must_use]
+    pub fn reads(&self, condensed: &Condensed, i: usize) -> bool {
         let set = condensed.set();
         match self.measure {
             Measure::Fundamental => i == set.watched(),
@@ -63,12 +68,14 @@ impl Gauge {
     }
 
     /// Σ w x in a harmonic.
-    fn along(&self, i: usize, x: &[Complex64]) -> Complex64 {
+    #[must_use]
+    pub fn along(&self, i: usize, x: &[Complex64]) -> Complex64 {
         self.rows[i].iter().map(|(weight, row)| weight * row.along(x)).sum()
     }
 
     /// (ihω)ᵏ of the derivative by time, and its derivative by ω.
-    fn factor(&self, number: usize, omega: f64) -> (Complex64, Complex64) {
+    #[must_use]
+    pub fn factor(&self, number: usize, omega: f64) -> (Complex64, Complex64) {
         if self.order == 0 {
             return (Complex64::ONE, Complex64::ZERO);
         }

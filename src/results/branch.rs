@@ -41,6 +41,7 @@ pub struct Branch {
     pub(super) response: Vec<Complex64>,
     /// The responses that were asked for.
     pub(super) responses: Vec<ResponseSeries>,
+    pub(super) together: bool,
     pub(super) peaks: Vec<Special>,
     pub(super) folds: Vec<Special>,
     /// Limit cycles, each with the slope of the damping ratio.

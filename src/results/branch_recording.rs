@@ -105,6 +105,7 @@ impl Branch {
             motion: Vec::new(),
             response: Vec::new(),
             responses: Vec::new(),
+            together: false,
             peaks: Vec::new(),
             folds: Vec::new(),
             limit_cycles: Vec::new(),

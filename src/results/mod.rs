@@ -16,6 +16,7 @@ mod parameter_fields;
 mod point_energy;
 mod point_error_fields;
 mod point_harmonics;
+mod read_responses;
 mod recovery;
 mod response_series;
 mod responses;

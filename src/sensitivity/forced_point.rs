@@ -70,13 +70,13 @@ impl<'a> ForcedPoint<'a> {
         })
     }
 
-    /// Differentiates a response instead of the amplitude.
+    /// Differentiates a response instead of the amplitude; one without degrees of freedom has the `default` one.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn watching(mut self, response: &Response<'_>, samples: usize) -> Result<Self> {
+    pub fn watching(mut self, (response, default): (&Response<'_>, usize), samples: usize) -> Result<Self> {
         let (condensed, interrupt) = (self.condensed, self.interrupt);
-        let one = (core::slice::from_ref(response), 0);
+        let one = (core::slice::from_ref(response), default);
         let gauges = boxed(|| Gauges::new(condensed, one, samples, interrupt))?;
         self.watched = Some((gauges, None));
         Ok(self)

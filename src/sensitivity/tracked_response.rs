@@ -11,7 +11,7 @@
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference, Resolution};
 use crate::continuation::Point;
-use crate::error::{Result, fail, try_copy, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
@@ -20,7 +20,8 @@ use crate::linalg::linear_system::Jacobian;
 use crate::linalg::lu::Lu;
 use crate::linalg::{dot, norm};
 use crate::model::Model;
-use crate::options::SolverOptions;
+use crate::options::{Response, SolverOptions};
+use crate::problem::gauges::Gauges;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
@@ -59,6 +60,8 @@ pub(crate) struct TrackedResponse<'a> {
     parameter: Parameter<'a>,
     solver: SolverOptions,
     response_dof: usize,
+    /// The response that is followed instead of its amplitude.
+    response: Option<Response<'a>>,
     /// Frequency at a fixed one, or that of the first peak or fold.
     omega: f64,
     kind: ResponsePoint,
@@ -91,7 +94,7 @@ impl<'a> TrackedResponse<'a> {
     /// `OutOfMemory`.
     pub fn new(
         (model, parameter): (&'a Model, Parameter<'a>),
-        (solver, response_dof): (&SolverOptions, usize),
+        (solver, response_dof, response): (&SolverOptions, usize, Option<Response<'a>>),
         range: (f64, f64),
         (motion, length, omega): (&[f64], f64, f64),
         kind: ResponsePoint,
@@ -107,6 +110,7 @@ impl<'a> TrackedResponse<'a> {
             parameter,
             solver: *solver,
             response_dof,
+            response,
             omega,
             kind,
             length,
@@ -146,6 +150,36 @@ impl<'a> TrackedResponse<'a> {
         Ok(At { model, condensed })
     }
 
+    /// The equations on a condensed model, with what is followed.
+    fn point<'c>(&self, condensed: &'c Condensed, omega: f64) -> Result<ForcedPoint<'c>>
+    where
+        'a: 'c,
+    {
+        let samples = self.solver.samples;
+        let point = ForcedPoint::new(condensed, (self.response_dof, samples), omega, self.interrupt)?;
+        match self.response {
+            Some(response) => point.watching((&response, self.response_dof), samples),
+            None => Ok(point),
+        }
+    }
+
+    /// The response that is followed at a solution, as an estimate watches it, in the caller's unit.
+    fn watched(&self, condensed: &Condensed, own: &[f64], omega: f64) -> Result<Vec<Complex64>> {
+        let mut seen = Vec::new();
+        let mut values = Vec::new();
+        if let Some(response) = &self.response {
+            let mut v = try_copy(own, CONTEXT)?;
+            try_push(&mut v, omega, CONTEXT)?;
+            let none = try_vec(v.len(), 0.0, CONTEXT)?;
+            let responses = (core::slice::from_ref(response), self.response_dof);
+            Gauges::new(condensed, responses, self.solver.samples, self.interrupt)?.read(&v, &none, None, &mut seen)?;
+        }
+        for one in &seen {
+            try_push(&mut values, one.observed().0 * condensed.length(), CONTEXT)?;
+        }
+        Ok(values)
+    }
+
     /// Motions in the unit of lengths of a condensed model.
     fn own_motion(&self, u: &[f64], condensed: &Condensed) -> Result<Vec<f64>> {
         let mut own = try_copy(&u[..self.motions()], CONTEXT)?;
@@ -163,12 +197,7 @@ impl<'a> TrackedResponse<'a> {
         let At { model, condensed } = self.at(p, omega)?;
         let unit = self.length / condensed.length();
         let own = self.own_motion(u, &condensed)?;
-        let mut point = ForcedPoint::new(
-            &condensed,
-            (self.response_dof, self.solver.samples),
-            omega,
-            self.interrupt,
-        )?;
+        let mut point = self.point(&condensed, omega)?;
         let (models, at) = ((&model, &condensed), (&*own, omega, p));
         let scale = if self.kind == ResponsePoint::Fold {
             self.fold_equations(&mut point, models, at, (fully, values))?
@@ -349,17 +378,20 @@ impl Tracked for TrackedResponse<'_> {
         let samples = (self.response_dof, self.solver.samples);
         let mut at = ForcedPoint::new(&condensed, samples, omega, self.interrupt)?;
         let (_, amplitude) = at.amplitude(&own, omega)?;
+        let watched = self.watched(&condensed, &own, omega)?;
         let solved = Solved {
             condensed: &condensed,
             motion: &own,
             omega,
             response: amplitude * condensed.length(),
-            watched: &[],
+            watched: &watched,
+            together: false,
             sticks: None,
             iterations: ITERATIONS,
         };
         let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
-        let mut estimator = ForcedEstimator::new(&model, &self.solver, self.response_dof, models, self.interrupt);
+        let estimator = ForcedEstimator::new(&model, &self.solver, self.response_dof, models, self.interrupt);
+        let mut estimator = estimator.watching(self.response.as_slice());
         let estimate = estimator.at(&solved)?;
         Ok(Some((estimate.response, estimate)))
     }

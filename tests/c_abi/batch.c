@@ -93,6 +93,39 @@ int main(void)
     REFUSED("freed", hbvib_batch_status(other, 0), HBVIB_E_HANDLE, 1, "freed");
     REFUSED("type", hbvib_batch_free((hbvib_batch *)model), HBVIB_E_HANDLE, 1, "another type");
 
+    {
+        /* The peaks of responses: the first leads. */
+        static const int64_t tip[1] = {0};
+        hbvib_response watched[2];
+        double speed[DESIGNS];
+        for (i = 0; i < 2; i++) {
+            WORKS("response", hbvib_response_init(&watched[i], sizeof watched[i]));
+            watched[i].n = 1;
+            watched[i].dofs = tip;
+        }
+        watched[1].measure = HBVIB_MEASURE_RMS;
+        watched[1].component = HBVIB_VELOCITY;
+        o.keep = 0;
+        o.responses = watched;
+        o.responses_len = 2;
+        WORKS("responses", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, DESIGNS, values, &batch));
+        WORKS("responses", hbvib_batch_response_peaks(batch, 0, DESIGNS, again, NULL));
+        WORKS("responses", hbvib_batch_response_peaks(batch, 1, DESIGNS, speed, omega));
+        for (i = 0; i < DESIGNS; i++) {
+            EXPECT("leads", i == 3 ? isnan(again[i]) && isnan(speed[i]) : fabs(again[i] / amplitude[i] - 1) < 1e-9);
+            EXPECT("speed", i == 3 || (speed[i] > 0.7 * omega[i] * amplitude[i] && speed[i] < 0.8 * omega[i] * amplitude[i]));
+        }
+        REFUSED("response", hbvib_batch_response_peaks(batch, 2, DESIGNS, speed, NULL), HBVIB_E_INDEX, 2, "response = 2");
+        REFUSED("room", hbvib_batch_response_peaks(batch, 0, 1, speed, NULL), HBVIB_E_DIMENSION, 3, "needs 6");
+        WORKS("free", hbvib_batch_free(batch));
+        batch = NULL;
+        watched[1].sector = 99;
+        REFUSED("sector", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, DESIGNS, values, &batch), HBVIB_E_INDEX, 3,
+                "responses[1]: sector = 99");
+        o.responses = NULL;
+        o.responses_len = 0;
+    }
+
     o.omega_stop = 2 * PI * 203;
     WORKS("none", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, 1, values, &other));
     EXPECT("none", hbvib_batch_status(other, 0) == HBVIB_STOPPED_NO_PEAK && strstr(hbvib_last_error(), "no maximum"));

@@ -78,6 +78,29 @@ static void values(hbvib_model *model)
     WORKS("read", hbvib_response_of(&watched[1], 4, omega[0], x, 40, &found, NULL, &instant));
     EXPECT("read", fabs(found - lent(branch, 1, HBVIB_READING_VALUE, &points)[at[0]]) <= 1e-9 * found && instant >= 0);
 
+    {
+        double again[3 * 200], both[2 * 3 * 200], instants[3 * 200];
+        const int64_t all = 3 * stored;
+        EXPECT("fits", stored <= 200);
+        watched[2].sector = 5;
+        WORKS("read", hbvib_branch_read_responses(branch, watched, 3, again, all, both, all, instants, all, NULL));
+        for (k = 0; k < stored; k++)
+            EXPECT("read", fabs(again[k] - tip[k]) <= 1e-9 * tip[k] && fabs(hypot(both[2 * k], both[2 * k + 1]) - tip[k]) <= 1e-9 * tip[k] &&
+                               isnan(instants[k]) && fabs(instants[stored + k] - phase[k]) < 1e-6);
+        WORKS("less", hbvib_branch_read_responses(branch, watched, 3, again, all, NULL, 0, NULL, 0, NULL));
+        REFUSED("room", hbvib_branch_read_responses(branch, watched, 3, again, all - 1, NULL, 0, NULL, 0, NULL), HBVIB_E_DIMENSION, 5,
+                "responses_len * stored points");
+        REFUSED("overlap", hbvib_branch_read_responses(branch, watched, 3, again, all, NULL, 0, again, all, NULL), HBVIB_E_ARGUMENT, 8,
+                "overlap");
+        watched[1].sector = 99;
+        REFUSED("sector", hbvib_branch_read_responses(branch, watched, 3, again, all, NULL, 0, NULL, 0, NULL), HBVIB_E_INDEX, 2,
+                "responses[1]: sector = 99");
+        watched[1].sector = 0;
+        watched[2].sector = 0;
+        REFUSED("leading", hbvib_branch_leading_response(branch, 0), HBVIB_E_ARGUMENT, 2, "no error of a response is known");
+        REFUSED("leading", hbvib_branch_leading_response(branch, stored), HBVIB_E_INDEX, 2, "point");
+    }
+
     /* At a peak the derivative at a fixed frequency is that of the peak. */
     WORKS("parameter", hbvib_parameter_init(&force, sizeof force));
     WORKS("derivative", hbvib_sensitivity(model, branch, at[0], HBVIB_OF_RESPONSE + 2, &force, 1, &derivative, 1, NULL, NULL, NULL));
@@ -101,6 +124,21 @@ static void values(hbvib_model *model)
         REFUSED("sector", hbvib_response_of(&watched[0], 4, 1, x, 39, &found, NULL, NULL), HBVIB_E_DIMENSION, 0, "39 complex entries");
     }
     WORKS("free", hbvib_branch_free(branch));
+
+    /* A tolerance holds for each, or for all in one norm. */
+    s.tolerance = 1e-3;
+    for (o.together = 0; o.together < 2; o.together++) {
+        hbvib_verification checked;
+        WORKS("solve", hbvib_forced_response(model, &s, &o, NULL, &branch));
+        k = hbvib_branch_leading_response(branch, 0);
+        EXPECT("leading", k >= 0 && k < 3);
+        WORKS("verify", hbvib_verification_init(&checked, sizeof checked));
+        EXPECT("verify", checked.worst_response == -1 && isnan(checked.worst_response_error));
+        WORKS("verify", hbvib_verify(model, branch, 0, NULL, NULL, NULL, 0, NULL, 0, &checked));
+        EXPECT("verify", checked.worst_response >= 0 && checked.worst_response_error < 2e-3);
+        WORKS("free", hbvib_branch_free(branch));
+    }
+    REFUSED("together", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "together = 2");
 }
 
 static void refusals(hbvib_model *model)

@@ -307,6 +307,7 @@ pub fn sweep(model: &Model, solver: &SolverOptions, from: f64, to: f64, at: &[f6
         at,
         guess: None,
         responses: &[],
+        together: false,
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }

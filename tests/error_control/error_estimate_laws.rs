@@ -25,6 +25,7 @@ fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: 
         at: &[],
         guess: Some(&guess),
         responses: &[],
+        together: false,
     };
     let truth = forced_response(model, truth, &range, &mut Hooks::default()).unwrap();
     let fundamental = |b: &hbvib::results::Branch| {

@@ -52,6 +52,7 @@ fn solve(model: &Model, options: &SolverOptions, side: f64, until: f64) -> Branc
         at: &[],
         guess: Some(&guess),
         responses: &[],
+        together: false,
     };
     forced_response(model, options, &range, &mut Hooks::default()).unwrap()
 }

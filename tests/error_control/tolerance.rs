@@ -36,6 +36,7 @@ fn truth_of(model: &Model, branch: &Branch, point: usize, highest: usize) -> Bra
         at: &[],
         guess: Some(&guess),
         responses: &[],
+        together: false,
     };
     let solver = SolverOptions {
         response_dof: Some(branch.response_dof()),
@@ -402,6 +403,7 @@ fn a_guess_starts_a_response_with_a_tolerance() {
         at: &[],
         guess: Some(&guess),
         responses: &[],
+        together: false,
     };
     let solver = SolverOptions {
         harmonics: first.harmonics(),

@@ -246,6 +246,7 @@ fn balanced(model: &Model, solver: &SolverOptions, branch: &Branch, (omega, poin
         at: &[],
         guess: Some(&guess),
         responses: &[],
+        together: false,
     };
     let answer = forced_response(&forced, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);

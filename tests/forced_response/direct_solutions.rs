@@ -262,6 +262,7 @@ fn compare(case: &Case) {
         at: &at,
         guess: None,
         responses: &[],
+        together: false,
     };
     let named = format!(
         "{} {:?} {:?}, {} contacts, H = {}, {start} .. {end}",
@@ -358,6 +359,7 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                 at: &at,
                 guess: None,
                 responses: &[],
+                together: false,
             };
             let options = case.options();
             let named = format!("{n} {shape:?} {damping:?}");
@@ -376,6 +378,7 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                     at: &[],
                     guess: Some(&motion),
                     responses: &[],
+                    together: false,
                 };
                 let one = forced_response(&model, &options, &single, &mut Hooks::default())
                     .unwrap_or_else(|e| panic!("{named}: {omega} alone: {e}"));

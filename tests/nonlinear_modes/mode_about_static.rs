@@ -54,6 +54,7 @@ pub fn answer(
         at: &[],
         guess: Some(guess),
         responses: &[],
+        together: false,
     };
     let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);

@@ -72,6 +72,7 @@ fn compare(
             at: &[],
             guess: Some(&guess),
             responses: &[],
+            together: false,
         };
         let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
         assert_eq!(answer.status(), Status::Ok, "point {point}");

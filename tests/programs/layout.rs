@@ -45,7 +45,7 @@ fn in_rust() -> String {
         hbvib_phase_report { struct_size, phase, share }
         hbvib_hooks { struct_size, log_level, user, progress, log, cancel, phase }
         hbvib_response { struct_size, measure, harmonic, n, dofs, weights, sector, component, reserved }
-        hbvib_forced_options { struct_size, reserved, omega_start, omega_stop, at, at_len, guess, guess_len, responses, responses_len }
+        hbvib_forced_options { struct_size, together, omega_start, omega_stop, at, at_len, guess, guess_len, responses, responses_len }
         hbvib_view { struct_size, scalar, rank, reserved, data, shape, stride }
         hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts, basis, certificate, response_harmonic, guess_used, flexibility_way }
         hbvib_energy { struct_size, reserved, twice_mean_kinetic, kinetic_mean, kinetic_peak, potential_mean, potential_peak, wheel_kinetic_mean, wheel_kinetic_peak, wheel_potential_mean, wheel_potential_peak, structural_loss, friction_loss }
@@ -57,12 +57,12 @@ fn in_rust() -> String {
         hbvib_time_options { struct_size, method, omega, harmonics, samples, tolerance, max_periods, start, start_len }
         hbvib_time_info { struct_size, reserved, period, residual, periods, events }
         hbvib_verify_options { struct_size, method, tolerance, max_periods, same_within }
-        hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events }
+        hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events, worst_response, worst_response_error }
         hbvib_floquet_options { struct_size, waves, refine, modes, tolerance, max_periods }
         hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual, modes, modes_change }
         hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
-        hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop }
-        hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved }
+        hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop, response }
+        hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved, responses, responses_len }
         // END GENERATED
     }
 }

@@ -3,7 +3,7 @@
 use crate::common::Wheel;
 use hbvib::{
     Branch, Component, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
-    VerifyOptions, forced_response, verify,
+    TimeOptions, VerifyOptions, forced_response, time_response, verify,
 };
 
 const FORCES: [(usize, f64); 2] = [(2, 0.05), (3, 0.04)];
@@ -123,5 +123,47 @@ fn the_response_by_itself_is_rms_and_no_point_is_rounding() {
         let (options, mut hooks) = (VerifyOptions::default(), Hooks::default());
         let checked = verify(&sector, &branch, peak.point, &options, &mut hooks).unwrap();
         assert!(checked.same && checked.motion_error < 2e-3, "{}", checked.motion_error);
+    }
+}
+
+#[test]
+fn many_harmonics_are_the_whole_wheel_in_time() {
+    let (sector, wheel) = models();
+    let mut responses = Vec::new();
+    for s in 0..SECTORS {
+        for measure in MEASURES {
+            responses.push(Response {
+                measure,
+                dofs: &[0],
+                sector: s,
+                ..Response::default()
+            });
+        }
+    }
+    for omega in [0.38, 0.45] {
+        let options = TimeOptions {
+            omega,
+            harmonics: 3,
+            samples: 8192,
+            tolerance: 1e-13,
+            ..TimeOptions::default()
+        };
+        let time = time_response(&wheel, &options, &mut Hooks::default()).unwrap();
+        let branch = solve(&sector, (omega, omega), &responses, &exactly(383));
+        assert!(branch.slip_fraction()[0] > 0.2);
+        for (found, response) in branch.responses().iter().zip(&responses) {
+            let blade = response.sector * NDOF;
+            let gauge: Vec<f64> = time.samples.iter().skip(blade).step_by(time.ndof).copied().collect();
+            let largest = |sign: f64| gauge.iter().fold(f64::NEG_INFINITY, |m, x| m.max(sign * x));
+            // An extreme of the samples misses that of the motion by up to half a step of it.
+            let (value, within) = match response.measure {
+                Measure::Harmonic(h) => (time.harmonics[h * time.ndof + blade].norm(), 1e-9),
+                Measure::Rms => ((gauge.iter().map(|x| x * x).sum::<f64>() / 8192.0).sqrt(), 1e-9),
+                Measure::Peak => (largest(1.0).max(largest(-1.0)), 1e-6),
+                _ => (largest(1.0) + largest(-1.0), 1e-6),
+            };
+            let error = (found.values()[0] / value - 1.0).abs();
+            assert!(error < within, "{response:?} at {omega}: {error:e}");
+        }
     }
 }

@@ -5,6 +5,7 @@ mod common;
 
 mod derivatives;
 mod engine_orders;
+mod everywhere;
 mod peaks;
 mod readings;
 mod refused;

@@ -237,6 +237,7 @@ fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
             at: &at,
             guess: None,
             responses: &[],
+            together: false,
         };
         let cancelled = || stop_after == 0;
         let mut progress = |p: &Progress| p.point >= stop_after;

@@ -97,6 +97,7 @@ fn truth(case: &Case, branch: &Branch, point: usize) -> Option<Complex64> {
         at: &[],
         guess: Some(&guess),
         responses: &[],
+        together: false,
     };
     let solver = SolverOptions {
         response_dof: Some(case.response),

@@ -22,19 +22,20 @@ const PRELOAD: Parameter<'static> = Parameter::Contact {
     contact: None,
 };
 
-fn options(range: (f64, f64), threads: usize) -> BatchOptions {
+fn options(range: (f64, f64), threads: usize) -> BatchOptions<'static> {
     BatchOptions {
         omega_start: range.0,
         omega_stop: range.1,
         threads,
         keep: false,
+        responses: &[],
     }
 }
 
 fn run(
     model: &Model,
     solver: &SolverOptions,
-    options: &BatchOptions,
+    options: &BatchOptions<'_>,
     (parameters, values): (&[Parameter<'_>], &[f64]),
 ) -> Batch {
     batch(model, solver, options, (parameters, values), &mut Hooks::default()).unwrap()

@@ -25,6 +25,7 @@ fn curve(follow: Follow, solver: &SolverOptions) -> Branch {
         stop: 400.0,
         at: &[350.0],
         follow,
+        response: None,
     };
     let model = Design::ring_damper(&BASE, 300.0).model();
     parameter_response(&model, solver, PRELOAD, &range, &mut Hooks::default()).unwrap()

@@ -26,6 +26,7 @@ fn tracked(design: &Design, parameter: Parameter<'_>, solver: &SolverOptions, en
             omega,
             log10_range: None,
         },
+        response: None,
     };
     parameter_response(&design.model(), solver, parameter, &range, &mut Hooks::default()).unwrap()
 }

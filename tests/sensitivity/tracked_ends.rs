@@ -30,6 +30,7 @@ fn range(ends: (f64, f64), follow: Follow) -> ParameterRange<'static> {
         stop: ends.1,
         at: &[],
         follow,
+        response: None,
     }
 }
 

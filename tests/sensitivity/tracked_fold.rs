@@ -47,6 +47,7 @@ fn tracked(design: &Design, parameter: Parameter<'_>, solver: &SolverOptions, en
         stop: ends.1,
         at: &[],
         follow: Follow::Fold(near),
+        response: None,
     };
     parameter_response(&design.model(), solver, parameter, &range, &mut Hooks::default()).unwrap()
 }

@@ -20,6 +20,7 @@ fn tracked((start, stop): (f64, f64), at: &[f64], follow: Follow) -> Branch {
         stop,
         at,
         follow,
+        response: None,
     };
     let found = parameter_response(&model, &tight(9), PRELOAD, &range, &mut Hooks::default()).unwrap();
     assert_eq!(

@@ -450,6 +450,7 @@ fn bad_influence_is_refused() {
         at: &[],
         guess: None,
         responses: &[],
+        together: false,
     };
     let solved = hbvib::forced_response(&sector(1), &krylov, &range, &mut Hooks::default());
     refused(solved, Status::Unsupported, &["aerodynamic"]);

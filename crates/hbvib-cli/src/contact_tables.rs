@@ -225,6 +225,7 @@ mod tests {
             at: &[0.8, 1.05, 1.3],
             guess: None,
             responses: &[],
+            together: false,
         };
         (
             forced_response(&model, &options, &range, &mut Hooks::default()).unwrap(),

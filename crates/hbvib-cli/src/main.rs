@@ -265,6 +265,7 @@ fn forced((part, watched): (&ForcedPart, &[ResponsePart]), built: &Built, hooks:
         at: &at,
         guess: None,
         responses: &responses,
+        together: false,
     };
     let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
     let solver = SolverOptions {

@@ -102,6 +102,7 @@ pub fn write(part: &MapPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut F
         omega_stop: TAU * part.to_hz,
         threads: part.threads.unwrap_or_else(available),
         keep: false,
+        responses: &[],
     };
     let parameters = [x.varied.parameter(), y.varied.parameter()];
     let found = batch(&built.model, &solver, &options, (&parameters, &values), hooks).map_err(|e| said(&e))?;

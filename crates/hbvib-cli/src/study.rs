@@ -69,6 +69,7 @@ pub fn write(part: &StudyPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut
         stop: part.to,
         at: &[],
         follow: part.follow(),
+        response: None,
     };
     let found = parameter_response(&built.model, &solver, varied.parameter(), &range, hooks).map_err(|e| said(&e))?;
     let rows = rows(&found);

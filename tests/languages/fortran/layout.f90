@@ -239,7 +239,7 @@ contains
       type(hbvib_forced_options), target :: s
       call whole('hbvib_forced_options', c_sizeof(s))
       call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
-      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('together', c_loc(s), c_loc(s%together), c_sizeof(s%together))
       call field('omega_start', c_loc(s), c_loc(s%omega_start), c_sizeof(s%omega_start))
       call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
       call field('at', c_loc(s), c_loc(s%at), c_sizeof(s%at))
@@ -440,6 +440,8 @@ contains
       call field('residual', c_loc(s), c_loc(s%residual), c_sizeof(s%residual))
       call field('periods', c_loc(s), c_loc(s%periods), c_sizeof(s%periods))
       call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
+      call field('worst_response', c_loc(s), c_loc(s%worst_response), c_sizeof(s%worst_response))
+      call field('worst_response_error', c_loc(s), c_loc(s%worst_response_error), c_sizeof(s%worst_response_error))
    end subroutine verification
 
    subroutine floquet_options()
@@ -494,6 +496,7 @@ contains
       call field('at_len', c_loc(s), c_loc(s%at_len), c_sizeof(s%at_len))
       call field('log10_start', c_loc(s), c_loc(s%log10_start), c_sizeof(s%log10_start))
       call field('log10_stop', c_loc(s), c_loc(s%log10_stop), c_sizeof(s%log10_stop))
+      call field('response', c_loc(s), c_loc(s%response), c_sizeof(s%response))
    end subroutine parameter_options
 
    subroutine batch_options()
@@ -505,6 +508,8 @@ contains
       call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
       call field('keep', c_loc(s), c_loc(s%keep), c_sizeof(s%keep))
       call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('responses', c_loc(s), c_loc(s%responses), c_sizeof(s%responses))
+      call field('responses_len', c_loc(s), c_loc(s%responses_len), c_sizeof(s%responses_len))
    end subroutine batch_options
 
    ! END GENERATED

@@ -97,6 +97,16 @@ def watched(**o):
     return of_branch(branch), tuple(bits(branch._reading(r, hbvib.Reading.VALUE)) for r in range(count))
 
 
+def norm(**o):
+    """Where the norm of two responses is watched, their errors together are told."""
+    options = new("hbvib_forced_options", **{"omega_start": 0.8, "omega_stop": 0.8, "together": 0, **o})
+    options.kept = gauges(2, 3)
+    options.responses, options.responses_len = ctypes.addressof(options.kept), 2
+    handle = ctypes.c_void_p()
+    call("hbvib_forced_response", plain.handle, new("hbvib_solver_options", tolerance=1e-3), options, None, handle)
+    return of_branch(Branch(handle.value, (), ""))
+
+
 def read(**o):
     values = dict(measure=1, harmonic=3, n=2, dofs=np.array([0, 1]), weights=np.array([1.0, -0.5]))
     value = ctypes.c_double()
@@ -188,9 +198,15 @@ def over(follow, **given):
 MU = described(kind=int(hbvib.ParameterKind.MU))
 
 
-def batched(keep=0):
+ONE = new("hbvib_response", measure=3, n=1, dofs=np.array([1]))
+
+
+OTHER = new("hbvib_response", measure=2, n=1, dofs=np.array([0]))
+
+
+def batched(keep=0, **given):
     def run(**o):
-        options = new("hbvib_batch_options", **{"omega_start": 0.6, "omega_stop": 1.2, "keep": keep, **o})
+        options = new("hbvib_batch_options", **{"omega_start": 0.6, "omega_stop": 1.2, "keep": keep, **given, **o})
         handle, values = ctypes.c_void_p(), np.array([[0.8], [1.0]])
         call("hbvib_batch_solve", plain.handle, solver(), options, None, (hbvib.structs["hbvib_parameter"] * 1)(described()), 1, 2,
              values, handle)
@@ -232,7 +248,7 @@ KIND = hbvib.ParameterKind
 TABLE = {
     "hbvib_forced_options": {
         "struct_size": [(refused("struct_size"), forced, 8)],
-        "reserved": [(refused("reserved"), forced, 1)],
+        "together": [(CHANGES, norm, 1), (refused("together"), forced, 2)],
         "omega_start": [(CHANGES, forced, 0.7), (refused("omega_start"), forced, 0.0), (refused("omega_start"), forced, NAN)],
         "omega_stop": [(CHANGES, forced, 1.1), (CHANGES, guessed, 1.6), (refused("omega_stop"), forced, -1.0)],
         "at": [(CHANGES, forced, np.array([0.8])), (refused("at"), forced, np.array([1.3])), (refused("at"), forced, NONE)],
@@ -376,6 +392,8 @@ TABLE = {
         "log10_stop": [(CHANGES, over(FOLLOW.MODE_MAX_DAMPING, omega=1.0, log10_start=-0.5, log10_stop=1.5), 1.0),
                        (refused("log10_stop"), over(FOLLOW.OMEGA), 1.0),
                        (refused("log10_stop"), over(FOLLOW.PEAK), 1.0)],
+        "response": [(CHANGES, over(FOLLOW.OMEGA), np.frombuffer(ONE, np.uint8)),
+                     (refused("response"), over(FOLLOW.MODE_MAX_DAMPING), np.frombuffer(ONE, np.uint8))],
     },
     "hbvib_batch_options": {
         "struct_size": [(refused("struct_size"), batched(), 8)],
@@ -386,6 +404,10 @@ TABLE = {
         "omega_stop": [(CHANGES, batched(), 1.1), (refused("omega_stop"), batched(), 0.0)],
         "keep": [(CHANGES, batched(), 1), (refused("keep"), batched(), 2)],
         "reserved": [(refused("reserved"), batched(), 1)],
+        "responses": [(CHANGES, batched(responses=np.frombuffer(ONE, np.uint8), responses_len=1), np.frombuffer(OTHER, np.uint8)),
+                      (refused("responses"), batched(responses=np.frombuffer(ONE, np.uint8), responses_len=1), NONE)],
+        "responses_len": [(refused("responses_len"), batched(responses=np.frombuffer(ONE, np.uint8)), -1),
+                          (CHANGES, batched(responses=np.frombuffer(ONE, np.uint8)), 1)],
     },
     "hbvib_hooks": {
         "struct_size": [(refused("struct_size"), hooked, 8)],

@@ -125,6 +125,7 @@ still = turning.clone()
 still.set_speed(0.0)
 branch = still.forced_response((1.0, 1.8), harmonics=5, at=[1.3, 1.5], response_dof=0)
 seen = still.forced_response((1.0, 1.8), harmonics=5, responses=[hbvib.Response(0), hbvib.Response(1, "rms")])
+sure = still.forced_response(1.3, responses=[0, 1], tolerance=1e-2)
 crest = int(np.argmax(branch.amplitude))  # where contacts slip
 X = branch.harmonics(3)[:4]
 friction = dict(kt=1.0, kn=1.0, mu=0.3, preload=0.5)
@@ -183,6 +184,10 @@ ANALYSES = {
                 {"point": [(CHANGES, 4), (refused("point"), -1)], "contact": [(CHANGES, 1), (refused("contact"), 9)]}),
     "energy": (*analysis(branch.energy, point=3), {"point": [(CHANGES, 4), (refused("point"), -1)]}),
     "slip": (*analysis(branch.slip, point=crest), {"point": [(CHANGES, 0), (refused("point"), -1)]}),
+    "leading_response": (*analysis(lambda **o: np.array([sure.leading_response(**o)]), point=0), {
+        "point": [(refused("point"), -1)]}),
+    "read": (*analysis(lambda **o: [one.stored for one in branch.read(**o)], responses=[0]), {
+        "responses": [(CHANGES, [1]), (refused("dofs"), [9])]}),
     "at": (*analysis(branch.at, wanted=0), {"wanted": [(CHANGES, 1), (refused("wanted"), 2)]}),
     "field": (*analysis(branch.field, field="omega"), {"field": [(CHANGES, "amplitude"), (refused("omega"), "speed")]}),
 }

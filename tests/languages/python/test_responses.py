@@ -138,4 +138,35 @@ raises("an unknown measure", ValueError, lambda: Response(0, "loudest"))
 raises("weights for other dofs", ValueError, lambda: Response([0, 1], weights=[1]))
 raises("a list of names", TypeError, lambda: model.forced_response((0.5, 0.6), responses=["tip"]))
 
+# The same responses beside forced responses.
+mode = chain().nonlinear_mode((-1.5, 0.5), harmonics=5)
+rms, third = mode.read([Response(2, "rms", component="velocity"), Response([0, 1], "harmonic", harmonic=3)])
+check("read has all points", rms.stored.shape == (mode.stored,) and rms.amplitude.shape == (len(mode),))
+for point in (0, len(mode) - 1):
+    expected = Response(2, "rms", component="velocity").of(mode.harmonics(point), mode.omega[point])
+    check("read is that of the harmonics", abs(rms.amplitude[point] / expected - 1) < 1e-9, rms.amplitude[point])
+    check("with complex amplitudes", abs(abs(third.complex[point]) - third.amplitude[point]) <= 1e-12 * third.amplitude[point])
+again = pickle.loads(pickle.dumps(mode)).read([Response(2, "rms", component="velocity")])[0]
+check("a saved branch is read as well", abs(again.stored / rms.stored - 1).max() < 1e-12)
+check("read has neither peaks nor errors", not len(rms.peaks().omega) and np.isnan(rms.error).all())
+raises("a dof that is not there", hbvib.OutOfRangeError, mode.read, [Response(9, "rms")], words="dofs")
+
+gauge = Response(4, "range", component="velocity")
+over = model.parameter_response(hbvib.Parameter("kt"), (1.2, 1.5), omega=0.6, response=gauge, harmonics=3)
+end = chain().forced_response(0.6, responses=[gauge], harmonics=3)
+check("a response is followed", abs(over.amplitude[-1] / end.amplitude[0] - 1) < 1e-9, over.amplitude[-1])
+
+batch = chain().batch((0.3, 0.9), hbvib.Parameter("kt"), [1.5, 1.7], responses=[gauge, 0], harmonics=3)
+alone = chain().forced_response((0.3, 0.9), responses=[gauge, 0], harmonics=3)
+for found, response in zip(batch.responses, alone.responses):
+    check("a batch has the peaks of each", abs(found.amplitude[0] / response.peaks().amplitude.max() - 1) < 1e-9)
+twice = hbvib.Batch.concatenate([batch, pickle.loads(pickle.dumps(batch))])
+check("and keeps them", twice.responses[0].amplitude.tolist() == 2 * batch.responses[0].amplitude.tolist())
+
+joint = chain().forced_response(0.6, responses=[gauge, 0], tolerance=1e-2, together=True)
+check("one norm", joint.error_estimate[0] <= 1e-2 and joint.leading_response(0) in (0, 1))
+checked = chain().verify(joint, 0)
+check("verified", checked.info.worst_response in (0, 1) and checked.info.worst_response_error < 0.05, checked.info)
+raises("no error", hbvib.ArgumentError, end.leading_response, 0, words="no error")
+
 finish(300)

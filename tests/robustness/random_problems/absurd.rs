@@ -157,6 +157,7 @@ fn absurd_options_end_within_their_bounds() {
             at: &[0.5 * (from + to)],
             guess: None,
             responses: &[],
+            together: false,
         };
         let found = model(&spring, &driven).and_then(|m| forced_response(&m, &solver, &range, &mut Hooks::default()));
         let asked = spring.0.load(Ordering::Relaxed);

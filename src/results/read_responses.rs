@@ -1,0 +1,112 @@
+//! Responses of the stored points of any branch: of a forced response, a nonlinear mode, a result over a parameter.
+
+use crate::condense::Condensed;
+use crate::error::{Result, try_push, try_vec};
+use crate::fourier::Reader;
+use crate::interrupt::{Interrupt, Phase};
+use crate::options::{Response, check_responses};
+use crate::problem::gauges::{Gauge, Seen};
+use crate::results::{Branch, Recovery, ResponseSeries, SeenWithError};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the responses";
+
+/// The gauges on the condensed model of some points.
+struct OnModel<'a> {
+    condensed: &'a Condensed,
+    gauges: Vec<Gauge>,
+    reader: Reader,
+    /// Packed signals of the gauges.
+    signals: Vec<f64>,
+    x: Vec<Complex64>,
+}
+
+impl<'a> OnModel<'a> {
+    fn new(condensed: &'a Condensed, responses: &[Response<'_>], default: usize) -> Result<Self> {
+        let mut gauges = Vec::new();
+        for response in responses {
+            try_push(&mut gauges, Gauge::new(condensed, response, default)?, CONTEXT)?;
+        }
+        let numbers = gauges.len().saturating_mul(condensed.set().packed_len());
+        Ok(Self {
+            condensed,
+            gauges,
+            reader: Reader::new(condensed.set())?,
+            signals: try_vec(numbers, 0.0, CONTEXT)?,
+            x: try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?,
+        })
+    }
+
+    /// Writes the signals of the point that is selected, at the angular frequency ω.
+    fn fill(&mut self, recovery: &mut Recovery<'_>, omega: f64) -> Result<()> {
+        let (set, m) = (self.condensed.set(), self.condensed.set().packed_len());
+        self.signals.fill(0.0);
+        for (i, &number) in set.numbers().iter().enumerate() {
+            if !self.gauges.iter().any(|gauge| gauge.reads(self.condensed, i)) {
+                continue;
+            }
+            recovery.coordinates(i, &mut self.x)?;
+            for (gauge, signal) in self.gauges.iter().zip(self.signals.chunks_exact_mut(m)) {
+                set.set(signal, i, gauge.factor(number, omega).0 * gauge.along(i, &self.x));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Branch {
+    /// Reads responses at all stored points, whatever the branch was asked for: the values of a nonlinear mode, of a result over a
+    /// parameter, or of further gauges of a forced response. They have no peaks and no errors. A response without degrees of
+    /// freedom is that of the response degree of freedom.
+    ///
+    /// # Errors
+    /// Those of the responses, naming their numbers; those of [`Self::harmonics_at`].
+    pub fn read_responses(&self, responses: &[Response<'_>]) -> Result<Vec<ResponseSeries>> {
+        self.read_responses_with(responses, &Interrupt::none())
+    }
+
+    /// The same as [`Self::read_responses`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::read_responses`]; `StoppedByCaller`.
+    pub fn read_responses_with(
+        &self,
+        responses: &[Response<'_>],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Vec<ResponseSeries>> {
+        check_responses(responses, self.ndof(), self.reduction().sectors)?;
+        let mut found = Vec::new();
+        for response in responses {
+            let series = ResponseSeries::new(response, self.response_dof, false)?;
+            try_push(&mut found, series, CONTEXT)?;
+        }
+        if responses.is_empty() || self.stored() == 0 {
+            return Ok(found);
+        }
+        let mut recovery = Recovery::at(self, 0, interrupt)?;
+        let mut model = OnModel::new(self.condensed_at(0), responses, self.response_dof)?;
+        for (point, &omega) in self.omega.iter().enumerate() {
+            interrupt.part(Phase::Results, point, self.stored())?;
+            recovery.go_to(self, point)?;
+            let condensed = self.condensed_at(point);
+            if !core::ptr::eq(condensed, model.condensed) {
+                model = OnModel::new(condensed, responses, self.response_dof)?;
+            }
+            model.fill(&mut recovery, omega)?;
+            let set = condensed.set();
+            let signals = model.signals.chunks_exact(set.packed_len());
+            for ((series, response), signal) in found.iter_mut().zip(responses).zip(signals) {
+                let mut reading = model.reader.read(set, response.measure, signal, interrupt)?;
+                reading.instant /= set.base().max(1) as f64;
+                let seen = Seen {
+                    reading,
+                    slope: f64::NAN,
+                    complex_slope: Complex64::ZERO,
+                };
+                // The recovered motion has the caller's unit.
+                series.push(&SeenWithError { seen, error: f64::NAN }, 1.0)?;
+            }
+        }
+        Ok(found)
+    }
+}
