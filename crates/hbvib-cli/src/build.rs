@@ -3,6 +3,7 @@
 use crate::check::near;
 use crate::contacts::contacts;
 use crate::counted::counted;
+use crate::events;
 use crate::faces::{self, Sector};
 use crate::job::{Amplitude, Job};
 use crate::mesh::Mesh;
@@ -12,7 +13,6 @@ use hbvib_io::{Dof, Files, Matrix, Report, Symmetry};
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::fmt::Display;
-use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -37,11 +37,24 @@ pub struct Built {
     /// Names of its contacts.
     pub names: Names,
     pub nodes: Nodes,
+    /// Real part of the diagonal of the stiffness.
+    pub stiffness_diagonal: Vec<f64>,
     /// Report on the matrices, with what was taken as fixed or counted once.
     pub report: Report,
 }
 
 impl Built {
+    /// Name of each contact: that of its entry, with the number of the pair where there are several.
+    pub fn labels(&self) -> Vec<String> {
+        let of = |(name, range): &(String, Range<usize>)| -> Vec<String> {
+            match range.len() {
+                1 => vec![name.clone()],
+                pairs => (0..pairs).map(|pair| format!("{name}[{pair}]")).collect(),
+            }
+        };
+        self.names.iter().flat_map(of).collect()
+    }
+
     /// Tells the warnings.
     ///
     /// # Errors
@@ -49,7 +62,7 @@ impl Built {
     pub fn warn(&self, strict: bool) -> Outcome<()> {
         let warnings = &self.report.warnings;
         for warning in warnings {
-            let _ = writeln!(std::io::stderr(), "hbvib: warning: {warning}");
+            events::warning(warning);
         }
         if strict && !warnings.is_empty() {
             return Err(format!(
@@ -137,8 +150,23 @@ pub fn built(job: &Job) -> Outcome<Built> {
         model,
         names,
         nodes,
+        stiffness_diagonal: diagonal(&given),
         report,
     })
+}
+
+/// Real part of the diagonal of the stiffness.
+fn diagonal(given: &Given) -> Vec<f64> {
+    let stiffness = given.own.iter().find(|(kind, _)| *kind == MatrixKind::Stiffness);
+    let Some((_, a)) = stiffness else { return Vec::new() };
+    let mut diagonal = vec![0.0; a.rows];
+    let parts = if a.is_complex { 2 } else { 1 };
+    for (k, v) in a.values.chunks_exact(parts).enumerate() {
+        if a.row[k] == a.column[k] {
+            diagonal[a.row[k] as usize] += v[0];
+        }
+    }
+    diagonal
 }
 
 /// Adds the contacts of a job, and returns their names.

@@ -1,6 +1,6 @@
 //! Hysteresis loops and slip fractions of contacts as CSV, and the figures beside them.
 
-use crate::build::{Names, Outcome};
+use crate::build::{Built, Names, Outcome};
 use crate::contact_figures::{loops_figure, slip_figure};
 use crate::files::Files;
 use crate::job::{HysteresisPart, Job};
@@ -15,8 +15,8 @@ use std::path::Path;
 const MOST_SAMPLES: usize = 1_000_000;
 
 /// Writes what the job names. A loop that cannot be evaluated at one point is told, and left out.
-pub fn write(job: &Job, branch: &Branch, names: &Names, files: &mut Files<'_>) {
-    let labels = labels(names);
+pub fn write(job: &Job, branch: &Branch, built: &Built, files: &mut Files<'_>) {
+    let (labels, names) = (built.labels(), &built.names);
     files.write(job.output.slip_csv.as_deref(), &|path| {
         slip_table(path, branch, &labels)
     });
@@ -99,17 +99,6 @@ impl HysteresisPart {
         }
         Ok(range.start + self.pair)
     }
-}
-
-/// Name of each contact: that of its entry, with the number of the pair where there are several.
-fn labels(names: &Names) -> Vec<String> {
-    let of = |(name, range): &(String, std::ops::Range<usize>)| -> Vec<String> {
-        match range.len() {
-            1 => vec![name.clone()],
-            pairs => (0..pairs).map(|pair| format!("{name}[{pair}]")).collect(),
-        }
-    };
-    names.iter().flat_map(of).collect()
 }
 
 /// A row for each time of each point; motions and forces in all directions of the contact.

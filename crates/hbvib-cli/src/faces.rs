@@ -212,7 +212,7 @@ fn norm(x: &[f64; 3]) -> f64 {
 }
 
 /// A point turned about an axis through the origin (Rodrigues' formula).
-fn turned(x: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
+pub fn turned(x: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
     let n = axis.map(|a| a / norm(&axis));
     let (sin, cos) = angle.sin_cos();
     let along = n[0] * x[0] + n[1] * x[1] + n[2] * x[2];

@@ -1,5 +1,6 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
@@ -352,6 +353,19 @@ pub struct OutputPart {
     pub slip_csv: Option<PathBuf>,
     /// The same as a figure, a row for each contact.
     pub slip_figure: Option<PathBuf>,
+    /// Motion of the mesh over the period at points of the curve, for ParaView: a list of times (.pvd) beside a folder with its name.
+    pub vtu: Option<PathBuf>,
+    /// Universal file: nodes (2411), the response over frequency (58), shapes at points of the curve (55).
+    pub uff: Option<PathBuf>,
+    /// All harmonics of all points by node and direction, with units (NetCDF).
+    pub netcdf: Option<PathBuf>,
+    /// Shapes at points of the curve, for CalculiX and what reads its results.
+    pub frd: Option<PathBuf>,
+    /// Points and times of vtu, uff and frd.
+    #[serde(default)]
+    pub motion: MotionPart,
+    #[serde(default)]
+    pub units: UnitsPart,
     #[serde(default)]
     pub hysteresis: Vec<HysteresisPart>,
 }
@@ -398,23 +412,8 @@ impl Job {
     /// A sentence with file and line; the nearest known key for one that is unknown.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
-        let mut job: Self = toml::from_str(&text)
-            .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
-        path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        let named = [
-            job.forced.is_some(),
-            job.mode.is_some(),
-            job.campbell.is_some(),
-            job.study.is_some(),
-            job.map.is_some(),
-            job.tornado.is_some(),
-        ];
-        if !named.contains(&true) {
-            return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
-                path.display()
-            ));
-        }
+        let job = Self::parse(&text, path.parent().unwrap_or(Path::new("")));
+        let job = job.map_err(|e| format!("{}: {e}", path.display()))?;
         if job.forced.is_some() && job.mode.is_some() {
             return Err(format!(
                 "{}: names two analyses: needs one of [forced] and [mode]",
@@ -428,6 +427,39 @@ impl Job {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
         Ok(job)
+    }
+
+    /// A job from its text, with the folder on which its paths depend.
+    ///
+    /// # Errors
+    /// A sentence with the line; the nearest known key for one that is unknown.
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, String> {
+        let job: Result<Self, _> = toml::from_str(text);
+        let mut job = job.map_err(|e| format!("{}{}", e.to_string().trim_end(), hint(e.message())))?;
+        folder.clone_into(&mut job.folder);
+        Ok(job)
+    }
+
+    /// Refuses a job that names no analysis.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn needs_analysis(&self, path: &Path) -> Result<(), String> {
+        let named = [
+            self.forced.is_some(),
+            self.mode.is_some(),
+            self.campbell.is_some(),
+            self.study.is_some(),
+            self.map.is_some(),
+            self.tornado.is_some(),
+        ];
+        if !named.contains(&true) {
+            return Err(format!(
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
+                path.display()
+            ));
+        }
+        Ok(())
     }
 
     /// A path of the job.

@@ -113,6 +113,34 @@ impl Nodes {
         Ok(Some(dofs))
     }
 
+    /// Numbers of the nodes that the matrices name, ascending.
+    pub fn numbers(&self) -> Vec<i64> {
+        let mut numbers: Vec<i64> = self.rows.keys().copied().collect();
+        numbers.sort_unstable();
+        numbers
+    }
+
+    /// Rows of a node along x, y and z, the first where there are several; -1 for none.
+    pub fn rows_of(&self, number: i64) -> [i64; 3] {
+        self.rows.get(&number).copied().unwrap_or([-1; 3])
+    }
+
+    /// Node of a degree of freedom, where the files name it.
+    pub fn node_of(&self, dof: usize) -> Option<i64> {
+        self.node_of.get(dof).copied()
+    }
+
+    /// A degree of freedom in words: node and direction, or its number.
+    pub fn name_of(&self, dof: usize) -> String {
+        let node = self.node_of(dof).filter(|node| self.rows.contains_key(node));
+        let place = node.and_then(|node| {
+            let rows = self.rows_of(node);
+            let direction = rows.iter().position(|row| *row == dof as i64)?;
+            Some(format!("{node}.{}", direction + 1))
+        });
+        place.unwrap_or_else(|| dof.to_string())
+    }
+
     /// Position of the node of a degree of freedom, where the mesh has it.
     pub fn position_of(&self, dof: i64) -> Option<[f64; 3]> {
         let node = self.node_of.get(usize::try_from(dof).ok()?)?;
