@@ -19,11 +19,20 @@ mod responses {
 #[path = "../../crates/hbvib-cli/src/job.rs"]
 mod job;
 #[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/job_motion.rs"]
+mod job_motion;
+#[allow(dead_code)]
 #[path = "../../crates/hbvib-cli/src/job_studies.rs"]
 mod job_studies;
 #[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/job_surfaces.rs"]
+mod job_surfaces;
+#[allow(dead_code)]
 #[path = "../../crates/hbvib-cli/src/mesh.rs"]
 mod mesh;
+#[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/mesh_elements.rs"]
+mod mesh_elements;
 #[path = "../../crates/hbvib-cli/src/nearest_name.rs"]
 mod nearest_name;
 

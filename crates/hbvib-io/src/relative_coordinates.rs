@@ -4,6 +4,7 @@
 use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
 use crate::surface_contacts::SurfaceContact;
 use std::collections::HashMap;
+use std::ops::{AddAssign, Mul};
 
 /// The change of coordinates u = T q: equal, but for rows of nodes with a contact, u_i = q_i + Σ w_j q_j.
 #[derive(Clone, Debug)]
@@ -64,12 +65,20 @@ impl RelativeCoordinates {
         self.rows.contains_key(&(row as u32))
     }
 
-    /// Motions u = T q of all rows from relative ones, in place.
-    pub fn recover(&self, q: &mut [f64]) {
-        let add = |weights: &[(u32, f64)]| weights.iter().map(|(j, w)| w * q[*j as usize]).sum::<f64>();
-        let changes: Vec<(u32, f64)> = self.rows.iter().map(|(row, weights)| (*row, add(weights))).collect();
-        for (row, change) in changes {
-            q[row as usize] += change;
+    /// Rows and weights whose motions are added to that of a row; none for a row that is not relative.
+    #[must_use]
+    pub fn weights(&self, row: usize) -> &[(u32, f64)] {
+        self.rows.get(&(row as u32)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Motions u = T q of all rows from relative ones, in place; real or complex.
+    pub fn recover<T: Copy + AddAssign + Mul<f64, Output = T>>(&self, q: &mut [T]) {
+        // Rows that are added are none of the relative ones.
+        for (row, weights) in &self.rows {
+            for (j, w) in weights {
+                let part = q[*j as usize] * *w;
+                q[*row as usize] += part;
+            }
         }
     }
 
@@ -99,7 +108,11 @@ impl RelativeCoordinates {
         })
     }
 
-    fn matrix(&self, a: &Matrix) -> Result<Matrix, String> {
+    /// Tᵀ A T of one matrix.
+    ///
+    /// # Errors
+    /// A sentence: a matrix of another order.
+    pub fn matrix(&self, a: &Matrix) -> Result<Matrix, String> {
         if (a.rows, a.columns) != (self.order, self.order) {
             return Err(format!(
                 "a matrix of {} x {}, needs {} rows and columns",
