@@ -331,15 +331,28 @@ fn the_response_with_slip_is_that_of_pairs() {
         0.9 * first,
         1.05 * first
     );
-    let peaks = [("pairs_run", by_hand(&rings)), ("surfaces_run", surfaces(""))].map(|(name, contacts)| {
-        let text = printed("run", name, &format!("{model}{contacts}{rest}"));
-        text.lines()
-            .find(|line| line.contains("peak"))
-            .unwrap_or(&text)
-            .to_owned()
+    let runs = [("pairs_run", by_hand(&rings)), ("surfaces_run", surfaces(""))].map(|(name, contacts)| {
+        let job = format!("{model}{contacts}{rest}[output]\nuff = 'shape.uff'\n");
+        let (output, place) = common::hbvib("run", ("surface_pairs", name), &job);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let peak = text.lines().find(|line| line.contains("peak")).unwrap().to_owned();
+        (peak, hbvib_io::read_universal(&place.join("shape.uff")).unwrap().shapes)
     });
-    assert_eq!(peaks[0], peaks[1]);
-    assert!(peaks[0].contains("Hz"), "{}", peaks[0]);
+    let [(peak, shapes), (other, others)] = runs;
+    assert_eq!(peak, other);
+    // Motions of all nodes at the peak, those of the contacts included, which are recovered from relative ones.
+    assert!(shapes.len() > 1 && shapes.len() == others.len());
+    for (shape, other) in shapes.iter().zip(&others) {
+        assert_eq!((&shape.nodes, shape.values.len()), (&other.nodes, other.values.len()));
+        let largest = shapes[1]
+            .values
+            .iter()
+            .fold(0.0_f64, |m, (re, im)| m.max(re.hypot(*im)));
+        for (a, b) in shape.values.iter().zip(&other.values) {
+            assert!((a.0 - b.0).hypot(a.1 - b.1) <= 1e-5 * largest, "{a:?} and {b:?}");
+        }
+    }
 }
 
 #[test]
