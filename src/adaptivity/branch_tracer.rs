@@ -51,6 +51,8 @@ pub(crate) struct BranchTracer<'a> {
     /// Values of linear stretches, where they can be had, and whether they were requested.
     pub(super) linear_grid: Option<LinearGrid>,
     pub(super) grid_requested: bool,
+    /// The last solutions of the arc before, each with its resolution, where peaks of responses were sought on it.
+    pub(super) before_arc: Vec<(Point, usize)>,
 }
 
 /// The end of a linear stretch.
@@ -93,6 +95,7 @@ impl<'a> BranchTracer<'a> {
             interrupt,
             linear_grid: None,
             grid_requested: false,
+            before_arc: Vec::new(),
         }
     }
 

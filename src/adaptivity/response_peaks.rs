@@ -13,6 +13,9 @@ use crate::results::SpecialKind;
 
 const CONTEXT: &str = "the peaks of a response";
 
+/// Solutions that are kept for the arc that follows.
+const NODES_BEFORE: usize = 3;
+
 /// Parts of the cubic in which changes of sign are sought.
 const PARTS_OF_ARC: usize = 16;
 
@@ -30,29 +33,42 @@ impl BranchTracer<'_> {
         }
         analysis.select(a.1.max(b.1))?;
         let resolution = analysis.resolution();
-        // Solutions along the arc in their order, each with its resolution.
-        let mut arc = Vec::new();
-        for (point, resolution) in [a, b] {
-            try_push(&mut arc, (point.try_clone()?, resolution), CONTEXT)?;
+        // Solutions along the arc in their order, each with its resolution, behind those that lead to it.
+        let mut arc = core::mem::take(&mut self.before_arc);
+        let is_next = arc.last().is_some_and(|(point, of)| *of == a.1 && point.v == a.0.v);
+        if !is_next {
+            arc.clear();
+            try_push(&mut arc, (a.0.try_clone()?, a.1), CONTEXT)?;
         }
+        let start = arc.len() - 1;
+        try_push(&mut arc, (b.0.try_clone()?, b.1), CONTEXT)?;
         for response in analysis.further_responses() {
-            let mut k = 0;
+            let mut k = start;
             while k + 1 < arc.len() {
                 analysis.select(resolution)?;
-                let mut ends = [None, None];
-                for (end, (point, of)) in ends.iter_mut().zip(&arc[k..]) {
-                    let seen = analysis.seen_by(response, (point, *of))?;
-                    *end = Some(analysis.transfer(&seen, *of)?);
+                let (mut ends, mut seen_arc) = (Vec::new(), Vec::new());
+                for (i, (point, of)) in arc.iter().enumerate() {
+                    let is_end = i == k || i == k + 1;
+                    // Nodes beyond have the harmonics of the arc.
+                    if is_end || *of == resolution {
+                        if is_end {
+                            try_push(&mut ends, seen_arc.len(), CONTEXT)?;
+                        }
+                        let seen = analysis.seen_by(response, (point, *of))?;
+                        try_push(&mut seen_arc, analysis.transfer(&seen, *of)?, CONTEXT)?;
+                    }
                 }
                 k += 1;
-                let [Some(first), Some(last)] = &ends else { continue };
-                if let Some(found) = self.find_peaks_of(analysis, response, (first, last))? {
+                let &[first, last] = ends.as_slice() else { continue };
+                if let Some(found) = self.find_peaks_of(analysis, response, (seen_arc, (first, last)))? {
                     arc.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
                     arc.insert(k, found);
                     k += 1;
                 }
             }
         }
+        arc.drain(..arc.len().saturating_sub(NODES_BEFORE));
+        self.before_arc = arc;
         Ok(())
     }
 
@@ -62,11 +78,22 @@ impl BranchTracer<'_> {
         &mut self,
         analysis: &mut dyn Traceable,
         response: usize,
-        (first, last): (&Point, &Point),
+        (mut nodes, between): (Vec<Point>, (usize, usize)),
     ) -> Result<Option<(Point, usize)>> {
         let resolution = analysis.resolution();
+        let ends = (nodes[between.0].try_clone()?, nodes[between.1].try_clone()?);
+        let (first, last) = (&ends.0, &ends.1);
         let brackets = self.predicted_brackets(first, last)?;
         if SpecialPoint::Peak.between(first, last) && brackets.len() <= 1 {
+            let kind = SpecialKind::PeakOf(response);
+            let locator = Locator::new(first.unknowns().len(), self.course.settings)?;
+            let mut locator = locator.with_response(Some(response));
+            let found = locator.peak_on(analysis.problem(), &mut nodes, between, self.interrupt)?;
+            if let Some(point) = found
+                && self.record_special(analysis, kind, &point)?
+            {
+                return Ok(Some((point, resolution)));
+            }
             return self.find_peak_of(analysis, response, (first, resolution), (last, resolution));
         }
         for (low, high) in brackets {

@@ -5,6 +5,7 @@ pub mod arc_length;
 pub mod bracket;
 pub mod corrector;
 mod curvature_circle;
+mod hermite_peak;
 mod history;
 pub mod initial_point;
 pub mod metric;

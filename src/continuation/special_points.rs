@@ -64,9 +64,9 @@ impl SpecialPoint {
 
 /// Solves for points between accepted ones.
 pub struct Locator {
-    corrector: Corrector,
+    pub(super) corrector: Corrector,
     settings: Settings,
-    row: Vec<f64>,
+    pub(super) row: Vec<f64>,
     derivative: Vec<f64>,
     /// Place of the solution found last on the same arc, and its departure from the cubic; empty: none.
     departed_at: f64,
@@ -125,7 +125,7 @@ impl Locator {
         }
     }
 
-    fn metric(&self, a: &Point, b: &Point) -> Metric {
+    pub(super) fn metric(&self, a: &Point, b: &Point) -> Metric {
         Metric::along(norm(a.unknowns()).max(norm(b.unknowns())), &self.settings)
     }
 
@@ -327,11 +327,17 @@ impl Locator {
         if metric.dot(&point.tangent, &self.derivative) < 0.0 {
             point.reverse();
         }
+        self.see(problem, &mut point)?;
+        Ok(Some(point))
+    }
+
+    /// Reads a solved point as the response sees it.
+    pub(super) fn see(&self, problem: &mut dyn Problem, point: &mut Point) -> Result<()> {
         if let Some(response) = self.response
             && let Some((amplitude, slope)) = problem.see(response, &point.v, &point.tangent)?
         {
             (point.amplitude, point.slope) = (amplitude, slope);
         }
-        Ok(Some(point))
+        Ok(())
     }
 }
