@@ -96,6 +96,14 @@ Examples:
   hbvib convert wheel.op4 --output wheel.mtx                        # wheel_stiffness.mtx, wheel_mass.mtx
   hbvib convert wheel.op4 --format op4-binary --output other.op4")]
     Convert(ConvertArguments),
+    /// Draws stored responses (.npz of [output]), several of them in one figure.
+    #[command(after_help = "\
+Examples:
+  hbvib plot response.npz --output response.svg
+  hbvib plot one.npz two.npz --log-y --markers --unit mm --output both.png
+  hbvib plot response.npz --dof 12 --output harmonics.svg   # a line for each harmonic
+  hbvib plot mode.npz --damping --output damping.svg")]
+    Plot(PlotArguments),
     /// Prints the JSON schema of a job, for editors that complete and check TOML.
     #[command(after_help = "Example:\n  hbvib schema > job.schema.json")]
     Schema,
@@ -196,6 +204,47 @@ pub struct ConvertArguments {
     /// Replaces a file that is there.
     #[arg(long)]
     pub overwrite: bool,
+}
+
+/// Stored responses, and what is drawn of them.
+#[derive(Debug, clap::Args)]
+pub struct PlotArguments {
+    /// Files of [output], npz.
+    #[arg(value_name = "RESPONSE.NPZ", required = true)]
+    pub responses: Vec<PathBuf>,
+    /// File of the figure: .svg or .png.
+    #[arg(long, short, value_name = "FILE", default_value = "response.svg")]
+    pub output: PathBuf,
+    /// Amplitude of each harmonic of a degree of freedom, from 0, instead of the response.
+    #[arg(long, value_name = "N")]
+    pub dof: Option<usize>,
+    /// This harmonic alone.
+    #[arg(long, value_name = "H", requires = "dof")]
+    pub harmonic: Option<usize>,
+    /// A response of [[response]], from 0.
+    #[arg(long, value_name = "N", conflicts_with = "dof")]
+    pub response: Option<usize>,
+    /// The largest slip fraction of all contacts.
+    #[arg(long, conflicts_with_all = ["dof", "response"])]
+    pub slip: bool,
+    /// The damping ratio of a nonlinear mode over its amplitude.
+    #[arg(long, conflicts_with_all = ["dof", "response", "slip"])]
+    pub damping: bool,
+    /// Logarithmic axis of the frequency.
+    #[arg(long)]
+    pub log_x: bool,
+    /// Logarithmic axis of the amplitude.
+    #[arg(long)]
+    pub log_y: bool,
+    /// A mark at each point.
+    #[arg(long)]
+    pub markers: bool,
+    /// Unit of the amplitude, for its axis.
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<String>,
+    /// Title of the figure.
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
 }
 
 /// A job, and how strictly it is taken.

@@ -1,7 +1,7 @@
 //! The model of a job.
 
 use crate::check::near;
-use crate::contacts::contacts;
+use crate::contacts::{Entry, contacts};
 use crate::counted::counted;
 use crate::events;
 use crate::faces::{self, Sector};
@@ -38,8 +38,14 @@ pub struct Built {
     /// Names of its contacts.
     pub names: Names,
     pub nodes: Nodes,
+    /// Area of each contact, where the job gives areas.
+    pub areas: Vec<Option<f64>>,
+    /// Left and right node of each pair of the faces, and the distance of the right one from the image of the left one.
+    pub face_pairs: Vec<(i64, i64, f64)>,
     /// Real part of the diagonal of the stiffness.
     pub stiffness_diagonal: Vec<f64>,
+    /// Mass that moves with each row in a translation along its direction; empty without names of nodes.
+    pub moved_mass: Vec<f64>,
     /// Report on the matrices, with what was taken as fixed or counted once.
     pub report: Report,
 }
@@ -102,6 +108,7 @@ pub fn built(job: &Job) -> Outcome<Built> {
         images,
         facts,
         fixed,
+        pairs: face_pairs,
     } = match &part.faces {
         Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
         None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
@@ -130,7 +137,7 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let names = add_contacts(job, (&nodes, &images, &surfaces), &mut model, &mut report)?;
+    let (names, areas) = add_contacts(job, (&nodes, &images, &surfaces), &mut model, &mut report)?;
     for one in &job.output.hysteresis {
         one.contact(&names)?;
     }
@@ -168,7 +175,10 @@ pub fn built(job: &Job) -> Outcome<Built> {
         model,
         names,
         nodes,
+        areas,
+        face_pairs,
         stiffness_diagonal: diagonal(&given),
+        moved_mass: moved_mass(&given),
         report,
     })
 }
@@ -187,19 +197,45 @@ fn diagonal(given: &Given) -> Vec<f64> {
     diagonal
 }
 
+/// Sum of each row of the mass over the rows of its own direction.
+fn moved_mass(given: &Given) -> Vec<f64> {
+    let mass = given.own.iter().find(|(kind, _)| *kind == MatrixKind::Mass);
+    let Some((_, a)) = mass.filter(|(_, a)| a.rows == given.dofs.len()) else {
+        return Vec::new();
+    };
+    let direction = |row: u32| given.dofs[row as usize].1;
+    let mut moved = vec![0.0; a.rows];
+    let parts = if a.is_complex { 2 } else { 1 };
+    for (k, v) in a.values.chunks_exact(parts).enumerate() {
+        let (i, j) = (a.row[k], a.column[k]);
+        if direction(i) == direction(j) {
+            moved[i as usize] += v[0];
+            if i != j && matches!(a.symmetry, Symmetry::Symmetric | Symmetry::Hermitian) {
+                moved[j as usize] += v[0];
+            }
+        }
+    }
+    moved
+}
+
 /// Adds the contacts of a job, and returns their names.
 fn add_contacts(
     job: &Job,
     (nodes, images, surfaces): (&Nodes, &HashMap<i64, i64>, &SurfacePairs),
     model: &mut Model,
     report: &mut Report,
-) -> Outcome<Names> {
-    let mut names = Names::new();
+) -> Outcome<(Names, Vec<Option<f64>>)> {
+    let (mut names, mut areas) = (Names::new(), Vec::new());
     for (i, part) in job.contact.iter().enumerate() {
         let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
         let first = model.contacts().len();
         let between = surfaces.of_entry(i);
-        let (contacts, repeated) = contacts((job, part), nodes, images, between).map_err(|e| said(&e))?;
+        let Entry {
+            contacts,
+            areas: of_entry,
+            repeated,
+        } = contacts((job, part), nodes, images, between).map_err(|e| said(&e))?;
+        areas.extend(of_entry);
         if repeated > 0 {
             report.facts.push(said(&format!(
                 "left out, as images of pairs of the left face: {}",
@@ -228,7 +264,7 @@ fn add_contacts(
         }
         names.push((name, first..model.contacts().len()));
     }
-    Ok(names)
+    Ok((names, areas))
 }
 
 /// Compares the mass with that which the job expects.

@@ -3,6 +3,7 @@
 use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
+use crate::model_report::ModelReport;
 use crate::{campbell, map, motion_files, print, study, tornado};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
@@ -43,11 +44,19 @@ pub fn check(path: &Path, strict: bool, json: bool) -> Outcome<u8> {
         let fact = "the job names no analysis: run needs one, modes and check do not";
         built.report.facts.push(fact.into());
     }
+    let mut report = ModelReport::of(path, &job, &built);
+    built.report.facts.append(&mut report.facts);
+    built.report.warnings.append(&mut report.warnings);
     for fact in &built.report.facts {
         let _ = writeln!(text, "{fact}");
     }
     for warning in &built.report.warnings {
         let _ = writeln!(text, "warning: {warning}");
+    }
+    if json {
+        report.facts.clone_from(&built.report.facts);
+        report.warnings.clone_from(&built.report.warnings);
+        text = serde_json::to_string_pretty(&report).map_err(|e| e.to_string())? + "\n";
     }
     print(&text)?;
     let count = built.report.warnings.len();
@@ -58,7 +67,6 @@ pub fn check(path: &Path, strict: bool, json: bool) -> Outcome<u8> {
             counted(count, "warning")
         ));
     }
-    let _ = json;
     Ok(0)
 }
 

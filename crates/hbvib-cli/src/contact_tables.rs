@@ -2,6 +2,7 @@
 
 use crate::build::{Built, Names, Outcome};
 use crate::contact_figures::{loops_figure, slip_figure};
+use crate::curve::Curve;
 use crate::files::Files;
 use crate::job::{HysteresisPart, Job};
 use crate::points::chosen;
@@ -15,13 +16,12 @@ use std::path::Path;
 const MOST_SAMPLES: usize = 1_000_000;
 
 /// Writes what the job names. A loop that cannot be evaluated at one point is told, and left out.
-pub fn write(job: &Job, branch: &Branch, built: &Built, files: &mut Files<'_>) {
+pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>) {
+    let branch = curve.branch;
     let (labels, names) = (built.labels(), &built.names);
-    files.write(job.output.slip_csv.as_deref(), &|path| {
-        slip_table(path, branch, &labels)
-    });
+    files.write(job.output.slip_csv.as_deref(), &|path| slip_table(path, curve, &labels));
     files.write(job.output.slip_figure.as_deref(), &|path| {
-        slip_figure(path, branch, &labels)
+        slip_figure(path, curve, &labels)
     });
     for part in &job.output.hysteresis {
         let contact = match part.contact(names) {
@@ -133,15 +133,16 @@ fn loops_table(path: &Path, loops: &[(Special, ContactLoop)]) -> Outcome<()> {
 }
 
 /// A row for each point of the curve, a column for each contact.
-fn slip_table(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<()> {
+fn slip_table(path: &Path, curve: &Curve<'_>, labels: &[String]) -> Outcome<()> {
     let mut text = String::from("frequency_hz");
     for label in labels {
         let _ = write!(text, ",\"{}\"", label.replace('"', "\"\""));
     }
     text += "\n";
-    for point in 0..branch.points() {
-        let _ = write!(text, "{:.16e}", branch.omega()[point] / TAU);
-        for slip in branch.slip_fraction_at(point).unwrap_or(&[]) {
+    let omega = curve.omega();
+    for (point, omega) in omega.iter().enumerate() {
+        let _ = write!(text, "{:.16e}", omega / TAU);
+        for slip in curve.slip(point) {
             let _ = write!(text, ",{slip:.10e}");
         }
         text += "\n";

@@ -19,8 +19,17 @@ struct Pairs {
     normals: Vec<[f64; 3]>,
 }
 
-/// The contacts of an entry, one for each pair, and the number of pairs that were left out, because they repeat others. `images`
-/// has the degree of freedom of the left face for each one of the right face.
+/// The contacts of an entry.
+pub struct Entry {
+    /// One for each pair.
+    pub contacts: Vec<Contact>,
+    /// Area of each pair, where areas are given.
+    pub areas: Vec<Option<f64>>,
+    /// Pairs that were left out, because they repeat others.
+    pub repeated: usize,
+}
+
+/// The contacts of an entry. `images` has the degree of freedom of the left face for each one of the right face.
 ///
 /// # Errors
 /// A sentence that names the list and its node or degree of freedom.
@@ -29,7 +38,7 @@ pub fn contacts(
     table: &Nodes,
     images: &HashMap<i64, i64>,
     between: &[SurfaceContact],
-) -> Outcome<(Vec<Contact>, usize)> {
+) -> Outcome<Entry> {
     let places = places(part);
     let width = places.len();
     let mut pairs = match &part.nodes {
@@ -92,7 +101,13 @@ pub fn contacts(
             })
         })
         .collect();
-    Ok((all?, repeated))
+    let given = part.nodes.as_ref().is_some_and(|nodes| !nodes.areas.is_empty());
+    let has_areas = given || part.surfaces.is_some();
+    Ok(Entry {
+        contacts: all?,
+        areas: pairs.areas.iter().map(|area| has_areas.then_some(*area)).collect(),
+        repeated,
+    })
 }
 
 impl Pairs {

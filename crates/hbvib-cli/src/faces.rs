@@ -24,6 +24,7 @@ struct Faces {
     /// Degrees of freedom of nodes whose image is fixed.
     fixed: Vec<usize>,
     facts: Vec<String>,
+    pairs: Vec<(i64, i64, f64)>,
 }
 
 /// The model of a sector.
@@ -35,6 +36,8 @@ pub struct Sector {
     pub facts: Vec<String>,
     /// Fixed degrees of freedom beside those of the job.
     pub fixed: Vec<usize>,
+    /// Left and right node of each pair, and the distance of the right one from the image of the left one.
+    pub pairs: Vec<(i64, i64, f64)>,
 }
 
 impl Sector {
@@ -45,6 +48,7 @@ impl Sector {
             images: HashMap::new(),
             facts: Vec::new(),
             fixed: Vec::new(),
+            pairs: Vec::new(),
         }
     }
 }
@@ -94,6 +98,7 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         images,
         facts: faces.facts,
         fixed: faces.fixed,
+        pairs: faces.pairs,
     })
 }
 
@@ -133,6 +138,7 @@ fn in_order(part: &FacesPart, left: &[Node], right: &[Node]) -> Outcome<Faces> {
         coordinates,
         fixed: Vec::new(),
         facts: Vec::new(),
+        pairs: Vec::new(),
     })
 }
 
@@ -163,6 +169,7 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
         coordinates: None,
         fixed: Vec::new(),
         facts: Vec::new(),
+        pairs: Vec::new(),
     };
     let mut coordinates = (Points::new(), Points::new());
     for (i, &j) in partner.iter().enumerate() {
@@ -171,6 +178,10 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
             Node::Dofs(_) => Err(format!("{name}[{i}] names degrees of freedom, others name nodes")),
         };
         let sides = (dofs_of("left", i, &left[i])?, dofs_of("right", j, &right[j])?);
+        if let (Node::Number(left), Node::Number(right)) = (&left[i], &right[j]) {
+            let apart = [0, 1, 2].map(|k| images[i][k] - at_right[j][k]);
+            faces.pairs.push((*left, *right, norm(&apart)));
+        }
         if let (None, _) | (_, None) = sides {
             // Fixed on one side is fixed on both: they are one node of the wheel.
             let moving = [

@@ -22,24 +22,37 @@ pub type Area<'a> = DrawingArea<Canvas<'a>, Shift>;
 /// # Errors
 /// A sentence.
 pub fn draw(path: &Path, content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn Error>>) -> Outcome<()> {
+    if path.extension().is_some_and(|name| name.eq_ignore_ascii_case("png")) {
+        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
+        let canvas = Canvas::Pixels(BitMapBackend::with_buffer(&mut pixels, SIZE));
+        drawn(canvas, content).map_err(|e| e.to_string())?;
+        return png(path, &pixels).map_err(|e| e.to_string());
+    }
+    fs::write(path, draw_text(content)?).map_err(|e| e.to_string())
+}
+
+/// Draws a figure as text of SVG.
+///
+/// # Errors
+/// A sentence.
+pub fn draw_text(content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn Error>>) -> Outcome<String> {
+    let mut text = String::new();
+    drawn(Canvas::Vectors(SVGBackend::with_string(&mut text, SIZE)), content).map_err(|e| e.to_string())?;
+    Ok(text)
+}
+
+fn drawn(
+    canvas: Canvas<'_>,
+    content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
     // The one font, of which texts have their size: the figure needs none of the system.
     register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular())
         .map_err(|_| "the font of the figure cannot be read")?;
-    let drawn = |canvas: Canvas<'_>| -> Result<(), Box<dyn Error>> {
-        let area = canvas.into_drawing_area();
-        area.fill(&WHITE)?;
-        content(&area)?;
-        area.present()?;
-        Ok(())
-    };
-    if path.extension().is_some_and(|name| name.eq_ignore_ascii_case("png")) {
-        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
-        drawn(Canvas::Pixels(BitMapBackend::with_buffer(&mut pixels, SIZE))).map_err(|e| e.to_string())?;
-        return png(path, &pixels).map_err(|e| e.to_string());
-    }
-    let mut text = String::new();
-    drawn(Canvas::Vectors(SVGBackend::with_string(&mut text, SIZE))).map_err(|e| e.to_string())?;
-    fs::write(path, text).map_err(|e| e.to_string())
+    let area = canvas.into_drawing_area();
+    area.fill(&WHITE)?;
+    content(&area)?;
+    area.present()?;
+    Ok(())
 }
 
 fn png(path: &Path, pixels: &[u8]) -> Result<(), Box<dyn Error>> {

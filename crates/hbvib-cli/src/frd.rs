@@ -55,7 +55,7 @@ pub fn write(path: &Path, (built, places): (&Built, &Places), branch: &Branch, p
                 continue;
             }
             step += 1;
-            let _ = writeln!(text, "    1PSTEP{:>26}{h:>12}{step:>12}", step);
+            let _ = writeln!(text, "    1PSTEP{step:>26}{h:>12}{step:>12}");
             block(&mut text, places, ("DISP", hertz, step), x, |z| z.re);
             if h > 0 {
                 block(&mut text, places, ("DISPI", hertz, step), x, |z| z.im);

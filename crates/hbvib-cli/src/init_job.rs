@@ -125,7 +125,7 @@ pub fn text(choices: &Choices, folder: &Path) -> Outcome<Written> {
          harmonics = 3                       # fixed; instead, tolerance = 1e-3 chooses them at each point\n\n",
         format!("dof = {name}"),
     );
-    text += "[output]\ncsv = \"response.csv\"\nnpz = \"response.npz\"                # all harmonics; [restart] goes on from it\nfigure = \"response.svg\"\n";
+    text += "[output]\ncsv = \"response.csv\"\nnpz = \"response.npz\"                # all harmonics; [restart] goes on from it\nfigure = \"response.svg\"\nreport = \"report.html\"              # all of it on one page\n";
     if choices.has_mesh && !built.nodes.numbers().is_empty() {
         text += "vtu = \"motion.pvd\"                  # ParaView\n";
     }

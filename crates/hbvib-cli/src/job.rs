@@ -30,11 +30,15 @@ pub struct Job {
     pub study: Option<StudyPart>,
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
+    pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
     #[serde(skip)]
     pub folder: PathBuf,
+    /// The text of the job.
+    #[serde(skip)]
+    pub text: String,
 }
 
 /// An unbalance that rotates with the frequency of the response.
@@ -345,6 +349,14 @@ pub struct VerifyPart {
     pub csv: Option<PathBuf>,
 }
 
+/// A response of the same job that was stopped, and goes on.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RestartPart {
+    /// File of [output], npz; the new one may have its name.
+    pub from: PathBuf,
+}
+
 /// Files that are written.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -365,6 +377,8 @@ pub struct OutputPart {
     pub netcdf: Option<PathBuf>,
     /// Shapes at points of the curve, for CalculiX and what reads its results.
     pub frd: Option<PathBuf>,
+    /// One page of HTML with figures and tables, which needs no network.
+    pub report: Option<PathBuf>,
     /// Points and times of vtu, uff and frd.
     #[serde(default)]
     pub motion: MotionPart,
@@ -427,6 +441,9 @@ impl Job {
         if job.verify.is_some() && job.forced.is_none() {
             return Err(format!("{}: [verify] needs [forced]", path.display()));
         }
+        if job.restart.is_some() && job.forced.is_none() {
+            return Err(format!("{}: [restart] needs [forced]", path.display()));
+        }
         if !job.response.is_empty() && job.forced.is_none() {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
@@ -441,6 +458,7 @@ impl Job {
         let job: Result<Self, _> = toml::from_str(text);
         let mut job = job.map_err(|e| format!("{}{}", e.to_string().trim_end(), hint(e.message())))?;
         folder.clone_into(&mut job.folder);
+        text.clone_into(&mut job.text);
         Ok(job)
     }
 

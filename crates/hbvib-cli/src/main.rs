@@ -19,22 +19,27 @@ mod contact_tables;
 mod contacts;
 mod convert;
 mod counted;
+mod curve;
 mod end;
 mod events;
 mod faces;
 mod figure;
 mod files;
 mod frd;
+mod html_report;
 mod init;
 mod init_job;
 mod job;
 mod job_motion;
 mod job_studies;
 mod job_surfaces;
+mod line_chart;
 mod manual;
 mod map;
 mod mesh;
 mod mesh_elements;
+mod mesh_picture;
+mod model_report;
 mod modes_table;
 mod motion_files;
 mod nearest_name;
@@ -46,11 +51,15 @@ mod node_table;
 mod normals;
 mod npz;
 mod output;
+mod plot;
 mod points;
 mod progress;
 mod responses;
+mod restart;
 mod run_job;
 mod solver;
+mod static_contacts;
+mod stored_response;
 mod study;
 mod surface_pairs;
 mod tornado;
@@ -95,6 +104,7 @@ fn done(verb: &Verb) -> Outcome<u8> {
         Verb::Modes(of) => modes_table::modes(&of.job, of.strict),
         Verb::Init(of) => init::init(of),
         Verb::Convert(of) => convert::convert(of),
+        Verb::Plot(of) => plot::plot(of),
         Verb::Schema => schema(),
         Verb::Completions { shell } => print(&manual::completions(*shell)).map(|()| 0),
         Verb::Man => print(&manual::page()?).map(|()| 0),

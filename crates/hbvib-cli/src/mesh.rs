@@ -258,7 +258,7 @@ fn keyword_section(keyword: &str) -> Section {
         match option.split_once('=') {
             Some((name, value)) if name.trim().eq_ignore_ascii_case("nset") => set = Some(value.trim().to_uppercase()),
             Some((name, value)) if name.trim().eq_ignore_ascii_case("elset") => {
-                elements = Some(value.trim().to_uppercase())
+                elements = Some(value.trim().to_uppercase());
             }
             Some((name, value)) if name.trim().eq_ignore_ascii_case("type") => kind = value.trim().to_uppercase(),
             _ => ranges |= option.eq_ignore_ascii_case("generate"),

@@ -1,12 +1,12 @@
 //! Files with the motion of all nodes that a job names.
 
 use crate::build::{Built, Outcome};
+use crate::curve::Curve;
 use crate::files::Files;
 use crate::job::Job;
 use crate::node_motion::Places;
 use crate::points::shapes;
 use crate::{frd, netcdf_response, uff, vtu_series};
-use hbvib::Branch;
 
 /// Refuses what cannot be written, before anything is computed.
 ///
@@ -30,7 +30,8 @@ pub fn check(job: &Job, built: &Built) -> Outcome<()> {
 }
 
 /// Writes them; one that cannot be made is told, and costs no other.
-pub fn write(job: &Job, branch: &Branch, built: &Built, files: &mut Files<'_>) {
+pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>) {
+    let branch = curve.branch;
     let output = &job.output;
     let named = [&output.vtu, &output.uff, &output.netcdf, &output.frd];
     if named.into_iter().all(Option::is_none) {
@@ -40,10 +41,10 @@ pub fn write(job: &Job, branch: &Branch, built: &Built, files: &mut Files<'_>) {
     let points = shapes(branch, output.motion.points);
     let places = found.as_ref().ok();
     files.write(output.netcdf.as_deref(), &|path| {
-        netcdf_response::write(path, job, (built, places), branch)
+        netcdf_response::write(path, job, (built, places), curve)
     });
     files.write(output.uff.as_deref(), &|path| {
-        uff::write(path, (built, places), branch, &points)
+        uff::write(path, (built, places), curve, &points)
     });
     let needed = || -> Outcome<&Places> { found.as_ref().map_err(Clone::clone) };
     files.write(output.frd.as_deref(), &|path| {

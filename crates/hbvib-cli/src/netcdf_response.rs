@@ -1,10 +1,10 @@
 //! A response as NetCDF: all harmonics of all points by node and direction, with positions and units, for xarray, scipy and MATLAB.
 
 use crate::build::{Built, Outcome};
+use crate::curve::Curve;
 use crate::job::Job;
 use crate::netcdf::{Dataset, Kind, Numbers, UNLIMITED};
 use crate::node_motion::Places;
-use hbvib::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -19,7 +19,9 @@ type Of<'a> = Box<dyn Fn(Option<usize>, &[Complex64]) -> Numbers + 'a>;
 ///
 /// # Errors
 /// A sentence.
-pub fn write(path: &Path, job: &Job, (built, places): (&Built, Option<&Places>), branch: &Branch) -> Outcome<()> {
+pub fn write(path: &Path, job: &Job, (built, places): (&Built, Option<&Places>), curve: &Curve<'_>) -> Outcome<()> {
+    let branch = curve.branch;
+    let (omega, height, used) = (curve.omega(), curve.amplitude(), curve.harmonics_used());
     let length = job.output.units.length.as_deref().unwrap_or(MODEL);
     let mut data = Dataset::default();
     data.attribute("title", "Steady-state response, all harmonics");
@@ -29,25 +31,23 @@ pub fn write(path: &Path, job: &Job, (built, places): (&Built, Option<&Places>),
     data.attribute("convention", convention);
     data.attribute("response_dof", &built.nodes.name_of(branch.response_dof()));
     let point = data.dimension("point", UNLIMITED);
-    let harmonic = data.dimension("harmonic", branch.harmonics() + 1);
+    let harmonic = data.dimension("harmonic", curve.rows());
     let mut of: Vec<Of<'_>> = Vec::new();
     let frequency = [("units", "Hz"), ("long_name", "frequency of the excitation")];
     data.variable("frequency", Kind::Real, &[point], &frequency);
-    of.push(Box::new(|p, _| one(branch.omega()[p.unwrap_or(0)] / TAU)));
+    of.push(Box::new(|p, _| one(omega[p.unwrap_or(0)] / TAU)));
     let amplitude = [
         ("units", length),
         ("long_name", "amplitude of the response degree of freedom"),
     ];
     data.variable("amplitude", Kind::Real, &[point], &amplitude);
-    of.push(Box::new(|p, _| one(branch.amplitude()[p.unwrap_or(0)])));
+    of.push(Box::new(|p, _| one(height[p.unwrap_or(0)])));
     data.variable("harmonics_used", Kind::Real, &[point], &[("units", "1")]);
-    of.push(Box::new(|p, _| one(branch.harmonics_used()[p.unwrap_or(0)])));
+    of.push(Box::new(|p, _| one(used[p.unwrap_or(0)])));
     data.variable("harmonic", Kind::Integer, &[harmonic], &[("units", "1")]);
-    of.push(Box::new(|_, _| {
-        Numbers::Integers((0..=branch.harmonics() as i32).collect())
-    }));
+    of.push(Box::new(|_, _| Numbers::Integers((0..curve.rows() as i32).collect())));
     if branch.contacts() > 0 {
-        contacts(&mut data, &mut of, built, (branch, point));
+        contacts(&mut data, &mut of, built, (curve, point));
     }
     let mut motion = vec![point, harmonic];
     match places {
@@ -76,14 +76,12 @@ pub fn write(path: &Path, job: &Job, (built, places): (&Built, Option<&Places>),
             Numbers::Reals(all)
         }));
     }
-    let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
+    let mut x = Vec::new();
     let mut current = None;
-    data.write(path, branch.points(), &mut |variable, record| {
+    data.write(path, curve.points(), &mut |variable, record| {
         if record.is_some() && record != current {
             current = record;
-            branch
-                .harmonics_at(record.unwrap_or(0), &mut x)
-                .map_err(|e| e.to_string())?;
+            curve.harmonics_at(record.unwrap_or(0), &mut x)?;
         }
         Ok(of[variable](record, &x))
     })
@@ -94,8 +92,8 @@ fn one(value: f64) -> Numbers {
 }
 
 /// Adds the slip share of each contact and the names of the contacts.
-fn contacts<'a>(data: &mut Dataset, of: &mut Vec<Of<'a>>, built: &'a Built, (branch, point): (&'a Branch, usize)) {
-    let contact = data.dimension("contact", branch.contacts());
+fn contacts<'a>(data: &mut Dataset, of: &mut Vec<Of<'a>>, built: &'a Built, (curve, point): (&'a Curve<'a>, usize)) {
+    let contact = data.dimension("contact", curve.branch.contacts());
     let labels = built.labels();
     let width = labels.iter().map(String::len).max().unwrap_or(0).max(1);
     let letters = data.dimension("letters", width);
@@ -114,7 +112,7 @@ fn contacts<'a>(data: &mut Dataset, of: &mut Vec<Of<'a>>, built: &'a Built, (bra
     ];
     data.variable("slip_fraction", Kind::Real, &[point, contact], &slip);
     of.push(Box::new(move |p, _| {
-        Numbers::Reals(branch.slip_fraction_at(p.unwrap_or(0)).unwrap_or(&[]).to_vec())
+        Numbers::Reals(curve.slip(p.unwrap_or(0)).to_vec())
     }));
 }
 

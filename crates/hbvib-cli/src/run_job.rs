@@ -1,13 +1,16 @@
 //! Running a job: its analyses one after the other, and what each writes.
 
 use crate::build::{Built, Outcome, built};
+use crate::curve::{Before, Curve};
 use crate::end::{self, End};
 use crate::files::Files;
 use crate::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use crate::progress::watched;
 use crate::responses::{self, ResponsePart};
+use crate::restart::{self, Begin};
 use crate::solver::solver;
-use crate::{campbell, check, contact_tables, map, motion_files, output, study, tornado, verification};
+use crate::stored_response::Stored;
+use crate::{campbell, check, contact_tables, html_report, map, motion_files, output, study, tornado, verification};
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
     nonlinear_mode,
@@ -27,14 +30,15 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
     let built = built(&job)?;
     // A mistake in one part is told before another has taken its time.
     check::parts(&job, &built)?;
+    let stored = restart::stored(&job, &built)?;
     built.warn(strict)?;
     let mut files = Files::of(&job);
     let mut end = End::default();
     over_quantities(&job, &built, &stop, &mut files, &mut end);
     if (job.forced.is_some() || job.mode.is_some()) && end.goes_on(&stop) {
-        let solved = solve(&job, &built, &stop);
-        if let Some(branch) = end.take(solved, &stop) {
-            written(&job, &built, &branch, &mut files);
+        let solved = solve(&job, &built, stored, &stop);
+        if let Some((branch, before)) = end.take(solved, &stop) {
+            written(&job, &built, &Curve::new(&branch, before.as_ref()), &mut files);
             judged(&job, (&built.model, &branch), &stop, &mut files, &mut end);
         }
     }
@@ -42,14 +46,15 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
 }
 
 /// Writes what a branch has, points before all else.
-fn written(job: &Job, built: &Built, branch: &Branch, files: &mut Files<'_>) {
-    if branch.points() > 0 {
-        output::write(job, branch, files);
-        contact_tables::write(job, branch, built, files);
-        motion_files::write(job, branch, built, files);
+fn written(job: &Job, built: &Built, curve: &Curve<'_>, files: &mut Files<'_>) {
+    if curve.points() > 0 {
+        output::write(job, curve, files);
+        contact_tables::write(job, curve, built, files);
+        motion_files::write(job, curve, built, files);
+        html_report::write(job, curve, built, files);
     }
-    files.tell(&output::summary(branch));
-    files.tell(&responses::summary(branch));
+    files.tell(&output::summary(curve));
+    files.tell(&responses::summary(curve));
 }
 
 /// Tells why a branch ended, and compares points with integration in time.
@@ -114,23 +119,39 @@ fn verified(
     Ok(())
 }
 
-fn solve(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<Branch> {
+fn solve(job: &Job, built: &Built, stored: Option<Stored>, stop: &AtomicBool) -> Outcome<(Branch, Option<Before>)> {
     watched(stop, |hooks| match (&job.forced, &job.mode) {
-        (Some(part), _) => forced((part, &job.response), built, hooks),
-        (None, Some(part)) => mode(part, built, hooks),
+        (Some(part), _) => {
+            let mut run = |begin: &Begin<'_>| forced((part, &job.response), built, begin, hooks);
+            match stored {
+                Some(stored) => restart::go_on(part, stored, &mut run).map(|(branch, before)| (branch, Some(before))),
+                None => run(&Begin {
+                    from_hz: part.from_hz,
+                    at_hz: part.at_hz.clone(),
+                    guess: None,
+                })
+                .map(|branch| (branch, None)),
+            }
+        }
+        (None, Some(part)) => mode(part, built, hooks).map(|branch| (branch, None)),
         (None, None) => Err("names no analysis".into()),
     })
 }
 
-fn forced((part, watched): (&ForcedPart, &[ResponsePart]), built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+fn forced(
+    (part, watched): (&ForcedPart, &[ResponsePart]),
+    built: &Built,
+    begin: &Begin<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Outcome<Branch> {
     let dofs = responses::dofs(watched, built)?;
     let responses = responses::responses(watched, &dofs);
-    let at: Vec<f64> = part.at_hz.iter().map(|f| TAU * f).collect();
+    let at: Vec<f64> = begin.at_hz.iter().map(|f| TAU * f).collect();
     let range = ForcedOptions {
-        omega_start: TAU * part.from_hz,
+        omega_start: TAU * begin.from_hz,
         omega_stop: TAU * part.to_hz,
         at: &at,
-        guess: None,
+        guess: begin.guess,
         responses: &responses,
         together: false,
     };

@@ -1,8 +1,9 @@
 //! Universal files (UFF): nodes (2411), responses over frequency (58) and shapes at points of the curve (55).
 
 use crate::build::{Built, Outcome};
+use crate::curve::Curve;
 use crate::node_motion::{Places, harmonics};
-use hbvib::{Branch, Special};
+use hbvib::Special;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -20,17 +21,17 @@ const MARK: &str = "    -1\n";
 pub fn write(
     path: &Path,
     (built, places): (&Built, Option<&Places>),
-    branch: &Branch,
+    curve: &Curve<'_>,
     points: &[Special],
 ) -> Outcome<()> {
     let mut text = String::new();
     if let Some(places) = places.filter(|places| !places.at.is_empty()) {
         nodes(&mut text, places);
     }
-    responses(&mut text, built, branch)?;
+    responses(&mut text, built, curve)?;
     for special in places.map_or(&[][..], |_| points) {
         let Some(places) = places else { break };
-        for (h, x) in harmonics(places, branch, special.point)?.iter().enumerate() {
+        for (h, x) in harmonics(places, curve.branch, special.point)?.iter().enumerate() {
             if x.iter().flatten().any(|z| *z != Complex64::ZERO) {
                 shape(&mut text, places, (h, x), special);
             }
@@ -40,7 +41,7 @@ pub fn write(
 }
 
 fn nodes(text: &mut String, places: &Places) {
-    let _ = write!(text, "{MARK}  2411\n");
+    let _ = writeln!(text, "{MARK}  2411");
     for (number, x) in places.numbers.iter().zip(&places.at) {
         let _ = writeln!(text, "{number:>10}{:>10}{:>10}{:>10}", 1, 1, 11);
         let _ = writeln!(text, "{}{}{}", long(x[0], 'D'), long(x[1], 'D'), long(x[2], 'D'));
@@ -49,26 +50,26 @@ fn nodes(text: &mut String, places: &Places) {
 }
 
 /// The response degree of freedom in each harmonic that it has, complex over frequency.
-fn responses(text: &mut String, built: &Built, branch: &Branch) -> Outcome<()> {
-    let dof = branch.response_dof();
+fn responses(text: &mut String, built: &Built, curve: &Curve<'_>) -> Outcome<()> {
+    let (dof, omega, ndof) = (curve.branch.response_dof(), curve.omega(), curve.branch.ndof());
     let name = built.nodes.name_of(dof);
     let (node, direction) = match name.split_once('.') {
         Some((node, direction)) => (node.parse().unwrap_or(0), direction.parse().unwrap_or(0)),
         None => (dof as i64 + 1, 0),
     };
-    let rows = branch.harmonics() + 1;
-    let mut all: Vec<Vec<Complex64>> = vec![Vec::new(); rows];
-    for point in 0..branch.points() {
-        let x = branch.response_at(point).ok_or("a point has no response")?;
+    let mut all: Vec<Vec<Complex64>> = vec![Vec::new(); curve.rows()];
+    let mut x = Vec::new();
+    for point in 0..curve.points() {
+        curve.harmonics_at(point, &mut x)?;
         for (h, of) in all.iter_mut().enumerate() {
-            of.push(x.get(h).copied().unwrap_or_default());
+            of.push(x[h * ndof + dof]);
         }
     }
     for (h, values) in all.iter().enumerate() {
         if values.iter().all(|z| *z == Complex64::ZERO) {
             continue;
         }
-        let _ = write!(text, "{MARK}    58\n");
+        let _ = writeln!(text, "{MARK}    58");
         let _ = writeln!(text, "hbvib: response {name}, harmonic {h}");
         *text += "complex amplitude over the frequency of the excitation\nNONE\nNONE\nNONE\n";
         // A spectrum.
@@ -78,7 +79,7 @@ fn responses(text: &mut String, built: &Built, branch: &Branch) -> Outcome<()> {
             12, h, 0, 0, "NONE", "NONE", 0, 0
         );
         // Complex, in double precision, at uneven frequencies.
-        let first = branch.omega().first().map_or(0.0, |w| w / TAU);
+        let first = omega.first().map_or(0.0, |w| w / TAU);
         let _ = writeln!(
             text,
             "{:>10}{:>10}{:>10}{}{}{}",
@@ -97,7 +98,7 @@ fn responses(text: &mut String, built: &Built, branch: &Branch) -> Outcome<()> {
         ] {
             let _ = writeln!(text, "{kind:>10}{:>5}{:>5}{:>5} {label:<20} {units:<20}", 0, 0, 0);
         }
-        for (omega, z) in branch.omega().iter().zip(values) {
+        for (omega, z) in omega.iter().zip(values) {
             let _ = writeln!(text, "{}{}{}", fitted(omega / TAU), double(z.re), double(z.im));
         }
         *text += MARK;
@@ -108,7 +109,7 @@ fn responses(text: &mut String, built: &Built, branch: &Branch) -> Outcome<()> {
 /// A harmonic of all nodes at one point.
 fn shape(text: &mut String, places: &Places, (h, x): (usize, &[[Complex64; 3]]), special: &Special) {
     let hertz = special.omega / TAU;
-    let _ = write!(text, "{MARK}    55\n");
+    let _ = writeln!(text, "{MARK}    55");
     let _ = writeln!(text, "hbvib: motion in harmonic {h}");
     let _ = writeln!(
         text,

@@ -80,7 +80,10 @@ fn a_job_from_two_matrices_runs() {
     for (arguments, words) in [
         (&["init"][..], "needs --stiffness and --mass"),
         (&["init", "--stiffness", "stiffness.mtx"], "--mass"),
-        (&["init", "--matrices", "none.sti", "-o", "a.toml"], "none.dof: is missing"),
+        (
+            &["init", "--matrices", "none.sti", "-o", "a.toml"],
+            "none.dof: is missing",
+        ),
         (
             &["init", "--mesh", "none.inp", "-o", "a.toml"],
             "none.inp: cannot be read",

@@ -118,6 +118,11 @@ impl Array {
         matches!(self.kind, Kind::Complex(_))
     }
 
+    /// A table of several rows and columns whose columns are next to each other.
+    pub fn is_by_columns(&self) -> bool {
+        self.columns_first && self.shape.iter().filter(|n| **n > 1).count() > 1
+    }
+
     fn part(&self, k: usize) -> &[u8] {
         let size = self.kind.size();
         &self.bytes[k * size..(k + 1) * size]
