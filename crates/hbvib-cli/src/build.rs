@@ -8,6 +8,7 @@ use crate::faces::{self, Sector};
 use crate::job::{Amplitude, Job};
 use crate::mesh::Mesh;
 use crate::node_table::Nodes;
+use crate::surface_pairs::SurfacePairs;
 use hbvib::{MatrixKind, MatrixView, Model, Part, Speed, Storage, Values};
 use hbvib_io::{Dof, Files, Matrix, Report, Symmetry};
 use num_complex::Complex64;
@@ -94,15 +95,23 @@ pub fn built(job: &Job) -> Outcome<Built> {
         Some(path) => Some(Mesh::read(&job.path(path))?),
         None => None,
     };
-    let given = matrices(job, mesh.as_ref())?;
+    let mut given = matrices(job, mesh.as_ref())?;
+    let surfaces = SurfacePairs::of(job, mesh.as_ref(), &given.dofs)?;
+    if let Some(relative) = &surfaces.relative {
+        for (_, a) in given.own.iter_mut().chain(&mut given.next) {
+            *a = relative.matrix(a).map_err(|e| format!("[[contact]], surfaces: {e}"))?;
+        }
+    }
     let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
-    let nodes = Nodes::new(&given.dofs, mesh, part.absent);
+    let mut nodes = Nodes::new(&given.dofs, mesh, part.absent);
+    nodes.relative.clone_from(&surfaces.relative);
     let mut report = given.report.clone();
     expected(job, &mut report);
     let Sector {
         mut model,
         images,
         facts,
+        fixed,
         pairs: face_pairs,
         dofs: face_dofs,
         mut fixed,
@@ -111,6 +120,8 @@ pub fn built(job: &Job) -> Outcome<Built> {
         None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
     };
     report.facts.extend(facts);
+    let fixed = [&part.fixed[..], &fixed].concat();
+    surfaces.check(&fixed, &images, &|row| nodes.name_of(row))?;
     model.set_wave(part.engine_order);
     if part.faces.is_none() && !part.fixed.is_empty() {
         model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
@@ -133,7 +144,7 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let (names, areas) = add_contacts(job, (&nodes, &images), &mut model, &mut report)?;
+    let (names, areas) = add_contacts(job, (&nodes, &images, &surfaces), &mut model, &mut report)?;
     for one in &job.output.hysteresis {
         one.contact(&names)?;
     }
@@ -143,10 +154,17 @@ pub fn built(job: &Job) -> Outcome<Built> {
             Amplitude::Complex([re, im]) => Complex64::new(re, im),
         };
         let said = |e: &dyn Display| format!("[[force]] {}: {e}", i + 1);
-        let dof = nodes.dof(&force.dof).map_err(|e| said(&e))?;
-        model.add_force(dof, force.harmonic, value).map_err(|e| said(&e))?;
+        // A force on a relative motion acts on those that it is relative to as well.
+        for (dof, weight) in nodes.forced(&force.dof).map_err(|e| said(&e))? {
+            model
+                .add_force(dof, force.harmonic, weight * value)
+                .map_err(|e| said(&e))?;
+        }
     }
     for (i, one) in job.unbalance.iter().enumerate() {
+        nodes
+            .refuse_relative([one.dof_x, one.dof_y])
+            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
         model
             .add_unbalance(one.dof_x, one.dof_y, one.m_e, one.phase)
             .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
@@ -212,7 +230,7 @@ fn moved_mass(given: &Given) -> Vec<f64> {
 /// Adds the contacts of a job, and returns their names.
 fn add_contacts(
     job: &Job,
-    (nodes, images): (&Nodes, &HashMap<i64, i64>),
+    (nodes, images, surfaces): (&Nodes, &HashMap<i64, i64>, &SurfacePairs),
     model: &mut Model,
     report: &mut Report,
 ) -> Outcome<(Names, Vec<Option<f64>>)> {
@@ -220,11 +238,12 @@ fn add_contacts(
     for (i, part) in job.contact.iter().enumerate() {
         let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
         let first = model.contacts().len();
+        let between = surfaces.of_entry(i);
         let Entry {
             contacts,
             areas: of_entry,
             repeated,
-        } = contacts(job, part, nodes, images).map_err(|e| said(&e))?;
+        } = contacts((job, part), nodes, images, between).map_err(|e| said(&e))?;
         areas.extend(of_entry);
         if repeated > 0 {
             report.facts.push(said(&format!(

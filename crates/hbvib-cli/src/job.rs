@@ -2,6 +2,7 @@
 
 use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
+use crate::job_surfaces::SurfacesPart;
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
 use schemars::JsonSchema;
@@ -176,6 +177,8 @@ pub struct ContactPart {
     pub b: Vec<i64>,
     /// Instead of a and b: two lists of nodes that are matched by their distance.
     pub nodes: Option<NodesPart>,
+    /// Instead of a and b: faces of the mesh on both sides, which need not match.
+    pub surfaces: Option<SurfacesPart>,
     #[serde(default)]
     pub sector_offset: i64,
     #[serde(default)]
@@ -232,11 +235,12 @@ pub enum Node {
     Dofs(Vec<i64>),
 }
 
-/// Nodes, or the name of a set of the mesh.
+/// Nodes, or the name of a set of the mesh, or names of several sets, as one of each body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum NodeList {
     Set(String),
+    Sets(Vec<String>),
     Nodes(Vec<Node>),
 }
 

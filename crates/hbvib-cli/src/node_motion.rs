@@ -4,6 +4,7 @@ use crate::build::{Built, Outcome};
 use crate::faces::turned;
 use crate::job::{FrameName, Job};
 use hbvib::{Branch, Contact, State};
+use hbvib_io::RelativeCoordinates;
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -25,6 +26,8 @@ pub struct Places {
     direction: f64,
     sectors: usize,
     engine_order: i64,
+    /// Motions of contacts between surfaces, which are relative to others.
+    relative: Option<RelativeCoordinates>,
 }
 
 impl Places {
@@ -69,6 +72,7 @@ impl Places {
             direction: faces.map_or(1.0, |faces| faces.direction as f64),
             sectors: job.model.sectors,
             engine_order: job.model.engine_order,
+            relative: nodes.relative.clone(),
         })
     }
 
@@ -95,6 +99,11 @@ impl Places {
 
     /// Motion of each node along x, y and z, from one harmonic of all degrees of freedom.
     pub fn motion(&self, x: &[Complex64]) -> Vec<[Complex64; 3]> {
+        let mut recovered = x.to_vec();
+        if let Some(relative) = &self.relative {
+            relative.recover(&mut recovered);
+        }
+        let x = recovered;
         let of = |row: i64| usize::try_from(row).ok().and_then(|row| x.get(row)).copied();
         let all = self.rows.iter().enumerate();
         all.map(|(i, rows)| {

@@ -40,6 +40,10 @@ pub(crate) fn format(path: &Path, start: &[u8]) -> Option<String> {
     } else if extension == "op4" && start.iter().take(4).any(|b| *b == 0) {
         "a binary OP4 file whose head is not one of words of four bytes, which is not read: write it with FORM = FORMATTED"
             .into()
+    } else if is_universal(start) {
+        "a universal file (UFF), which has shapes and nodes (hbvib_io::read_universal) and no matrices that are read: write these as OP4 \
+         or Matrix Market"
+            .into()
     } else if extension == "op2" {
         "a Nastran OP2 file, which is not read: write the matrices by OUTPUT4 with ASSIGN OUTPUT4 = 'file.op4', FORM = \
          FORMATTED"
@@ -52,4 +56,10 @@ pub(crate) fn format(path: &Path, start: &[u8]) -> Option<String> {
 
 fn is_text(start: &[u8]) -> bool {
     core::str::from_utf8(start).is_ok() && !start.contains(&0)
+}
+
+/// Whether the first line is the mark of a universal file.
+fn is_universal(start: &[u8]) -> bool {
+    let line = start.split(|byte| *byte == b'\n').next().unwrap_or(&[]);
+    core::str::from_utf8(line).is_ok_and(|line| line.trim() == "-1")
 }
