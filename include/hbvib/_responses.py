@@ -170,7 +170,8 @@ class WatchedResponse:
         >>> model.add_force(0, 0.2)
         >>> model.add_force(0, 0.3j, harmonic=2)
         >>> branch = model.forced_response((0.6, 0.9), responses=[hbvib.Response(0, "peak")])
-        >>> branch.responses[0].kinks().omega.round(3)
-        array([])
+        >>> kinks = branch.responses[0].kinks()
+        >>> bool((kinks.after == kinks.before + 1).all())
+        True
         """
         return self._kinks

@@ -28,8 +28,10 @@ const SLOPES_DIFFER: f64 = 1e-5;
 /// Share of the arc below which a slope that changes in proportion to the share, times this factor, has no jump.
 const SMOOTH: (f64, f64) = (1e-5, 3.0);
 
-/// Share of the gap by which the far side is brought nearer, and halvings in search of the place where two parabolas meet.
-const BEYOND: f64 = 0.1;
+/// Distance from the place where two parabolas meet to the far side, over the change of that place and at most over the gap, and
+/// halvings in search of it.
+const SURE: f64 = 10.0;
+const MOST_AWAY: f64 = 0.3;
 const HALVINGS: usize = 50;
 
 /// Most solutions in search of a kink, and most kinks of an arc.
@@ -163,7 +165,7 @@ impl BranchTracer<'_> {
         between: &dyn Fn(&mut Self, &mut dyn Traceable, f64) -> Result<Option<Side>>,
     ) -> Result<Option<Side>> {
         let mut sides = Vec::new();
-        let (mut before, mut after) = (low, high);
+        let (mut before, mut after, mut expected) = (low, high, f64::INFINITY);
         // Both sides are kept with their places among those that were found.
         for _ in 0..MOST_PLACES {
             let gap = after.s - before.s;
@@ -182,15 +184,18 @@ impl BranchTracer<'_> {
                 Parabola::new(before, of(true).unwrap_or(low)),
                 Parabola::new(after, of(false).unwrap_or(high)),
             );
-            // Twice on one side: the other one is brought nearer.
+            // Twice on one side: the other one is brought as near as the place is known.
+            let meeting = meeting(&parabolas, (before.s, after.s));
+            let away = (SURE * (meeting - expected).abs()).max(NEXT_TO).min(MOST_AWAY * gap);
+            expected = meeting;
             let mut last = sides.iter().rev().map(|(_, is)| *is);
             let beyond = match (last.next(), last.next()) {
-                (Some(true), Some(true)) => BEYOND * gap,
-                (Some(false), Some(false)) => -BEYOND * gap,
+                (Some(true), Some(true)) => away,
+                (Some(false), Some(false)) => -away,
                 _ => 0.0,
             };
             let (first, last) = (before.s + 0.5 * NEXT_TO, after.s - 0.5 * NEXT_TO);
-            let s = (meeting(&parabolas, (before.s, after.s)) + beyond).clamp(first, last);
+            let s = (meeting + beyond).clamp(first, last);
             let Some(found) = between(self, analysis, s)? else {
                 return Ok(None);
             };

@@ -101,6 +101,15 @@ static void values(hbvib_model *model)
         REFUSED("leading", hbvib_branch_leading_response(branch, stored), HBVIB_E_INDEX, 2, "point");
     }
 
+    {
+        int64_t kinks = -1, before[1], after[1];
+        WORKS("kinks", hbvib_branch_response_kinks(branch, 1, 1, omega, value, before, after, &kinks));
+        EXPECT("one blade has none", kinks == 0);
+        WORKS("count", hbvib_branch_response_kinks(branch, 0, 0, NULL, NULL, NULL, NULL, &kinks));
+        REFUSED("response", hbvib_branch_response_kinks(branch, 3, 1, omega, value, before, after, &kinks), HBVIB_E_INDEX, 2, "response = 3");
+        WORKS("again", hbvib_branch_response_peaks(branch, 2, 8, omega, value, at, &peaks));
+    }
+
     /* At a peak the derivative at a fixed frequency is that of the peak. */
     WORKS("parameter", hbvib_parameter_init(&force, sizeof force));
     WORKS("derivative", hbvib_sensitivity(model, branch, at[0], HBVIB_OF_RESPONSE + 2, &force, 1, &derivative, 1, NULL, NULL, NULL));

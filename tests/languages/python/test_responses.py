@@ -138,6 +138,20 @@ raises("an unknown measure", ValueError, lambda: Response(0, "loudest"))
 raises("weights for other dofs", ValueError, lambda: Response([0, 1], weights=[1]))
 raises("a list of names", TypeError, lambda: model.forced_response((0.5, 0.6), responses=["tip"]))
 
+# Two forced harmonics: another instant takes the lead.
+two = chain(limit=0.3)
+two.add_force(1, 0.3 + 0.9j, harmonic=2)
+branch = two.forced_response((0.4, 1.2), harmonics=5, responses=[Response(2, "peak")])
+kinks = branch.responses[0].kinks()
+check("kinks are found", len(kinks.omega) >= 2, kinks)
+check("both sides are next to each other", (kinks.after == kinks.before + 1).all())
+stored = branch.responses[0].stored
+check("with one value", abs(stored[kinks.before] / stored[kinks.after] - 1).max() < 1e-6)
+sides = [[two.sensitivity(branch, int(p), hbvib.Parameter("force"), response=0)[0][0] for p in points] for points in kinks[2:]]
+check("and two derivatives", (abs(np.subtract(*sides)) > 1e-3).all(), sides)
+kept = pickle.loads(pickle.dumps(branch)).responses[0].kinks()
+check("a file has them", (kept.before == kinks.before).all() and (kept.omega == kinks.omega).all())
+
 # The same responses beside forced responses.
 mode = chain().nonlinear_mode((-1.5, 0.5), harmonics=5)
 rms, third = mode.read([Response(2, "rms", component="velocity"), Response([0, 1], "harmonic", harmonic=3)])
