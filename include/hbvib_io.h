@@ -1,6 +1,7 @@
 /* Readers of matrices that finite-element programs write: Matrix Market (also gzipped), Abaqus
- * *MATRIX GENERATE, CalculiX matrix storage, Harwell-Boeing text, Nastran OP4 (text and binary). A library of its
- * own, libhbvib_io: `cargo build --release -p hbvib-io`.
+ * *MATRIX GENERATE, CalculiX matrix storage, superelements of both (*USER ELEMENT), Harwell-Boeing text, Nastran
+ * OP4 (text and binary) and DMIG, NumPy and scipy (.npz), MATLAB (.mat), Ansys .full. A
+ * library of its own, libhbvib_io: `cargo build --release -p hbvib-io`.
  *
  *   hbvib_io_file *file = NULL;
  *   hbvib_io_matrix k;

@@ -11,11 +11,28 @@ mod build {
     pub type Outcome<T> = Result<T, String>;
 }
 #[allow(dead_code)]
+mod responses {
+    /// A response of a job, whose keys any table has here: the module of the command needs all of it.
+    pub type ResponsePart = std::collections::BTreeMap<String, f64>;
+}
+#[allow(dead_code)]
 #[path = "../../crates/hbvib-cli/src/job.rs"]
-mod job_file;
+mod job;
+#[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/job_motion.rs"]
+mod job_motion;
+#[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/job_studies.rs"]
+mod job_studies;
+#[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/job_surfaces.rs"]
+mod job_surfaces;
 #[allow(dead_code)]
 #[path = "../../crates/hbvib-cli/src/mesh.rs"]
 mod mesh;
+#[allow(dead_code)]
+#[path = "../../crates/hbvib-cli/src/mesh_elements.rs"]
+mod mesh_elements;
 #[path = "../../crates/hbvib-cli/src/nearest_name.rs"]
 mod nearest_name;
 
@@ -145,16 +162,18 @@ fn file(name: &str, data: &[u8]) -> PathBuf {
 /// A job file, and a mesh.
 pub fn job(data: &[u8]) -> bool {
     let path = file("job.toml", data);
-    let accepted = job_file::Job::read(&path).is_ok();
+    let accepted = job::Job::read(&path).is_ok();
     let mesh = mesh::Mesh::read(&path).is_ok();
     let _ = fs::remove_file(path);
     accepted || mesh
 }
 
-/// Files of matrices, of the format that the first byte selects; the three files of CalculiX are separated by zeros.
+/// Files of matrices, of the format that the first byte selects, and universal files; the three files of CalculiX are separated by
+/// zeros.
 pub fn element_files(data: &[u8]) -> bool {
     let (&format, content) = data.split_first().unwrap_or((&0, data));
-    if format % 6 == 5 {
+    let format = usize::from(format) % (NAMES.len() + 1);
+    let Some(name) = NAMES.get(format) else {
         let mut parts = content.splitn(3, |&byte| byte == 0);
         let paths = ["a.dof", "a.sti", "a.mas"].map(|name| file(name, parts.next().unwrap_or_default()));
         let accepted = hbvib_io::read(&paths[1]).is_ok();
@@ -162,10 +181,24 @@ pub fn element_files(data: &[u8]) -> bool {
             let _ = fs::remove_file(path);
         }
         return accepted;
-    }
-    let name = ["a.mtx", "a.op4", "a.rsa", "K_STIF1.mtx", "a.mtx.gz"][usize::from(format % 6)];
+    };
     let path = file(name, content);
-    let accepted = hbvib_io::read(&path).is_ok();
+    let accepted = hbvib_io::read(&path).is_ok() || hbvib_io::read_universal(&path).is_ok();
     let _ = fs::remove_file(path);
     accepted
 }
+
+/// Names that lead to each reader; the number after the last one is a job of CalculiX.
+pub const NAMES: [&str; 11] = [
+    "a.mtx",
+    "a.op4",
+    "a.rsa",
+    "K_STIF1.mtx",
+    "a.mtx.gz",
+    "a.npz",
+    "a.mat",
+    "a.full",
+    "a.pch",
+    "a.inp",
+    "a.uff",
+];

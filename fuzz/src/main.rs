@@ -149,20 +149,55 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<Vec<u8>> {
     found
 }
 
+/// Superelements of a small job in the formats of a name that are written.
+fn written(ending: &str) -> Vec<Vec<u8>> {
+    let job = Path::new("../crates/hbvib-io/tests/data/sector.sti");
+    let found = hbvib_io::read(job).expect("a job");
+    let formats = hbvib_io::Format::NAMES;
+    let path = std::env::temp_dir().join(format!("hbvib-fuzz-{}{ending}", std::process::id()));
+    let own = formats
+        .into_iter()
+        .filter(|(_, format)| hbvib_io::Format::of_path(&path) == Some(*format));
+    let mut all = Vec::new();
+    for (_, format) in own {
+        for path in hbvib_io::write(&path, &found, format).expect("files") {
+            all.push(fs::read(&path).expect("a file"));
+            let _ = fs::remove_file(path);
+        }
+    }
+    all.retain(|bytes| bytes.len() <= 1 << 14);
+    all
+}
+
 type Target = (&'static str, fn(&[u8]) -> bool, Vec<Vec<u8>>);
 
 fn targets() -> Vec<Target> {
     let data = Path::new("../crates/hbvib-io/tests/data");
     let mut element_files = Vec::new();
-    for (format, ending) in [".mtx", ".op4", "a", "STIF1.mtx", ".gz"].iter().enumerate() {
-        for mut bytes in files(data, &[ending]) {
+    let endings = [
+        ".mtx",
+        ".op4",
+        "a",
+        "STIF1.mtx",
+        ".gz",
+        ".npz",
+        ".mat",
+        ".full",
+        ".pch",
+        ".inp",
+        ".uff",
+    ];
+    for (format, ending) in endings.iter().enumerate() {
+        let mut found = files(data, &[ending]);
+        found.extend(written(ending));
+        for mut bytes in found {
             bytes.insert(0, format as u8);
             element_files.push(bytes);
         }
     }
     let of_job =
         ["dof", "sti", "mas"].map(|extension| fs::read(data.join(format!("sector.{extension}"))).expect("a file"));
-    element_files.push([&[5], &of_job.join(&0)[..]].concat());
+    element_files.push([&[hbvib_fuzz::NAMES.len() as u8], &of_job.join(&0)[..]].concat());
     let mut jobs = files(Path::new("../examples/jobs"), &[".toml", ".inp"]);
     jobs.extend(files(data, &[".inp"]));
     let matrices = (0..40_u8)

@@ -1,8 +1,9 @@
 """Matrices of finite-element programs as scipy matrices: hbvib.io.read(path).
 
-Matrix Market (also gzipped), Abaqus *MATRIX GENERATE (.mtx), CalculiX (.sti, .mas, .dof), Harwell-Boeing text, Nastran
-OP4 (text and binary). Needs scipy, and the library libhbvib_io: the wheel brings it; in the checkout, cargo build
---release -p hbvib-io builds it, and HBVIB_IO_LIBRARY names one elsewhere."""
+Matrix Market (also gzipped), Abaqus *MATRIX GENERATE (.mtx), CalculiX (.sti, .mas, .dof), superelements of both (*USER
+ELEMENT), Harwell-Boeing text, Nastran OP4 (text and binary) and DMIG, NumPy and scipy (.npz, .npy), MATLAB (.mat),
+Ansys .full. Needs scipy, and the library libhbvib_io: the wheel brings it; in the checkout, cargo build --release -p hbvib-io
+builds it, and HBVIB_IO_LIBRARY names one elsewhere."""
 
 from __future__ import annotations
 

@@ -1,18 +1,19 @@
 //! The model of a job.
 
 use crate::check::near;
-use crate::contacts::contacts;
+use crate::contacts::{Entry, contacts};
 use crate::counted::counted;
+use crate::events;
 use crate::faces::{self, Sector};
 use crate::job::{Amplitude, Job};
 use crate::mesh::Mesh;
 use crate::node_table::Nodes;
+use crate::surface_pairs::SurfacePairs;
 use hbvib::{MatrixKind, MatrixView, Model, Part, Speed, Storage, Values};
 use hbvib_io::{Dof, Files, Matrix, Report, Symmetry};
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::fmt::Display;
-use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -37,11 +38,34 @@ pub struct Built {
     /// Names of its contacts.
     pub names: Names,
     pub nodes: Nodes,
+    /// Area of each contact, where the job gives areas.
+    pub areas: Vec<Option<f64>>,
+    /// Left and right node of each pair of the faces, and the distance of the right one from the image of the left one.
+    pub face_pairs: Vec<(i64, i64, f64)>,
+    /// Degrees of freedom of both faces.
+    pub face_dofs: Vec<usize>,
+    /// Degrees of freedom that do not move.
+    pub fixed: Vec<usize>,
+    /// Real part of the diagonal of the stiffness.
+    pub stiffness_diagonal: Vec<f64>,
+    /// Mass that moves with each row in a translation along its direction; empty without names of nodes.
+    pub moved_mass: Vec<f64>,
     /// Report on the matrices, with what was taken as fixed or counted once.
     pub report: Report,
 }
 
 impl Built {
+    /// Name of each contact: that of its entry, with the number of the pair where there are several.
+    pub fn labels(&self) -> Vec<String> {
+        let of = |(name, range): &(String, Range<usize>)| -> Vec<String> {
+            match range.len() {
+                1 => vec![name.clone()],
+                pairs => (0..pairs).map(|pair| format!("{name}[{pair}]")).collect(),
+            }
+        };
+        self.names.iter().flat_map(of).collect()
+    }
+
     /// Tells the warnings.
     ///
     /// # Errors
@@ -49,7 +73,7 @@ impl Built {
     pub fn warn(&self, strict: bool) -> Outcome<()> {
         let warnings = &self.report.warnings;
         for warning in warnings {
-            let _ = writeln!(std::io::stderr(), "hbvib: warning: {warning}");
+            events::warning(warning);
         }
         if strict && !warnings.is_empty() {
             return Err(format!(
@@ -71,20 +95,32 @@ pub fn built(job: &Job) -> Outcome<Built> {
         Some(path) => Some(Mesh::read(&job.path(path))?),
         None => None,
     };
-    let given = matrices(job, mesh.as_ref())?;
+    let mut given = matrices(job, mesh.as_ref())?;
+    let surfaces = SurfacePairs::of(job, mesh.as_ref(), &given.dofs)?;
+    if let Some(relative) = &surfaces.relative {
+        for (_, a) in given.own.iter_mut().chain(&mut given.next) {
+            *a = relative.matrix(a).map_err(|e| format!("[[contact]], surfaces: {e}"))?;
+        }
+    }
     let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
-    let nodes = Nodes::new(&given.dofs, mesh, part.absent);
+    let mut nodes = Nodes::new(&given.dofs, mesh, part.absent);
+    nodes.relative.clone_from(&surfaces.relative);
     let mut report = given.report.clone();
     expected(job, &mut report);
     let Sector {
         mut model,
         images,
         facts,
+        fixed,
+        pairs: face_pairs,
+        dofs: face_dofs,
     } = match &part.faces {
         Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
         None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
     };
     report.facts.extend(facts);
+    let fixed = [&part.fixed[..], &fixed].concat();
+    surfaces.check(&fixed, &images, &|row| nodes.name_of(row))?;
     model.set_wave(part.engine_order);
     if part.faces.is_none() && !part.fixed.is_empty() {
         model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
@@ -106,7 +142,7 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let names = add_contacts(job, (&nodes, &images), &mut model, &mut report)?;
+    let (names, areas) = add_contacts(job, (&nodes, &images, &surfaces), &mut model, &mut report)?;
     for one in &job.output.hysteresis {
         one.contact(&names)?;
     }
@@ -116,10 +152,17 @@ pub fn built(job: &Job) -> Outcome<Built> {
             Amplitude::Complex([re, im]) => Complex64::new(re, im),
         };
         let said = |e: &dyn Display| format!("[[force]] {}: {e}", i + 1);
-        let dof = nodes.dof(&force.dof).map_err(|e| said(&e))?;
-        model.add_force(dof, force.harmonic, value).map_err(|e| said(&e))?;
+        // A force on a relative motion acts on those that it is relative to as well.
+        for (dof, weight) in nodes.forced(&force.dof).map_err(|e| said(&e))? {
+            model
+                .add_force(dof, force.harmonic, weight * value)
+                .map_err(|e| said(&e))?;
+        }
     }
     for (i, one) in job.unbalance.iter().enumerate() {
+        nodes
+            .refuse_relative([one.dof_x, one.dof_y])
+            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
         model
             .add_unbalance(one.dof_x, one.dof_y, one.m_e, one.phase)
             .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
@@ -137,22 +180,69 @@ pub fn built(job: &Job) -> Outcome<Built> {
         model,
         names,
         nodes,
+        areas,
+        face_pairs,
+        face_dofs,
+        fixed,
+        stiffness_diagonal: diagonal(&given),
+        moved_mass: moved_mass(&given),
         report,
     })
+}
+
+/// Real part of the diagonal of the stiffness.
+fn diagonal(given: &Given) -> Vec<f64> {
+    let stiffness = given.own.iter().find(|(kind, _)| *kind == MatrixKind::Stiffness);
+    let Some((_, a)) = stiffness else { return Vec::new() };
+    let mut diagonal = vec![0.0; a.rows];
+    let parts = if a.is_complex { 2 } else { 1 };
+    for (k, v) in a.values.chunks_exact(parts).enumerate() {
+        if a.row[k] == a.column[k] {
+            diagonal[a.row[k] as usize] += v[0];
+        }
+    }
+    diagonal
+}
+
+/// Sum of each row of the mass over the rows of its own direction.
+fn moved_mass(given: &Given) -> Vec<f64> {
+    let mass = given.own.iter().find(|(kind, _)| *kind == MatrixKind::Mass);
+    let Some((_, a)) = mass.filter(|(_, a)| a.rows == given.dofs.len()) else {
+        return Vec::new();
+    };
+    let direction = |row: u32| given.dofs[row as usize].1;
+    let mut moved = vec![0.0; a.rows];
+    let parts = if a.is_complex { 2 } else { 1 };
+    for (k, v) in a.values.chunks_exact(parts).enumerate() {
+        let (i, j) = (a.row[k], a.column[k]);
+        if direction(i) == direction(j) {
+            moved[i as usize] += v[0];
+            if i != j && matches!(a.symmetry, Symmetry::Symmetric | Symmetry::Hermitian) {
+                moved[j as usize] += v[0];
+            }
+        }
+    }
+    moved
 }
 
 /// Adds the contacts of a job, and returns their names.
 fn add_contacts(
     job: &Job,
-    (nodes, images): (&Nodes, &HashMap<i64, i64>),
+    (nodes, images, surfaces): (&Nodes, &HashMap<i64, i64>, &SurfacePairs),
     model: &mut Model,
     report: &mut Report,
-) -> Outcome<Names> {
-    let mut names = Names::new();
+) -> Outcome<(Names, Vec<Option<f64>>)> {
+    let (mut names, mut areas) = (Names::new(), Vec::new());
     for (i, part) in job.contact.iter().enumerate() {
         let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
         let first = model.contacts().len();
-        let (contacts, repeated) = contacts(job, part, nodes, images).map_err(|e| said(&e))?;
+        let between = surfaces.of_entry(i);
+        let Entry {
+            contacts,
+            areas: of_entry,
+            repeated,
+        } = contacts((job, part), nodes, images, between).map_err(|e| said(&e))?;
+        areas.extend(of_entry);
         if repeated > 0 {
             report.facts.push(said(&format!(
                 "left out, as images of pairs of the left face: {}",
@@ -181,7 +271,7 @@ fn add_contacts(
         }
         names.push((name, first..model.contacts().len()));
     }
-    Ok(names)
+    Ok((names, areas))
 }
 
 /// Compares the mass with that which the job expects.

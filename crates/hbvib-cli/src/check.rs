@@ -3,12 +3,12 @@
 use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
-use crate::{campbell, map, print, study, tornado};
+use crate::model_report::ModelReport;
+use crate::{campbell, map, motion_files, print, study, tornado};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
-use std::process::ExitCode;
 
 /// Natural frequencies that are told.
 const LISTED: usize = 3;
@@ -23,7 +23,7 @@ const NEAR: f64 = 0.01;
 ///
 /// # Errors
 /// A sentence; with `strict` also where there are warnings.
-pub fn check(path: &Path, strict: bool) -> Outcome<ExitCode> {
+pub fn check(path: &Path, strict: bool, json: bool) -> Outcome<u8> {
     let job = Job::read(path)?;
     let mut built = built(&job)?;
     parts(&job, &built)?;
@@ -40,11 +40,23 @@ pub fn check(path: &Path, strict: bool) -> Outcome<ExitCode> {
     let (facts, warnings) = frequencies(&job, model);
     built.report.facts.extend(facts);
     built.report.warnings.extend(warnings);
+    if job.needs_analysis(path).is_err() {
+        let fact = "the job names no analysis: run needs one, modes and check do not";
+        built.report.facts.push(fact.into());
+    }
+    let mut report = ModelReport::of(path, &job, &built);
+    built.report.facts.append(&mut report.facts);
+    built.report.warnings.append(&mut report.warnings);
     for fact in &built.report.facts {
         let _ = writeln!(text, "{fact}");
     }
     for warning in &built.report.warnings {
         let _ = writeln!(text, "warning: {warning}");
+    }
+    if json {
+        report.facts.clone_from(&built.report.facts);
+        report.warnings.clone_from(&built.report.warnings);
+        text = serde_json::to_string_pretty(&report).map_err(|e| e.to_string())? + "\n";
     }
     print(&text)?;
     let count = built.report.warnings.len();
@@ -55,7 +67,7 @@ pub fn check(path: &Path, strict: bool) -> Outcome<ExitCode> {
             counted(count, "warning")
         ));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
 /// Refuses parts of a job that cannot be computed.
@@ -63,6 +75,7 @@ pub fn check(path: &Path, strict: bool) -> Outcome<ExitCode> {
 /// # Errors
 /// A sentence.
 pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
+    motion_files::check(job, built)?;
     if let Some(part) = &job.campbell {
         campbell::check(part, &built.model)?;
     }

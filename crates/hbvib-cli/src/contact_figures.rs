@@ -1,18 +1,34 @@
 //! Figures of contacts: force over motion, and slip fraction over frequency.
 
 use crate::build::Outcome;
-use crate::figure::{bounds, draw, scientific};
-use hbvib::{Branch, ContactLoop, Special};
+use crate::curve::Curve;
+use crate::figure::{Area, bounds, draw, draw_text, scientific};
+use hbvib::{ContactLoop, Special};
 use plotters::prelude::{ChartBuilder, LineSeries, PathElement, Rectangle};
 use plotters::style::{BLACK, Color, HSLColor, Palette, Palette99, RGBColor, WHITE};
 use std::f64::consts::TAU;
 use std::path::Path;
+
+/// Outcome of drawing.
+type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Closed loops of force over motion, one for each point and direction.
 ///
 /// # Errors
 /// A sentence.
 pub fn loops_figure(path: &Path, label: &str, loops: &[(Special, ContactLoop)]) -> Outcome<()> {
+    draw(path, |area| loops_content(area, label, loops))
+}
+
+/// The same as text of SVG.
+///
+/// # Errors
+/// A sentence.
+pub fn loops_svg(label: &str, loops: &[(Special, ContactLoop)]) -> Outcome<String> {
+    draw_text(|area| loops_content(area, label, loops))
+}
+
+fn loops_content(area: &Area<'_>, label: &str, loops: &[(Special, ContactLoop)]) -> Drawn {
     let mut curves: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for (point, one) in loops {
         for d in 0..one.directions {
@@ -28,31 +44,29 @@ pub fn loops_figure(path: &Path, label: &str, loops: &[(Special, ContactLoop)]) 
     }
     let points = || curves.iter().flat_map(|(_, curve)| curve);
     let (x, y) = (bounds(points().map(|p| p.0)), bounds(points().map(|p| p.1)));
-    draw(path, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(format!("contact {label}"), ("sans-serif", 18))
-            .margin(16)
-            .x_label_area_size(44)
-            .y_label_area_size(90)
-            .build_cartesian_2d(x.clone(), y.clone())?;
-        let mesh = &mut chart.configure_mesh();
-        mesh.x_desc("relative motion").y_desc("force");
-        let (x_label, y_label) = (scientific(&x), scientific(&y));
-        mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).draw()?;
-        for (i, (name, curve)) in curves.iter().enumerate() {
-            let colour = Palette99::pick(i).to_rgba();
-            chart
-                .draw_series(LineSeries::new(curve.iter().copied(), &colour))?
-                .label(name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour));
-        }
+    let mut chart = ChartBuilder::on(area)
+        .caption(format!("contact {label}"), ("sans-serif", 18))
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(90)
+        .build_cartesian_2d(x.clone(), y.clone())?;
+    let mesh = &mut chart.configure_mesh();
+    mesh.x_desc("relative motion").y_desc("force");
+    let (x_label, y_label) = (scientific(&x), scientific(&y));
+    mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).draw()?;
+    for (i, (name, curve)) in curves.iter().enumerate() {
+        let colour = Palette99::pick(i).to_rgba();
         chart
-            .configure_series_labels()
-            .background_style(WHITE)
-            .border_style(BLACK)
-            .draw()?;
-        Ok(())
-    })
+            .draw_series(LineSeries::new(curve.iter().copied(), &colour))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour));
+    }
+    chart
+        .configure_series_labels()
+        .background_style(WHITE)
+        .border_style(BLACK)
+        .draw()?;
+    Ok(())
 }
 
 /// Number of colours of a slip map.
@@ -71,33 +85,44 @@ struct Stretch {
 ///
 /// # Errors
 /// A sentence.
-pub fn slip_figure(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<()> {
-    let stretches = stretches(branch, labels.len());
-    let hertz = || (0..branch.points()).map(|p| branch.omega()[p] / TAU);
-    draw(path, |area| {
-        let contacts = labels.len().max(1) as f64;
-        let mut chart = ChartBuilder::on(area)
-            .caption("slip fraction of each contact: white 0, dark red 1", ("sans-serif", 18))
-            .margin(16)
-            .x_label_area_size(44)
-            .y_label_area_size(110)
-            .build_cartesian_2d(bounds(hertz()), -0.5..contacts - 0.5)?;
-        chart.draw_series(stretches.iter().map(|s| {
-            let row = s.contact as f64;
-            Rectangle::new([(s.from, row - 0.5), (s.to, row + 0.5)], colour(s.level).filled())
-        }))?;
-        // Rows are centred at whole numbers.
-        let name = |row: &f64| {
-            let whole = (row - row.round()).abs() < 1e-6;
-            let label = labels.get(row.round() as usize).filter(|_| whole && *row > -0.5);
-            label.cloned().unwrap_or_default()
-        };
-        let mesh = &mut chart.configure_mesh();
-        mesh.x_desc("frequency, Hz").y_desc("contact");
-        mesh.y_labels((labels.len() + 2).clamp(3, 20)).y_label_formatter(&name);
-        mesh.disable_mesh().draw()?;
-        Ok(())
-    })
+pub fn slip_figure(path: &Path, curve: &Curve<'_>, labels: &[String]) -> Outcome<()> {
+    draw(path, |area| slip_content(area, curve, labels))
+}
+
+/// The same as text of SVG.
+///
+/// # Errors
+/// A sentence.
+pub fn slip_svg(curve: &Curve<'_>, labels: &[String]) -> Outcome<String> {
+    draw_text(|area| slip_content(area, curve, labels))
+}
+
+fn slip_content(area: &Area<'_>, curve: &Curve<'_>, labels: &[String]) -> Drawn {
+    let stretches = stretches(curve, labels.len());
+    let omega = curve.omega();
+    let hertz = || omega.iter().map(|w| w / TAU);
+    let contacts = labels.len().max(1) as f64;
+    let mut chart = ChartBuilder::on(area)
+        .caption("slip fraction of each contact: white 0, dark red 1", ("sans-serif", 18))
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(110)
+        .build_cartesian_2d(bounds(hertz()), -0.5..contacts - 0.5)?;
+    chart.draw_series(stretches.iter().map(|s| {
+        let row = s.contact as f64;
+        Rectangle::new([(s.from, row - 0.5), (s.to, row + 0.5)], colour(s.level).filled())
+    }))?;
+    // Rows are centred at whole numbers.
+    let name = |row: &f64| {
+        let whole = (row - row.round()).abs() < 1e-6;
+        let label = labels.get(row.round() as usize).filter(|_| whole && *row > -0.5);
+        label.cloned().unwrap_or_default()
+    };
+    let mesh = &mut chart.configure_mesh();
+    mesh.x_desc("frequency, Hz").y_desc("contact");
+    mesh.y_labels((labels.len() + 2).clamp(3, 20)).y_label_formatter(&name);
+    mesh.disable_mesh().draw()?;
+    Ok(())
 }
 
 fn colour(level: u32) -> RGBColor {
@@ -107,16 +132,16 @@ fn colour(level: u32) -> RGBColor {
 }
 
 /// Neighbours of one colour in a row, the larger slip last. A point reaches halfway to its neighbours.
-fn stretches(branch: &Branch, contacts: usize) -> Vec<Stretch> {
-    let points = branch.points();
-    let hertz = |p: usize| branch.omega()[p] / TAU;
+fn stretches(curve: &Curve<'_>, contacts: usize) -> Vec<Stretch> {
+    let (points, omega) = (curve.points(), curve.omega());
+    let hertz = |p: usize| omega[p] / TAU;
     let mut all: Vec<Stretch> = Vec::new();
     for contact in 0..contacts {
         let mut open: Option<Stretch> = None;
         for p in 0..points {
             let before = 0.5 * (hertz(p) + hertz(p.saturating_sub(1)));
             let after = 0.5 * (hertz(p) + hertz((p + 1).min(points - 1)));
-            let slip = branch.slip_fraction_at(p).and_then(|all| all.get(contact));
+            let slip = curve.slip(p).get(contact);
             // Any slip has a colour.
             let level = (slip.copied().unwrap_or(0.0) * LEVELS).ceil() as u32;
             let (from, to) = (before.min(after).min(hertz(p)), before.max(after).max(hertz(p)));

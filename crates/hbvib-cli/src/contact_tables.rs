@@ -1,7 +1,8 @@
 //! Hysteresis loops and slip fractions of contacts as CSV, and the figures beside them.
 
-use crate::build::{Names, Outcome};
+use crate::build::{Built, Names, Outcome};
 use crate::contact_figures::{loops_figure, slip_figure};
+use crate::curve::Curve;
 use crate::files::Files;
 use crate::job::{HysteresisPart, Job};
 use crate::points::chosen;
@@ -15,13 +16,12 @@ use std::path::Path;
 const MOST_SAMPLES: usize = 1_000_000;
 
 /// Writes what the job names. A loop that cannot be evaluated at one point is told, and left out.
-pub fn write(job: &Job, branch: &Branch, names: &Names, files: &mut Files<'_>) {
-    let labels = labels(names);
-    files.write(job.output.slip_csv.as_deref(), &|path| {
-        slip_table(path, branch, &labels)
-    });
+pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>) {
+    let branch = curve.branch;
+    let (labels, names) = (built.labels(), &built.names);
+    files.write(job.output.slip_csv.as_deref(), &|path| slip_table(path, curve, &labels));
     files.write(job.output.slip_figure.as_deref(), &|path| {
-        slip_figure(path, branch, &labels)
+        slip_figure(path, curve, &labels)
     });
     for part in &job.output.hysteresis {
         let contact = match part.contact(names) {
@@ -101,17 +101,6 @@ impl HysteresisPart {
     }
 }
 
-/// Name of each contact: that of its entry, with the number of the pair where there are several.
-fn labels(names: &Names) -> Vec<String> {
-    let of = |(name, range): &(String, std::ops::Range<usize>)| -> Vec<String> {
-        match range.len() {
-            1 => vec![name.clone()],
-            pairs => (0..pairs).map(|pair| format!("{name}[{pair}]")).collect(),
-        }
-    };
-    names.iter().flat_map(of).collect()
-}
-
 /// A row for each time of each point; motions and forces in all directions of the contact.
 fn loops_table(path: &Path, loops: &[(Special, ContactLoop)]) -> Outcome<()> {
     let directions = loops.first().map_or(1, |(_, one)| one.directions);
@@ -144,15 +133,16 @@ fn loops_table(path: &Path, loops: &[(Special, ContactLoop)]) -> Outcome<()> {
 }
 
 /// A row for each point of the curve, a column for each contact.
-fn slip_table(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<()> {
+fn slip_table(path: &Path, curve: &Curve<'_>, labels: &[String]) -> Outcome<()> {
     let mut text = String::from("frequency_hz");
     for label in labels {
         let _ = write!(text, ",\"{}\"", label.replace('"', "\"\""));
     }
     text += "\n";
-    for point in 0..branch.points() {
-        let _ = write!(text, "{:.16e}", branch.omega()[point] / TAU);
-        for slip in branch.slip_fraction_at(point).unwrap_or(&[]) {
+    let omega = curve.omega();
+    for (point, omega) in omega.iter().enumerate() {
+        let _ = write!(text, "{:.16e}", omega / TAU);
+        for slip in curve.slip(point) {
             let _ = write!(text, ",{slip:.10e}");
         }
         text += "\n";

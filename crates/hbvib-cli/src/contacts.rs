@@ -7,6 +7,7 @@ use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
 use crate::normals;
 use hbvib::{Contact, ContactKind, Frame};
+use hbvib_io::SurfaceContact;
 use std::collections::{HashMap, HashSet};
 
 /// Degrees of freedom of all pairs of an entry, those of one pair after another, and their areas.
@@ -14,22 +15,34 @@ struct Pairs {
     a: Vec<i64>,
     b: Vec<i64>,
     areas: Vec<f64>,
+    /// Normal of each pair, from side b to side a, where surfaces tell it.
+    normals: Vec<[f64; 3]>,
 }
 
-/// The contacts of an entry, one for each pair, and the number of pairs that were left out, because they repeat others. `images`
-/// has the degree of freedom of the left face for each one of the right face.
+/// The contacts of an entry.
+pub struct Entry {
+    /// One for each pair.
+    pub contacts: Vec<Contact>,
+    /// Area of each pair, where areas are given.
+    pub areas: Vec<Option<f64>>,
+    /// Pairs that were left out, because they repeat others.
+    pub repeated: usize,
+}
+
+/// The contacts of an entry. `images` has the degree of freedom of the left face for each one of the right face.
 ///
 /// # Errors
 /// A sentence that names the list and its node or degree of freedom.
 pub fn contacts(
-    job: &Job,
-    part: &ContactPart,
+    (job, part): (&Job, &ContactPart),
     table: &Nodes,
     images: &HashMap<i64, i64>,
-) -> Outcome<(Vec<Contact>, usize)> {
+    between: &[SurfaceContact],
+) -> Outcome<Entry> {
     let places = places(part);
     let width = places.len();
     let mut pairs = match &part.nodes {
+        _ if part.surfaces.is_some() => between_surfaces(part, table, images, between)?,
         Some(nodes) if part.a.is_empty() && part.b.is_empty() => matched(job, (part, nodes), places, table)?,
         Some(_) => return Err("names degrees of freedom and nodes: needs one of a and nodes".into()),
         None => {
@@ -39,10 +52,13 @@ pub fn contacts(
         }
     };
     let repeated = pairs.leave_out_repeated(width, images);
-    let frame = match part.normal {
-        Some(normal) => Some(Frame::new(normal, part.tangent).map_err(|e| e.to_string())?),
-        None if part.tangent.is_some() => return Err("tangent without normal".into()),
-        None => None,
+    if part.tangent.is_some() && part.normal.is_none() && part.surfaces.is_none() {
+        return Err("tangent without normal".into());
+    }
+    let frame = |k: usize| -> Outcome<Option<Frame>> {
+        let normal = part.normal.or_else(|| pairs.normals.get(k).copied());
+        let frame = normal.map(|normal| Frame::new(normal, part.tangent));
+        frame.transpose().map_err(|e| e.to_string())
     };
     let side = |dofs: &[i64]| -> Outcome<[Option<usize>; 3]> {
         let mut side = [None; 3];
@@ -65,12 +81,13 @@ pub fn contacts(
     let sides = pairs.a.chunks_exact(width).zip(pairs.b.chunks_exact(width));
     let all: Outcome<Vec<Contact>> = sides
         .zip(&pairs.areas)
-        .map(|((a, b), &area)| {
+        .enumerate()
+        .map(|(k, ((a, b), &area))| {
             Ok(Contact {
                 kind: kind.clone(),
                 dof_a: side(a)?,
                 dof_b: side(b)?,
-                frame,
+                frame: frame(k)?,
                 sector_offset: part.sector_offset,
                 kt: part.kt * area,
                 kn: part.kn * area,
@@ -84,7 +101,13 @@ pub fn contacts(
             })
         })
         .collect();
-    Ok((all?, repeated))
+    let given = part.nodes.as_ref().is_some_and(|nodes| !nodes.areas.is_empty());
+    let has_areas = given || part.surfaces.is_some();
+    Ok(Entry {
+        contacts: all?,
+        areas: pairs.areas.iter().map(|area| has_areas.then_some(*area)).collect(),
+        repeated,
+    })
 }
 
 impl Pairs {
@@ -127,6 +150,7 @@ fn places(part: &ContactPart) -> &'static [usize] {
         None => part.a.len() == 2,
     };
     match (part.kind, part.normal) {
+        _ if part.surfaces.is_some() => &[0, 1, 2],
         (KindName::Unilateral, None) => &[2],
         (KindName::Friction2d, None) => &[0, 2],
         (KindName::Friction3d, None) if two => &[0, 1],
@@ -151,6 +175,7 @@ fn listed(part: &ContactPart, width: usize) -> Outcome<Pairs> {
         a: part.a.clone(),
         b: if part.b.is_empty() { ground() } else { part.b.clone() },
         areas: vec![1.0; numbers / width],
+        normals: Vec::new(),
     })
 }
 
@@ -212,5 +237,48 @@ fn matched(job: &Job, (part, nodes): (&ContactPart, &NodesPart), places: &[usize
         a: dofs_a,
         b: dofs_b,
         areas,
+        normals: Vec::new(),
+    })
+}
+
+/// Contacts of nodes of a surface, whose motions are relative, with the ground. Those on the right face of a sector are their
+/// images on the left one, which take their areas.
+fn between_surfaces(
+    part: &ContactPart,
+    table: &Nodes,
+    images: &HashMap<i64, i64>,
+    between: &[SurfaceContact],
+) -> Outcome<Pairs> {
+    if part.nodes.is_some() || !part.a.is_empty() || !part.b.is_empty() || part.sector_offset != 0 {
+        return Err("names surfaces, which leave no room for a, b, nodes or sector_offset".into());
+    }
+    let mut all = Vec::new();
+    for contact in between {
+        let dofs = table.of_number(contact.node).map_err(|e| format!("surfaces: {e}"))?;
+        all.extend(dofs.map(|dofs| (dofs, contact)));
+    }
+    let known: HashMap<[i64; 3], usize> = all.iter().enumerate().map(|(k, (dofs, _))| (*dofs, k)).collect();
+    let image = |dofs: &[i64; 3]| -> Option<usize> {
+        let mut left = [-1; 3];
+        for (left, dof) in left.iter_mut().zip(dofs).filter(|(_, dof)| **dof != -1) {
+            *left = *images.get(dof)?;
+        }
+        known.get(&left).copied()
+    };
+    let mut areas: Vec<f64> = all.iter().map(|(_, contact)| contact.area).collect();
+    let lefts: Vec<Option<usize>> = all.iter().map(|(dofs, _)| image(dofs)).collect();
+    for (k, left) in lefts.iter().enumerate() {
+        if let Some(left) = left.filter(|left| *left != k) {
+            areas[left] += areas[k];
+        }
+    }
+    let kept: Vec<usize> = (0..all.len())
+        .filter(|k| lefts[*k].is_none_or(|left| left == *k))
+        .collect();
+    Ok(Pairs {
+        a: kept.iter().flat_map(|k| all[*k].0).collect(),
+        b: vec![-1; 3 * kept.len()],
+        areas: kept.iter().map(|k| areas[*k]).collect(),
+        normals: kept.iter().map(|k| all[*k].1.normal.map(|x| -x)).collect(),
     })
 }

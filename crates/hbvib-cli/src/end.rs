@@ -1,12 +1,14 @@
 //! How a run ends: signals that stop it, and its exit code.
 
 use crate::build::Outcome;
+use crate::events;
 use crate::files::Files;
 use signal_hook::consts::{SIGINT, SIGTERM};
-use std::io::Write;
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Exit code of an error: nothing was computed, or one of several analyses failed.
+pub const FAILED: u8 = 1;
 
 /// Exit code of a run that was stopped early and kept its points.
 const STOPPED: u8 = 2;
@@ -63,7 +65,7 @@ impl End {
             Ok(found) => return Some(found),
             Err(sentence) if stop.load(Ordering::Relaxed) => self.early(&format!("the run was stopped: {sentence}")),
             Err(sentence) => {
-                tell(&sentence);
+                events::error(&sentence);
                 self.failed = true;
             }
         }
@@ -72,26 +74,22 @@ impl End {
 
     /// Tells an early end.
     pub fn early(&mut self, sentence: &str) {
-        tell(sentence);
+        events::error(sentence);
         self.early = true;
     }
 
     /// The exit code: an error before an output that was not made, before an early end, before another solution.
-    pub fn code(&self, files: &Files<'_>) -> ExitCode {
+    pub fn code(&self, files: &Files<'_>) -> u8 {
         if self.failed {
-            ExitCode::FAILURE
+            FAILED
         } else if !files.complete() {
-            ExitCode::from(UNWRITTEN)
+            UNWRITTEN
         } else if self.early {
-            ExitCode::from(STOPPED)
+            STOPPED
         } else if self.differs {
-            ExitCode::from(DIFFERENT)
+            DIFFERENT
         } else {
-            ExitCode::SUCCESS
+            0
         }
     }
-}
-
-fn tell(sentence: &str) {
-    let _ = writeln!(std::io::stderr(), "hbvib: {sentence}");
 }

@@ -1,7 +1,8 @@
 //! A sector from its faces.
 
 use crate::build::Outcome;
-use crate::job::{FacesPart, FrameName, Job, Node};
+use crate::job::{FacesPart, FrameName, Job, Node, NodeList};
+use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
 use hbvib::{Model, SectorDescription, SectorFrame};
@@ -23,6 +24,7 @@ struct Faces {
     /// Degrees of freedom of nodes whose image is fixed.
     fixed: Vec<usize>,
     facts: Vec<String>,
+    pairs: Vec<(i64, i64, f64)>,
 }
 
 /// The model of a sector.
@@ -32,6 +34,12 @@ pub struct Sector {
     pub images: HashMap<i64, i64>,
     /// Nodes that were fixed as their image is.
     pub facts: Vec<String>,
+    /// Fixed degrees of freedom beside those of the job.
+    pub fixed: Vec<usize>,
+    /// Left and right node of each pair, and the distance of the right one from the image of the left one.
+    pub pairs: Vec<(i64, i64, f64)>,
+    /// Degrees of freedom of both faces.
+    pub dofs: Vec<usize>,
 }
 
 impl Sector {
@@ -41,6 +49,9 @@ impl Sector {
             model,
             images: HashMap::new(),
             facts: Vec::new(),
+            fixed: Vec::new(),
+            pairs: Vec::new(),
+            dofs: Vec::new(),
         }
     }
 }
@@ -89,6 +100,9 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         model,
         images,
         facts: faces.facts,
+        fixed: faces.fixed,
+        pairs: faces.pairs,
+        dofs: faces.left.iter().chain(&faces.right).flatten().copied().collect(),
     })
 }
 
@@ -128,6 +142,7 @@ fn in_order(part: &FacesPart, left: &[Node], right: &[Node]) -> Outcome<Faces> {
         coordinates,
         fixed: Vec::new(),
         facts: Vec::new(),
+        pairs: Vec::new(),
     })
 }
 
@@ -146,12 +161,11 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
     let angle = part.direction as f64 * TAU / job.model.sectors as f64;
     let images: Points = at_left.iter().map(|x| turned(*x, part.axis, angle)).collect();
     let size = images.iter().map(norm).fold(0.0, f64::max);
-    let list = |name, nodes, at| Positioned { name, nodes, at };
-    let partner = pairs(
-        &list("left", left, &images),
-        &list("right", right, &at_right),
-        NEAR * size,
-    )?;
+    let groups = [
+        of_sets(&part.left, left.len(), mesh),
+        of_sets(&part.right, right.len(), mesh),
+    ];
+    let partner = partners((left, &images), (right, &at_right), (NEAR * size, groups, mesh))?;
     let mut faces = Faces {
         left: Vec::new(),
         right: Vec::new(),
@@ -159,6 +173,7 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
         coordinates: None,
         fixed: Vec::new(),
         facts: Vec::new(),
+        pairs: Vec::new(),
     };
     let mut coordinates = (Points::new(), Points::new());
     for (i, &j) in partner.iter().enumerate() {
@@ -167,6 +182,10 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
             Node::Dofs(_) => Err(format!("{name}[{i}] names degrees of freedom, others name nodes")),
         };
         let sides = (dofs_of("left", i, &left[i])?, dofs_of("right", j, &right[j])?);
+        if let (Node::Number(left), Node::Number(right)) = (&left[i], &right[j]) {
+            let apart = [0, 1, 2].map(|k| images[i][k] - at_right[j][k]);
+            faces.pairs.push((*left, *right, norm(&apart)));
+        }
         if let (None, _) | (_, None) = sides {
             // Fixed on one side is fixed on both: they are one node of the wheel.
             let moving = [
@@ -199,6 +218,62 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
     Ok(faces)
 }
 
+/// Number of the set that each node of a list comes from, where it names several.
+fn of_sets(list: &NodeList, nodes: usize, mesh: &Mesh) -> Option<Vec<usize>> {
+    let NodeList::Sets(sets) = list else { return None };
+    let sizes = sets.iter().map(|set| mesh.set(set).map_or(0, <[i64]>::len));
+    let all: Vec<usize> = sizes.enumerate().flat_map(|(i, size)| vec![i; size]).collect();
+    (all.len() == nodes).then_some(all)
+}
+
+/// Place in the right list of the image of each left node. Nodes of several sets are matched set by set; others all together, or
+/// where that is not one to one, as with bodies that touch, body by body.
+fn partners(
+    (left, images): (&[Node], &[[f64; 3]]),
+    (right, at_right): (&[Node], &[[f64; 3]]),
+    (near, groups, mesh): (f64, [Option<Vec<usize>>; 2], &Mesh),
+) -> Outcome<Vec<usize>> {
+    let within = |of_left: &[usize], of_right: &[usize]| -> Outcome<Vec<usize>> {
+        let mut partner = vec![usize::MAX; left.len()];
+        let count = of_left.iter().chain(of_right).max().map_or(0, |group| group + 1);
+        for group in 0..count {
+            let of = |groups: &[usize]| -> Vec<usize> { (0..groups.len()).filter(|i| groups[*i] == group).collect() };
+            let (own, others) = (of(of_left), of(of_right));
+            let part =
+                |all: &[Node], places: &[usize]| -> Vec<Node> { places.iter().map(|i| all[*i].clone()).collect() };
+            let at = |all: &[[f64; 3]], places: &[usize]| -> Vec<[f64; 3]> { places.iter().map(|i| all[*i]).collect() };
+            let (a, b) = (part(left, &own), part(right, &others));
+            let (at_a, at_b) = (at(images, &own), at(at_right, &others));
+            let list = |name, nodes, at| Positioned { name, nodes, at };
+            let found = pairs(&list("left", &a, &at_a), &list("right", &b, &at_b), near)?;
+            for (i, j) in found.into_iter().enumerate() {
+                partner[own[i]] = others[j];
+            }
+        }
+        Ok(partner)
+    };
+    if let [Some(a), Some(b)] = &groups {
+        return within(a, b);
+    }
+    let together = within(&vec![0; left.len()], &vec![0; right.len()]);
+    if together.is_ok() {
+        return together;
+    }
+    let elements: Vec<Vec<i64>> = mesh.drawn().into_iter().map(|element| element.nodes.clone()).collect();
+    let bodies = hbvib_io::bodies(&elements);
+    let of = |nodes: &[Node]| -> Option<Vec<usize>> {
+        let body = |node: &Node| match node {
+            Node::Number(number) => bodies.get(number).copied(),
+            Node::Dofs(_) => None,
+        };
+        nodes.iter().map(body).collect()
+    };
+    match (of(left), of(right)) {
+        (Some(a), Some(b)) => within(&a, &b).or(together),
+        _ => together,
+    }
+}
+
 /// A degree of freedom; `None` for -1.
 fn given(dof: i64) -> Outcome<Option<usize>> {
     match dof {
@@ -212,7 +287,7 @@ fn norm(x: &[f64; 3]) -> f64 {
 }
 
 /// A point turned about an axis through the origin (Rodrigues' formula).
-fn turned(x: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
+pub fn turned(x: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
     let n = axis.map(|a| a / norm(&axis));
     let (sin, cos) = angle.sin_cos();
     let along = n[0] * x[0] + n[1] * x[1] + n[2] * x[2];

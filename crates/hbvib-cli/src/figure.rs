@@ -22,24 +22,37 @@ pub type Area<'a> = DrawingArea<Canvas<'a>, Shift>;
 /// # Errors
 /// A sentence.
 pub fn draw(path: &Path, content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn Error>>) -> Outcome<()> {
+    if path.extension().is_some_and(|name| name.eq_ignore_ascii_case("png")) {
+        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
+        let canvas = Canvas::Pixels(BitMapBackend::with_buffer(&mut pixels, SIZE));
+        drawn(canvas, content).map_err(|e| e.to_string())?;
+        return png(path, &pixels).map_err(|e| e.to_string());
+    }
+    fs::write(path, draw_text(content)?).map_err(|e| e.to_string())
+}
+
+/// Draws a figure as text of SVG.
+///
+/// # Errors
+/// A sentence.
+pub fn draw_text(content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn Error>>) -> Outcome<String> {
+    let mut text = String::new();
+    drawn(Canvas::Vectors(SVGBackend::with_string(&mut text, SIZE)), content).map_err(|e| e.to_string())?;
+    Ok(text)
+}
+
+fn drawn(
+    canvas: Canvas<'_>,
+    content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
     // The one font, of which texts have their size: the figure needs none of the system.
     register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular())
         .map_err(|_| "the font of the figure cannot be read")?;
-    let drawn = |canvas: Canvas<'_>| -> Result<(), Box<dyn Error>> {
-        let area = canvas.into_drawing_area();
-        area.fill(&WHITE)?;
-        content(&area)?;
-        area.present()?;
-        Ok(())
-    };
-    if path.extension().is_some_and(|name| name.eq_ignore_ascii_case("png")) {
-        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
-        drawn(Canvas::Pixels(BitMapBackend::with_buffer(&mut pixels, SIZE))).map_err(|e| e.to_string())?;
-        return png(path, &pixels).map_err(|e| e.to_string());
-    }
-    let mut text = String::new();
-    drawn(Canvas::Vectors(SVGBackend::with_string(&mut text, SIZE))).map_err(|e| e.to_string())?;
-    fs::write(path, text).map_err(|e| e.to_string())
+    let area = canvas.into_drawing_area();
+    area.fill(&WHITE)?;
+    content(&area)?;
+    area.present()?;
+    Ok(())
 }
 
 fn png(path: &Path, pixels: &[u8]) -> Result<(), Box<dyn Error>> {
@@ -60,14 +73,17 @@ pub fn bounds(values: impl Iterator<Item = f64>) -> Range<f64> {
     (low - room)..(high + room)
 }
 
-/// Writes the numbers of an axis; what is round-off beside its range is 0.
+/// Writes the numbers of an axis; what is round-off beside its range is 0. A short range of large numbers has more digits.
 pub fn scientific(range: &Range<f64>) -> impl Fn(&f64) -> String + use<> {
-    let small = 1e-9 * (range.end - range.start);
+    let length = range.end - range.start;
+    let small = 1e-9 * length;
+    let largest = range.start.abs().max(range.end.abs());
+    let digits = (largest / length).log10().max(0.0).ceil() as usize + 2;
     move |v| {
         if v.abs() < small {
             "0".into()
         } else {
-            format!("{v:.2e}")
+            format!("{v:.*e}", digits.min(12))
         }
     }
 }

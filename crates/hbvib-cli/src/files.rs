@@ -2,6 +2,7 @@
 //! whole or not there; one that fails costs no other.
 
 use crate::build::Outcome;
+use crate::events;
 use crate::job::Job;
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -35,6 +36,7 @@ impl<'a> Files<'a> {
         let path = self.job.path(path);
         match save(&path, write) {
             Ok(()) => {
+                events::wrote(&path);
                 self.written.push(path);
                 true
             }
@@ -45,9 +47,16 @@ impl<'a> Files<'a> {
         }
     }
 
+    /// Writes a file of a series, whose list is named instead of each of them.
+    pub fn write_part(&mut self, path: &Path, write: &dyn Fn(&Path) -> Outcome<()>) {
+        let count = self.written.len();
+        self.write(Some(path), write);
+        self.written.truncate(count);
+    }
+
     /// Tells an output that could not be made.
     pub fn fail(&mut self, sentence: String) {
-        let _ = writeln!(io::stderr(), "hbvib: {sentence}");
+        events::error(&sentence);
         self.failures.push(sentence);
     }
 

@@ -1,6 +1,8 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
+use crate::job_surfaces::SurfacesPart;
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
 use schemars::JsonSchema;
@@ -28,11 +30,15 @@ pub struct Job {
     pub study: Option<StudyPart>,
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
+    pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
     #[serde(skip)]
     pub folder: PathBuf,
+    /// The text of the job.
+    #[serde(skip)]
+    pub text: String,
 }
 
 /// An unbalance that rotates with the frequency of the response.
@@ -171,6 +177,8 @@ pub struct ContactPart {
     pub b: Vec<i64>,
     /// Instead of a and b: two lists of nodes that are matched by their distance.
     pub nodes: Option<NodesPart>,
+    /// Instead of a and b: faces of the mesh on both sides, which need not match.
+    pub surfaces: Option<SurfacesPart>,
     #[serde(default)]
     pub sector_offset: i64,
     #[serde(default)]
@@ -227,11 +235,12 @@ pub enum Node {
     Dofs(Vec<i64>),
 }
 
-/// Nodes, or the name of a set of the mesh.
+/// Nodes, or the name of a set of the mesh, or names of several sets, as one of each body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum NodeList {
     Set(String),
+    Sets(Vec<String>),
     Nodes(Vec<Node>),
 }
 
@@ -340,6 +349,14 @@ pub struct VerifyPart {
     pub csv: Option<PathBuf>,
 }
 
+/// A response of the same job that was stopped, and goes on.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RestartPart {
+    /// File of [output], npz; the new one may have its name.
+    pub from: PathBuf,
+}
+
 /// Files that are written.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -352,6 +369,21 @@ pub struct OutputPart {
     pub slip_csv: Option<PathBuf>,
     /// The same as a figure, a row for each contact.
     pub slip_figure: Option<PathBuf>,
+    /// Motion of the mesh over the period at points of the curve, for ParaView: a list of times (.pvd) beside a folder with its name.
+    pub vtu: Option<PathBuf>,
+    /// Universal file: nodes (2411), the response over frequency (58), shapes at points of the curve (55).
+    pub uff: Option<PathBuf>,
+    /// All harmonics of all points by node and direction, with units (NetCDF).
+    pub netcdf: Option<PathBuf>,
+    /// Shapes at points of the curve, for CalculiX and what reads its results.
+    pub frd: Option<PathBuf>,
+    /// One page of HTML with figures and tables, which needs no network.
+    pub report: Option<PathBuf>,
+    /// Points and times of vtu, uff and frd.
+    #[serde(default)]
+    pub motion: MotionPart,
+    #[serde(default)]
+    pub units: UnitsPart,
     #[serde(default)]
     pub hysteresis: Vec<HysteresisPart>,
 }
@@ -398,23 +430,8 @@ impl Job {
     /// A sentence with file and line; the nearest known key for one that is unknown.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
-        let mut job: Self = toml::from_str(&text)
-            .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
-        path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        let named = [
-            job.forced.is_some(),
-            job.mode.is_some(),
-            job.campbell.is_some(),
-            job.study.is_some(),
-            job.map.is_some(),
-            job.tornado.is_some(),
-        ];
-        if !named.contains(&true) {
-            return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
-                path.display()
-            ));
-        }
+        let job = Self::parse(&text, path.parent().unwrap_or(Path::new("")));
+        let job = job.map_err(|e| format!("{}: {e}", path.display()))?;
         if job.forced.is_some() && job.mode.is_some() {
             return Err(format!(
                 "{}: names two analyses: needs one of [forced] and [mode]",
@@ -424,10 +441,47 @@ impl Job {
         if job.verify.is_some() && job.forced.is_none() {
             return Err(format!("{}: [verify] needs [forced]", path.display()));
         }
+        if job.restart.is_some() && job.forced.is_none() {
+            return Err(format!("{}: [restart] needs [forced]", path.display()));
+        }
         if !job.response.is_empty() && job.forced.is_none() {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
         Ok(job)
+    }
+
+    /// A job from its text, with the folder on which its paths depend.
+    ///
+    /// # Errors
+    /// A sentence with the line; the nearest known key for one that is unknown.
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, String> {
+        let job: Result<Self, _> = toml::from_str(text);
+        let mut job = job.map_err(|e| format!("{}{}", e.to_string().trim_end(), hint(e.message())))?;
+        folder.clone_into(&mut job.folder);
+        text.clone_into(&mut job.text);
+        Ok(job)
+    }
+
+    /// Refuses a job that names no analysis.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn needs_analysis(&self, path: &Path) -> Result<(), String> {
+        let named = [
+            self.forced.is_some(),
+            self.mode.is_some(),
+            self.campbell.is_some(),
+            self.study.is_some(),
+            self.map.is_some(),
+            self.tornado.is_some(),
+        ];
+        if !named.contains(&true) {
+            return Err(format!(
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
+                path.display()
+            ));
+        }
+        Ok(())
     }
 
     /// A path of the job.

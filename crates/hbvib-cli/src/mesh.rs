@@ -1,16 +1,22 @@
-//! Nodes of a mesh: their positions, and sets of them.
+//! A mesh: positions of its nodes, sets of them, and elements.
 
 use crate::build::Outcome;
-use std::collections::HashMap;
+use crate::mesh_elements::{Element, Shape};
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-/// Positions and sets of nodes.
+/// Positions and sets of nodes, and elements between them.
 #[derive(Debug, Default)]
 pub struct Mesh {
     path: PathBuf,
     positions: HashMap<i64, [f64; 3]>,
     /// By names in capital letters.
     sets: HashMap<String, Vec<i64>>,
+    elements: Vec<Element>,
+    /// Numbers of the elements of sets, by names in capital letters.
+    element_sets: HashMap<String, Vec<i64>>,
+    /// Words of an element whose lines go on.
+    open: Vec<i64>,
 }
 
 /// Where the lines of a mesh belong.
@@ -19,6 +25,10 @@ enum Section {
     Nodes(Option<String>),
     /// To a set, whose lines may be ranges.
     Set(String, bool),
+    /// To a set of elements, whose lines may be ranges.
+    ElementSet(String, bool),
+    /// To elements of a shape, and to a set of them.
+    Elements(Shape, Option<String>),
     Other,
 }
 
@@ -44,6 +54,7 @@ impl Mesh {
                 continue;
             }
             if let Some(keyword) = line.strip_prefix('*') {
+                mesh.finish_element().map_err(|e| format!("line {}: {e}", k + 1))?;
                 section = keyword_section(keyword);
                 continue;
             }
@@ -51,11 +62,93 @@ impl Mesh {
             match &section {
                 Section::Nodes(set) => mesh.add_node(&words, set.as_deref()),
                 Section::Set(name, ranges) => mesh.add_to_set(&words, name, *ranges),
+                Section::ElementSet(name, ranges) => mesh.add_to_element_set(&words, name, *ranges),
+                Section::Elements(shape, set) => mesh.add_element(&words, *shape, set.as_deref()),
                 Section::Other => Ok(()),
             }
             .map_err(|e| format!("line {}: {e}", k + 1))?;
         }
+        mesh.finish_element()?;
+        mesh.sets_of_elements();
         Ok(mesh)
+    }
+
+    fn add_to_element_set(&mut self, words: &[&str], set: &str, ranges: bool) -> Outcome<()> {
+        let mut found = Vec::new();
+        for word in words {
+            match word.parse() {
+                Ok(number) => found.push(number),
+                Err(_) => found.extend(
+                    self.element_sets
+                        .get(&word.to_uppercase())
+                        .into_iter()
+                        .flatten()
+                        .copied(),
+                ),
+            }
+        }
+        if let (true, &[first, last, ref step @ ..]) = (ranges, &found[..]) {
+            let step = step.first().copied().unwrap_or(1);
+            if step <= 0 {
+                return Err("needs first, last and step of a range of elements".into());
+            }
+            let within = |number: &i64| (first..=last).contains(number) && number.abs_diff(first) % step as u64 == 0;
+            found = self.elements.iter().map(|e| e.number).filter(within).collect();
+        }
+        self.element_sets.entry(set.to_owned()).or_default().extend(found);
+        Ok(())
+    }
+
+    /// A set of elements is that of their nodes, too, unless there is one of nodes with its name.
+    fn sets_of_elements(&mut self) {
+        let place: HashMap<i64, usize> = self.elements.iter().enumerate().map(|(i, e)| (e.number, i)).collect();
+        let mut all: HashMap<String, Vec<usize>> = HashMap::new();
+        for (i, element) in self.elements.iter().enumerate() {
+            if let Some(set) = &element.set {
+                all.entry(set.clone()).or_default().push(i);
+            }
+        }
+        for (name, numbers) in &self.element_sets {
+            all.entry(name.clone())
+                .or_default()
+                .extend(numbers.iter().filter_map(|n| place.get(n)));
+        }
+        for (name, elements) in all {
+            let nodes: BTreeSet<i64> = elements
+                .iter()
+                .flat_map(|i| &self.elements[*i].nodes)
+                .copied()
+                .collect();
+            self.sets.entry(name).or_insert_with(|| nodes.into_iter().collect());
+        }
+    }
+
+    /// Adds words of an element: its number and its nodes, on one line or several.
+    fn add_element(&mut self, words: &[&str], shape: Shape, set: Option<&str>) -> Outcome<()> {
+        for word in words {
+            let number = word
+                .parse()
+                .map_err(|_| format!("{word:?} is no number of an element or node"))?;
+            self.open.push(number);
+            if self.open.len() == 1 + shape.nodes() {
+                let all = std::mem::take(&mut self.open);
+                self.elements.push(Element {
+                    number: all[0],
+                    shape,
+                    nodes: all[1..].to_vec(),
+                    set: set.map(str::to_owned),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses an element that has too few nodes.
+    fn finish_element(&self) -> Outcome<()> {
+        match self.open.first() {
+            None => Ok(()),
+            Some(number) => Err(format!("element {number} has too few nodes: {}", self.open.len() - 1)),
+        }
     }
 
     fn add_node(&mut self, words: &[&str], set: Option<&str>) -> Outcome<()> {
@@ -136,6 +229,20 @@ impl Mesh {
         at.ok_or_else(|| format!("node {number} is not in {}", self.path.display()))
     }
 
+    /// Elements in the order of the file: those that fill space, where there are any; else all.
+    pub fn drawn(&self) -> Vec<&Element> {
+        let solid = self.elements.iter().any(|element| element.shape.is_solid());
+        let shown = |element: &&Element| !solid || element.shape.is_solid();
+        self.elements.iter().filter(shown).collect()
+    }
+
+    /// Names of the sets of nodes in capital letters, with the number of nodes, in order.
+    pub fn set_names(&self) -> Vec<(&str, usize)> {
+        let mut names: Vec<(&str, usize)> = self.sets.iter().map(|(name, set)| (name.as_str(), set.len())).collect();
+        names.sort_unstable();
+        names
+    }
+
     /// Path of the file, for sentences.
     pub fn path(&self) -> &Path {
         &self.path
@@ -146,16 +253,22 @@ impl Mesh {
 fn keyword_section(keyword: &str) -> Section {
     let mut words = keyword.split(',').map(str::trim);
     let word = words.next().unwrap_or("").to_uppercase();
-    let (mut set, mut ranges) = (None, false);
+    let (mut set, mut ranges, mut kind, mut elements) = (None, false, String::new(), None);
     for option in words {
         match option.split_once('=') {
             Some((name, value)) if name.trim().eq_ignore_ascii_case("nset") => set = Some(value.trim().to_uppercase()),
+            Some((name, value)) if name.trim().eq_ignore_ascii_case("elset") => {
+                elements = Some(value.trim().to_uppercase());
+            }
+            Some((name, value)) if name.trim().eq_ignore_ascii_case("type") => kind = value.trim().to_uppercase(),
             _ => ranges |= option.eq_ignore_ascii_case("generate"),
         }
     }
     match (word.as_str(), set) {
         ("NODE", set) => Section::Nodes(set),
         ("NSET", Some(set)) => Section::Set(set, ranges),
+        ("ELSET", _) => elements.map_or(Section::Other, |set| Section::ElementSet(set, ranges)),
+        ("ELEMENT", _) => Shape::of_type(&kind).map_or(Section::Other, |shape| Section::Elements(shape, elements)),
         _ => Section::Other,
     }
 }
@@ -189,6 +302,25 @@ mod tests {
         ] {
             assert!(Mesh::parse(text).unwrap_err().contains(line), "{text}");
         }
+    }
+
+    #[test]
+    fn elements_may_have_several_lines() {
+        let mesh = "*NODE\n1,0,0,0\n*ELEMENT, TYPE=C3D10, ELSET=Wheel\n7, 1,2,3,4,5,\n6,7,8,9,10\n8,1,2,3,4,5,6,7,8,9,11\n\
+                    *ELEMENT, TYPE=CPS3\n9,1,2,3\n*ELEMENT,TYPE=MASS\n10,1\n*MATERIAL,NAME=a\n";
+        let mesh = Mesh::parse(mesh).unwrap();
+        let drawn = mesh.drawn();
+        assert_eq!(drawn.len(), 2);
+        assert_eq!(
+            (drawn[0].number, &drawn[0].nodes[..], drawn[0].set.as_deref()),
+            (7, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10][..], Some("WHEEL"))
+        );
+        assert_eq!((mesh.elements.len(), mesh.set("wheel").map(<[_]>::len)), (3, Some(11)));
+        assert!(
+            Mesh::parse("*ELEMENT, TYPE=C3D4\n1,1,2,3\n*NSET,NSET=a\n1\n")
+                .unwrap_err()
+                .contains("too few nodes")
+        );
     }
 
     #[test]

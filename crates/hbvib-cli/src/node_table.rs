@@ -3,7 +3,7 @@
 use crate::build::Outcome;
 use crate::job::{AbsentName, DofName, Node, NodeList};
 use crate::mesh::Mesh;
-use hbvib_io::Dof;
+use hbvib_io::{Dof, RelativeCoordinates};
 use std::collections::HashMap;
 
 /// Position of each node of a list, from the job itself or from the mesh.
@@ -47,6 +47,14 @@ pub fn node_list(name: &str, list: &NodeList, mesh: Option<&Mesh>) -> Outcome<Ve
             let numbers = set_of(set, mesh).map_err(|e| format!("{name}: {e}"))?;
             Ok(numbers.iter().map(|&number| Node::Number(number)).collect())
         }
+        NodeList::Sets(sets) => {
+            let mut all = Vec::new();
+            for set in sets {
+                let numbers = set_of(set, mesh).map_err(|e| format!("{name}: {e}"))?;
+                all.extend(numbers.iter().map(|&number| Node::Number(number)));
+            }
+            Ok(all)
+        }
     }
 }
 
@@ -62,6 +70,8 @@ pub struct Nodes {
     absent: AbsentName,
     /// The mesh of the job.
     pub mesh: Option<Mesh>,
+    /// Rows that are motions relative to others, of contacts between surfaces.
+    pub relative: Option<RelativeCoordinates>,
 }
 
 impl Nodes {
@@ -88,6 +98,7 @@ impl Nodes {
             further,
             absent,
             mesh,
+            relative: None,
         }
     }
 
@@ -111,6 +122,34 @@ impl Nodes {
             }
         }
         Ok(Some(dofs))
+    }
+
+    /// Numbers of the nodes that the matrices name, ascending.
+    pub fn numbers(&self) -> Vec<i64> {
+        let mut numbers: Vec<i64> = self.rows.keys().copied().collect();
+        numbers.sort_unstable();
+        numbers
+    }
+
+    /// Rows of a node along x, y and z, the first where there are several; -1 for none.
+    pub fn rows_of(&self, number: i64) -> [i64; 3] {
+        self.rows.get(&number).copied().unwrap_or([-1; 3])
+    }
+
+    /// Node of a degree of freedom, where the files name it.
+    pub fn node_of(&self, dof: usize) -> Option<i64> {
+        self.node_of.get(dof).copied()
+    }
+
+    /// A degree of freedom in words: node and direction, or its number.
+    pub fn name_of(&self, dof: usize) -> String {
+        let node = self.node_of(dof).filter(|node| self.rows.contains_key(node));
+        let place = node.and_then(|node| {
+            let rows = self.rows_of(node);
+            let direction = rows.iter().position(|row| *row == dof as i64)?;
+            Some(format!("{node}.{}", direction + 1))
+        });
+        place.unwrap_or_else(|| dof.to_string())
     }
 
     /// Position of the node of a degree of freedom, where the mesh has it.
@@ -147,11 +186,48 @@ impl Nodes {
         }
     }
 
-    /// The number of a degree of freedom.
+    /// The number of a degree of freedom whose motion is wanted.
     ///
     /// # Errors
-    /// A sentence: a name that is not understood, a node or direction that the files do not have, or have several times.
+    /// A sentence: a name that is not understood, a node or direction that the files do not have, or have several times; one whose
+    /// motion is relative.
     pub fn dof(&self, name: &DofName) -> Outcome<usize> {
+        let dof = self.row(name)?;
+        self.refuse_relative([dof])?;
+        Ok(dof)
+    }
+
+    /// Degrees of freedom on which a force on one acts, each with its share.
+    ///
+    /// # Errors
+    /// As [`Self::dof`], but for relative motions.
+    pub fn forced(&self, name: &DofName) -> Outcome<Vec<(usize, f64)>> {
+        let dof = self.row(name)?;
+        let weights = self.relative.as_ref().map_or(&[][..], |relative| relative.weights(dof));
+        let others = weights.iter().map(|(other, weight)| (*other as usize, *weight));
+        Ok(core::iter::once((dof, 1.0)).chain(others).collect())
+    }
+
+    /// Refuses degrees of freedom whose motions are relative.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn refuse_relative(&self, dofs: impl IntoIterator<Item = usize>) -> Outcome<()> {
+        let relative = |dof: &usize| {
+            self.relative
+                .as_ref()
+                .is_some_and(|relative| relative.is_relative(*dof))
+        };
+        match dofs.into_iter().find(relative) {
+            None => Ok(()),
+            Some(dof) => Err(format!(
+                "{} is on side a of a contact between surfaces, and moves relative to side b: name a node of side b, or another one",
+                self.name_of(dof)
+            )),
+        }
+    }
+
+    fn row(&self, name: &DofName) -> Outcome<usize> {
         let name = match name {
             DofName::Number(number) => return Ok(*number),
             DofName::Node(name) => name,

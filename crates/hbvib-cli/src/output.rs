@@ -2,12 +2,12 @@
 
 use crate::build::Outcome;
 use crate::counted::counted;
+use crate::curve::Curve;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
 use crate::job::Job;
 use crate::npz::Npz;
-use hbvib::{BifurcationKind, Branch, Special};
-use num_complex::Complex64;
+use hbvib::{BifurcationKind, Branch, Stretch};
 use plotters::prelude::{ChartBuilder, DashedLineSeries, LineSeries};
 use plotters::style::BLUE;
 use std::f64::consts::TAU;
@@ -17,22 +17,23 @@ use std::io::BufWriter;
 use std::path::Path;
 
 /// Writes the files of a branch that a job names.
-pub fn write(job: &Job, branch: &Branch, files: &mut Files<'_>) {
-    let table = files.write(job.output.csv.as_deref(), &|path| csv(path, branch));
-    let arrays = files.write(job.output.npz.as_deref(), &|path| npz(path, branch));
-    files.write(job.output.figure.as_deref(), &|path| figure(path, branch));
+pub fn write(job: &Job, curve: &Curve<'_>, files: &mut Files<'_>) {
+    let table = files.write(job.output.csv.as_deref(), &|path| csv(path, curve));
+    let arrays = files.write(job.output.npz.as_deref(), &|path| npz(path, curve));
+    files.write(job.output.figure.as_deref(), &|path| figure(path, curve));
     if !(table || arrays) && (job.output.csv.is_some() || job.output.npz.is_some()) {
         // As on a disk that is full: the points are kept in what the caller reads.
-        files.tell(&rows(branch));
+        files.tell(&rows(curve));
     }
 }
 
-fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
-    fs::write(path, rows(branch)).map_err(|e| e.to_string())
+fn csv(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
+    fs::write(path, rows(curve)).map_err(|e| e.to_string())
 }
 
 /// Columns of the curve: a mode has its amplitude and damping ratio, too.
-fn rows(branch: &Branch) -> String {
+fn rows(curve: &Curve<'_>) -> String {
+    let branch = curve.branch;
     let mut text = String::from("frequency_hz,amplitude,slip_fraction,harmonics");
     if branch.mode().is_some() {
         text += ",log10_amplitude,damping_ratio";
@@ -40,102 +41,80 @@ fn rows(branch: &Branch) -> String {
     if branch.tells_stability() {
         text += ",floquet_radius,unstable_directions";
     }
-    for r in 0..branch.responses().len() {
+    let responses: Vec<Vec<f64>> = (0..branch.responses().len())
+        .map(|r| curve.response(r, false))
+        .collect();
+    for r in 0..responses.len() {
         let _ = write!(text, ",response_{r}");
     }
     text += "\n";
-    for point in 0..branch.points() {
-        let slip = branch.slip_fraction_at(point).unwrap_or(&[]);
+    let (omega, amplitude, used) = (curve.omega(), curve.amplitude(), curve.harmonics_used());
+    let (radius, count) = (curve.floquet_radius(), curve.unstable_directions());
+    for point in 0..curve.points() {
         let _ = write!(
             text,
             "{:.16e},{:.16e},{:.6},{}",
-            branch.omega()[point] / TAU,
-            branch.amplitude()[point],
-            slip.iter().copied().fold(0.0, f64::max),
-            branch.harmonics_used()[point]
+            omega[point] / TAU,
+            amplitude[point],
+            curve.slip(point).iter().copied().fold(0.0, f64::max),
+            used[point]
         );
-        if let Some(mode) = branch.mode_at(point) {
+        if let Some(mode) = curve.mode_at(point) {
             let _ = write!(text, ",{:.16e},{:.16e}", mode.log10_amplitude, mode.damping_ratio);
         }
-        if let (Some(radius), Some(count)) = (
-            branch.floquet_radius().get(point),
-            branch.unstable_directions().get(point),
-        ) {
-            let _ = write!(text, ",{radius:.16e},{count}");
+        if branch.tells_stability() {
+            let _ = write!(text, ",{:.16e},{}", radius[point], count[point]);
         }
-        for of in branch.responses() {
-            let _ = write!(text, ",{:.16e}", of.values()[point]);
+        for of in &responses {
+            let _ = write!(text, ",{:.16e}", of[point]);
         }
         text += "\n";
     }
     text
 }
 
-fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
-    let points = branch.points();
+fn npz(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
+    let (branch, points) = (curve.branch, curve.points());
     let said = |e: std::io::Error| e.to_string();
     let mut npz = Npz::new(BufWriter::new(File::create(path).map_err(said)?));
     let mut real = |name: &str, shape: &[usize], values: &[f64]| npz.real(name, shape, values).map_err(said);
-    real("omega", &[points], &branch.omega()[..points])?;
-    real("amplitude", &[points], &branch.amplitude()[..points])?;
-    real("residual", &[points], &branch.residual()[..points])?;
+    real("omega", &[points], &curve.omega())?;
+    real("amplitude", &[points], &curve.amplitude())?;
+    real("residual", &[points], &curve.residual())?;
+    real("harmonics_used", &[points], &curve.harmonics_used())?;
     let contacts = branch.contacts();
-    let slip: Vec<f64> = (0..points)
-        .flat_map(|p| branch.slip_fraction_at(p).unwrap_or(&[]))
-        .copied()
-        .collect();
+    let slip: Vec<f64> = (0..points).flat_map(|p| curve.slip(p)).copied().collect();
     if slip.len() == points * contacts {
         real("slip_fraction", &[points, contacts], &slip)?;
     }
-    for (name, special) in [("peaks", branch.peaks()), ("folds", branch.folds())] {
-        let pairs: Vec<f64> = special.iter().flat_map(|s| [s.omega, s.amplitude]).collect();
-        real(name, &[special.len(), 2], &pairs)?;
+    for (name, special) in [("peaks", curve.special(false)), ("folds", curve.special(true))] {
+        real(name, &[special.len(), 2], special.as_flattened())?;
     }
-    let responses = branch.responses();
-    if !responses.is_empty() {
-        let of = |f: fn(&hbvib::ResponseSeries) -> &[f64]| -> Vec<f64> {
-            responses.iter().flat_map(|r| &f(r)[..points]).copied().collect()
-        };
-        real(
-            "responses",
-            &[responses.len(), points],
-            &of(hbvib::ResponseSeries::values),
-        )?;
-        real(
-            "response_errors",
-            &[responses.len(), points],
-            &of(hbvib::ResponseSeries::errors),
-        )?;
-        let peaks = responses.iter().enumerate();
-        let rows = peaks.flat_map(|(r, of)| of.peaks().iter().map(move |p| [r as f64, p.omega, p.amplitude]));
-        let rows: Vec<f64> = rows.flatten().collect();
-        real("response_peaks", &[rows.len() / 3, 3], &rows)?;
+    let requested = curve.requested();
+    real("requested", &[requested.len(), 3], requested.as_flattened())?;
+    let responses = branch.responses().len();
+    if responses > 0 {
+        for (name, errors) in [("responses", false), ("response_errors", true)] {
+            let all: Vec<f64> = (0..responses).flat_map(|r| curve.response(r, errors)).collect();
+            real(name, &[responses, points], &all)?;
+        }
+        let rows = curve.response_peaks();
+        real("response_peaks", &[rows.len(), 3], rows.as_flattened())?;
     }
     if branch.tells_stability() {
-        real(
-            "floquet_radius",
-            &[branch.floquet_radius().len()],
-            branch.floquet_radius(),
-        )?;
-        real(
-            "unstable_directions",
-            &[branch.unstable_directions().len()],
-            branch.unstable_directions(),
-        )?;
+        real("floquet_radius", &[points], &curve.floquet_radius())?;
+        real("unstable_directions", &[points], &curve.unstable_directions())?;
     }
     if branch.mode().is_some() {
-        let mode: Vec<_> = (0..points).filter_map(|p| branch.mode_at(p)).collect();
+        let mode: Vec<_> = (0..points).filter_map(|p| curve.mode_at(p)).collect();
         let of = |f: fn(&hbvib::ModePoint) -> f64| mode.iter().map(f).collect::<Vec<f64>>();
         real("log10_amplitude", &[mode.len()], &of(|m| m.log10_amplitude))?;
         real("damping_ratio", &[mode.len()], &of(|m| m.damping_ratio))?;
     }
-    let (rows, ndof) = (branch.harmonics() + 1, branch.ndof());
-    let mut x = vec![Complex64::ZERO; rows * ndof];
-    npz.complex("harmonics", &[points, rows, ndof], &mut |put| {
+    let mut x = Vec::new();
+    npz.complex("harmonics", &[points, curve.rows(), branch.ndof()], &mut |put| {
         (0..points).try_for_each(|point| {
-            branch
-                .harmonics_at(point, &mut x)
-                .map_err(|e| std::io::Error::other(e.to_string()))?;
+            curve.harmonics_at(point, &mut x).map_err(std::io::Error::other)?;
             put(&x)
         })
     })
@@ -144,10 +123,20 @@ fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
 }
 
 /// Amplitude over frequency, dashed where it is unstable.
-fn figure(path: &Path, branch: &Branch) -> Outcome<()> {
-    let x = bounds(branch.omega().iter().map(|omega| omega / TAU));
-    let y = bounds(branch.amplitude().iter().copied());
-    let stretches = branch.stretches().map_err(|e| e.to_string())?;
+fn figure(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
+    let (omega, amplitude) = (curve.omega(), curve.amplitude());
+    let x = bounds(omega.iter().map(|omega| omega / TAU));
+    let y = bounds(amplitude.iter().copied());
+    let mut stretches = curve.branch.stretches().map_err(|e| e.to_string())?;
+    let kept = (curve.kept() + 1).min(omega.len());
+    if kept > 1 {
+        // Points of the run before, up to the first of this one.
+        let points = omega.iter().copied().zip(amplitude.iter().copied()).take(kept);
+        stretches.push(Stretch {
+            unstable: false,
+            points: points.collect(),
+        });
+    }
     draw(path, |area| {
         let mut chart = ChartBuilder::on(area)
             .margin(16)
@@ -196,29 +185,30 @@ fn stability(text: &mut String, branch: &Branch) {
 }
 
 /// Summary of a branch.
-pub fn summary(branch: &Branch) -> String {
+pub fn summary(curve: &Curve<'_>) -> String {
+    let (branch, omega) = (curve.branch, curve.omega());
     let mut text = String::new();
     let _ = writeln!(
         text,
         "{}, {:.6} to {:.6} Hz, response degree of freedom {}",
-        counted(branch.points(), "point"),
-        branch.omega().first().map_or(f64::NAN, |w| w / TAU),
-        branch.omega().last().map_or(f64::NAN, |w| w / TAU),
+        counted(curve.points(), "point"),
+        omega.first().map_or(f64::NAN, |w| w / TAU),
+        omega.last().map_or(f64::NAN, |w| w / TAU),
         branch.response_dof()
     );
-    let list = |text: &mut String, name: &str, special: &[Special]| {
-        for s in special {
-            let _ = writeln!(text, "{name:<6} {:>14.6} Hz {:>14.6e}", s.omega / TAU, s.amplitude);
+    let list = |text: &mut String, name: &str, special: &[[f64; 2]]| {
+        for [omega, amplitude] in special {
+            let _ = writeln!(text, "{name:<6} {:>14.6} Hz {amplitude:>14.6e}", omega / TAU);
         }
     };
-    list(&mut text, "peak", branch.peaks());
-    list(&mut text, "fold", branch.folds());
+    list(&mut text, "peak", &curve.special(false));
+    list(&mut text, "fold", &curve.special(true));
     stability(&mut text, branch);
-    list(
-        &mut text,
-        "at",
-        &(0..).map_while(|i| branch.at(i).first().copied()).collect::<Vec<_>>(),
-    );
+    // The first solution of each request.
+    let mut requested = curve.requested();
+    requested.dedup_by_key(|row| row[0]);
+    let first: Vec<[f64; 2]> = requested.iter().map(|row| [row[1], row[2]]).collect();
+    list(&mut text, "at", &first);
     let removed = branch.reduction();
     let _ = writeln!(
         text,

@@ -2,8 +2,9 @@
 
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
+use crate::curve::Curve;
 use crate::job::DofName;
-use hbvib::{Branch, Component, Measure, Response};
+use hbvib::{Component, Measure, Response};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -90,17 +91,17 @@ pub fn responses<'a>(parts: &'a [ResponsePart], dofs: &'a [Vec<usize>]) -> Vec<R
 }
 
 /// The highest peak of each response, a line each.
-pub fn summary(branch: &Branch) -> String {
+pub fn summary(curve: &Curve<'_>) -> String {
+    let peaks = curve.response_peaks();
     let mut text = String::new();
-    for (r, of) in branch.responses().iter().enumerate() {
-        let highest = of.peaks().iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-        let _ = match highest {
-            Some(peak) => writeln!(
+    for r in 0..curve.branch.responses().len() {
+        let of = || peaks.iter().filter(|row| row[0] as usize == r);
+        let _ = match of().max_by(|a, b| a[2].total_cmp(&b[2])) {
+            Some([_, omega, amplitude]) => writeln!(
                 text,
-                "response {r}: {}, the highest {:.6e} at {:.6} Hz",
-                counted(of.peaks().len(), "peak"),
-                peak.amplitude,
-                peak.omega / TAU
+                "response {r}: {}, the highest {amplitude:.6e} at {:.6} Hz",
+                counted(of().count(), "peak"),
+                omega / TAU
             ),
             None => writeln!(text, "response {r}: no peak"),
         };

@@ -7,30 +7,8 @@
 use crate::Result;
 use crate::lines::Lines;
 use crate::matrix::{Dof, Matrix, Symmetry};
+use crate::numbered::Numbered;
 use crate::numbers::{real, whole};
-use std::collections::HashMap;
-
-/// Numbers of degrees of freedom in the order in which rows and columns name them first.
-#[derive(Default)]
-struct Numbered {
-    dofs: Vec<Dof>,
-    numbers: HashMap<Dof, u32>,
-}
-
-impl Numbered {
-    fn number(&mut self, lines: &Lines, dof: Dof) -> Result<u32> {
-        if let Some(number) = self.numbers.get(&dof) {
-            return Ok(*number);
-        }
-        if self.dofs.try_reserve(1).is_err() || self.numbers.try_reserve(1).is_err() {
-            return lines.fail("no memory for the degrees of freedom");
-        }
-        let number = self.dofs.len() as u32;
-        self.numbers.insert(dof, number);
-        self.dofs.push(dof);
-        Ok(number)
-    }
-}
 
 /// A first line of three whole numbers, which may be the sizes of a file without its banner.
 struct FirstLine {
@@ -117,13 +95,17 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
              matrix coordinate real symmetric (or general)",
         );
     }
-    let mut dofs = numbered.dofs;
-    if fields == 5 {
-        in_order(&mut matrix, &mut dofs);
+    let dofs = if fields == 5 {
+        let all = vec![true; numbered.len()];
+        let (dofs, places) = numbered.sorted(&all);
+        for at in matrix.row.iter_mut().chain(&mut matrix.column) {
+            *at = places[*at as usize];
+        }
         matrix.rows = dofs.len();
+        dofs
     } else {
-        dofs = from_labels(lines, &mut matrix)?;
-    }
+        from_labels(lines, &mut matrix)?
+    };
     // Checks the order against the size of the file.
     let empty = Matrix::new(lines, (matrix.rows, matrix.rows), Symmetry::General, (0, false))?;
     let below = |(row, column): (&u32, &u32)| row > column;
@@ -132,7 +114,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
     let symmetric = if dofs.is_empty() {
         !(places().any(below) && places().any(above))
     } else {
-        !is_whole(&matrix)
+        !matrix.lists_mirror_images()
     };
     Ok((
         Matrix {
@@ -194,33 +176,4 @@ fn node_and_direction(lines: &Lines, node: &str, direction: &str) -> Result<Dof>
         return lines.fail(format_args!("direction = {}, needs at least 1", dof.1));
     }
     Ok(dof)
-}
-
-/// Sorts the degrees of freedom by node and direction.
-fn in_order(matrix: &mut Matrix, dofs: &mut [Dof]) {
-    let mut order: Vec<u32> = (0..dofs.len() as u32).collect();
-    order.sort_by_key(|&i| dofs[i as usize]);
-    let mut new = vec![0; dofs.len()];
-    for (to, &from) in order.iter().enumerate() {
-        new[from as usize] = to as u32;
-    }
-    dofs.sort_unstable();
-    for at in matrix.row.iter_mut().chain(&mut matrix.column) {
-        *at = new[*at as usize];
-    }
-}
-
-/// Whether some entry is listed at its place and at that of its mirror image.
-fn is_whole(matrix: &Matrix) -> bool {
-    let mut places: Vec<(u32, u32, bool)> = matrix
-        .row
-        .iter()
-        .zip(&matrix.column)
-        .filter(|(row, column)| row != column)
-        .map(|(&row, &column)| (row.min(column), row.max(column), row < column))
-        .collect();
-    places.sort_unstable();
-    places
-        .windows(2)
-        .any(|two| (two[0].0, two[0].1) == (two[1].0, two[1].1) && two[0].2 != two[1].2)
 }

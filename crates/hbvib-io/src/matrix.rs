@@ -163,6 +163,21 @@ impl Matrix {
         reserved
     }
 
+    /// Whether some entry is listed at its place and at that of its mirror image.
+    pub(crate) fn lists_mirror_images(&self) -> bool {
+        let mut places: Vec<(u32, u32, bool)> = self
+            .row
+            .iter()
+            .zip(&self.column)
+            .filter(|(row, column)| row != column)
+            .map(|(&row, &column)| (row.min(column), row.max(column), row < column))
+            .collect();
+        places.sort_unstable();
+        places
+            .windows(2)
+            .any(|two| (two[0].0, two[0].1) == (two[1].0, two[1].1) && two[0].2 != two[1].2)
+    }
+
     /// Frees what was reserved and not used.
     pub(crate) fn finished(mut self) -> Self {
         self.row.shrink_to_fit();

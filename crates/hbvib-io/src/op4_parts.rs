@@ -42,11 +42,40 @@ impl Parts {
         }
     }
 
+    /// Lists a matrix that is of no use.
+    pub fn leave_out(&mut self, name: String) {
+        self.others.push(name);
+    }
+
+    /// Keeps the matrices of one set where a file has several of a kind: those of EXTSEOUT, or else those without a boundary.
+    fn one_set(&mut self) {
+        let repeated = (0..self.found.len()).any(|i| self.found[..i].iter().any(|other| other.0 == self.found[i].0));
+        if !repeated {
+            return;
+        }
+        for ending in ["AAX", "AA", "XX"] {
+            let within = |name: &str| name.ends_with(ending);
+            if self
+                .found
+                .iter()
+                .any(|(kind, name, _)| *kind == Kind::Stiffness && within(name))
+            {
+                let (kept, left): (Vec<_>, Vec<_>) = core::mem::take(&mut self.found)
+                    .into_iter()
+                    .partition(|one| within(&one.1));
+                self.others.extend(left.into_iter().map(|(_, name, _)| name));
+                self.found = kept;
+                return;
+            }
+        }
+    }
+
     /// The matrices by kind. Nastran writes a zero of order 1 for a matrix that a superelement does not have.
     ///
     /// # Errors
     /// A sentence: no matrix of a known name, two of one kind.
-    pub fn finished(self) -> Result<Matrices, String> {
+    pub fn finished(mut self) -> Result<Matrices, String> {
+        self.one_set();
         let largest = self.found.iter().map(|(.., matrix)| matrix.rows).max().unwrap_or(0);
         let mut all = Matrices {
             others: self.others,

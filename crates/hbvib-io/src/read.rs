@@ -3,7 +3,10 @@
 use crate::error::Error;
 use crate::lines::Lines;
 use crate::matrix::{Matrices, Matrix};
-use crate::{Result, abaqus, calculix, harwell_boeing, matrix_market, op4, op4_binary, unreadable};
+use crate::{
+    Result, abaqus, ansys_full, calculix, dmig, harwell_boeing, matlab, matrix_market, npy, numpy_archive, op4,
+    op4_binary, unreadable, user_element,
+};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -18,6 +21,11 @@ const START: u64 = 4096;
 /// | Matrix Market, also gzipped | `%%MatrixMarket`, in any case | one matrix |
 /// | CalculiX | `.sti`, `.mas`, `.dof`: all files of the job | stiffness, mass, degrees of freedom |
 /// | Nastran OP4, text or binary | `.op4`, or the head of a matrix | matrices whose names begin with K, M, B, K4 |
+/// | Nastran DMIG | a line that begins with `DMIG`, `.pch` | matrices by name, as OP4; nodes and directions |
+/// | NumPy and scipy | `.npz`, `.npy` | matrices named K, M, C, D or stiffness, mass, ..., or one matrix |
+/// | Ansys .full | the head of the file | stiffness, mass; nodes and directions |
+/// | MATLAB 5 | `.mat` of `save -v6` and `-v7` | as NumPy |
+/// | Abaqus and CalculiX superelements | `*USER ELEMENT`, `*MATRIX, TYPE=` | stiffness, mass; nodes and directions |
 /// | Abaqus | `.mtx` | one matrix: MASS or DMP in the name of the file tell which |
 /// | Harwell-Boeing text | else | one matrix |
 ///
@@ -41,10 +49,26 @@ pub fn read(path: &Path) -> Result<Matrices> {
     if op4_binary::is_head(&start) {
         return op4_binary::matrices(path);
     }
+    if start.starts_with(b"PK\x03\x04") || start.starts_with(npy::MAGIC) {
+        return numpy_archive::matrices(path);
+    }
+    if matlab::is_head(&start) {
+        return matlab::matrices(path);
+    }
+    if ansys_full::kind(&start).is_some_and(ansys_full::is_full) {
+        return ansys_full::matrices(path);
+    }
     if let Some(sentence) = unreadable::format(path, &start) {
         return Err(Error::new(path, 0, sentence));
     }
     let mut lines = Lines::open(path)?;
+    let text = String::from_utf8_lossy(&start);
+    if extension == "pch" || dmig::is_dmig(&text) {
+        return dmig::matrices(&mut lines);
+    }
+    if user_element::is_user_element(&text) {
+        return user_element::matrices(&mut lines);
+    }
     lines.expect("a matrix")?;
     if matrix_market::is_banner(lines.text()) {
         return Ok(one(matrix_market::matrix(&mut lines)?));
@@ -60,7 +84,8 @@ pub fn read(path: &Path) -> Result<Matrices> {
         return Err(Error::new(
             path,
             1,
-            "the format is unknown: Matrix Market, Abaqus .mtx, CalculiX .sti, Harwell-Boeing or OP4 are read",
+            "the format is unknown: Matrix Market, Abaqus .mtx, CalculiX .sti, superelements (*USER ELEMENT), Harwell-Boeing, OP4, \
+             DMIG and .npz are read",
         ));
     }
     Ok(one(harwell_boeing::matrix(&mut lines)?))

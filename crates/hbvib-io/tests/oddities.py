@@ -2,15 +2,17 @@
 
 OP4 of external superelements: pyNastran #746. OP4 binary and heads of 16 columns: pyNastran #695, #293, pyyeti #5, #7. Abaqus
 labels below zero: zxding.me. Harwell-Boeing and Matrix Market: MatrixMarket.jl #4, #37, scipy #8797, #18123, #9426, #24082,
-fast_matrix_market #10. Formats that are not read: pyNastran #699, #274, pymapdl-reader."""
+fast_matrix_market #10. DMIG and formats that are not read: pyNastran #699, #274,
+pymapdl-reader."""
 import importlib.util
 import os
 import struct
 import sys
 import tempfile
-import zipfile
 
 import numpy as np
+import scipy.io
+import scipy.sparse as sp
 
 place = importlib.util.spec_from_file_location("hbvib_io", os.path.join(os.environ["HBVIB_INCLUDE"], "hbvib/io.py"))
 io = importlib.util.module_from_spec(place)
@@ -88,7 +90,12 @@ def superelements():
     found = io.read(write("loss.op4", pair + op4("K4XX", 0.02 * k)))
     same("K4XX", found.structural, 0.02 * k)
     same("K4XX beside", found.stiffness, k)
-    refused("two.op4", pair + op4("KAA", k), "KXX and KAA")
+    # Those of EXTSEOUT go before those without the boundary; two of one kind otherwise are refused.
+    both = io.read(write("two.op4", pair + op4("KAA", 2 * k) + op4("MAA", 3 * m) + op4("BGG", m)))
+    same("KAA beside KXX", both.stiffness, 2 * k)
+    same("MAA beside MXX", both.mass, 3 * m)
+    assert both.damping is None and any("BGG" in line and "KXX" in line for line in both.facts), both.facts
+    refused("two.op4", op4("KGG", k) + op4("KFF", k), "KGG and KFF")
 
 
 def op4_kinds():
@@ -209,20 +216,12 @@ def refused(name, data, words):
 
 
 def other_formats():
-    dmig = "DMIG    KAAX    0       6       2       0\nDMIG*   KAAX                           1               1\n"
-    refused("run.pch", dmig, "DMIG")
-    refused("run.pch", "$ punched\n" + dmig, "OUTPUT4")
     refused("file.full", struct.pack("<60i", *range(60)), "HBMAT")
     refused("job.sim", b"\x00\x01\x02" * 40, "*MATRIX OUTPUT")
     refused("job.op2", b"\x04\x00\x00\x00" * 40, "OUTPUT4")
-    with zipfile.ZipFile(os.path.join(folder, "k.zip"), "w") as file:
-        file.writestr("k.npy", b"0")
-    with open(os.path.join(folder, "k.zip"), "rb") as file:
-        refused("k.npz", file.read(), "numpy.load")
-    np.save(os.path.join(folder, "k.npy"), np.eye(2))
-    with open(os.path.join(folder, "k.npy"), "rb") as file:
-        refused("l.npy", file.read(), "numpy.load")
-    refused("k.mat", b"MATLAB 5.0 MAT-file, Platform: posix" + b"\x00\x01IM" * 30, "loadmat")
+    refused("k73.mat", b"MATLAB 7.3 MAT-file, Platform: GLNXA64" + b" " * 88 + b"\x00\x02IM" + b"\x00" * 400 + b"\x89HDF", "save -v7")
+    refused("old.mat", struct.pack("<5i", 0, 2, 2, 0, 2) + b"k\x00" + struct.pack("<4d", 1, 2, 3, 4), "save -v7")
+    refused("k.mat", b"MATLAB 5.0 MAT-file, Platform: posix" + b"\x00\x01IM" * 30, "MATLAB file")
     refused("k.h5", b"\x89HDF\r\n\x1a\n" + b"\x00" * 60, "HDF5")
     for path, words in ((folder, "is a folder"), (os.path.join(folder, "nothing.mtx"), "cannot be read")):
         try:
@@ -233,6 +232,199 @@ def other_formats():
             raise AssertionError(path)
 
 
-for case in (superelements, op4_kinds, abaqus_labels, harwell_boeing, matrix_market, other_formats):
+def dmig():
+    k = np.array([[3e6, -1e6, 0.5], [-1e6, 2e6, -1e6], [0.5, -1e6, 1e6]])
+    dofs = [[5, 1], [5, 3], [12, 0]]
+    head = "$ punched\nBEGIN SUPER=1\nGRID*                  5               0 1.000000000E+00 2.000000000E+00\n*       0.000000000E+00\n"
+    small, large, free = (head + "DMIG    KAAX    0       6       2       0\n" for _ in range(3))
+    for j in range(3):
+        small += "DMIG    KAAX    %8d%8d        " % tuple(dofs[j])
+        large += "DMIG*   KAAX            %16d%16d\n" % tuple(dofs[j])
+        free += "dmig,kaax,%d,%d,,%d,%d,%.1f\n" % (*dofs[j], *dofs[j], k[j, j])
+        for place, i in enumerate(range(j, 3)):
+            # Two rows a line of eight fields.
+            small += ("\n+       " if place == 1 else "") + "%8d%8d%8s        " % (*dofs[i], "%.1E" % k[i, j])
+            large += "*       %16d%16d%16s\n" % (*dofs[i], ("%.9E" % k[i, j]).replace("E", "D"))
+            free += "" if i == j else ",%d,%d,%.1f,\n" % (*dofs[i], k[i, j])
+        small += "\n"
+    for label, text in {"small": small, "large": large, "free": free}.items():
+        for name in ("run.pch", "run.bdf", "run"):
+            found = io.read(write(name, text))
+            same(label, found.stiffness, k)
+            assert found.dofs.tolist() == dofs and found.mass is None, label
+    # The exponent without a letter, both triangles, a rectangular matrix of loads, real and complex numbers.
+    text = ("DMIG    MAAX    0       6       1       0\nDMIG    MAAX    5       1               5       1       1.5+3\n"
+            "DMIG    PAX     0       9       2       0                       1\nDMIG*   PAX                            1               0\n"
+            "*                      9               1 1.000000000D+00\n"
+            "DMIG    K4AAX   0       1       3       0\nDMIG    K4AAX   5       1               5       3       1.      2.\n")
+    found = io.read(write("run.pch", text))
+    same("mass", found.mass, [[1500.0, 0], [0, 0]])
+    assert found.structural.toarray()[1, 0] == 1 + 2j and "PAX" in found.facts[-1] + found.facts[2], found.facts
+    polar = text.replace("DMIG    K4AAX   0       1       3       0", "DMIG    K4AAX   0       1       3       0       1")
+    found = io.read(write("run.pch", polar)).structural.toarray()[1, 0]
+    assert abs(found - np.exp(1j * np.radians(2))) < 1e-15, found
+    refused("run.pch", "GRID,1,,0.,0.,0.\n", "EXTSEOUT(DMIGPCH)")
+    refused("run.pch", "DMIG,KAAX,1,1,,1,1,2.\n", "before its first entry")
+    refused("run.pch", "DMIG,KAAX,0,6,7\n", "type = 7")
+    refused("run.pch", "DMIG,KAAX,0,6,2\nDMIG,KAAX,1,9,,1,1,2.\n", "line 2")
+    refused("run.pch", "DMIG,PX,0,9,2\nDMIG,PX,1,0,,1,1,2.\n", "PX")
+
+
+def elements():
+    # As *SUBSTRUCTURE MATRIX OUTPUT of CalculiX: a node for each row, a triangle row by row.
+    k = np.array([[4.0, -1, 0.5], [-1, 3, 0.25], [0.5, 0.25, 2]])
+    text = ("**\n** GENERATION OF SUBSTRUCTURE\n*USER ELEMENT,NODES=          3,LINEAR\n** ELEMENT NODES\n"
+            "**        11,        11,        20,\n         1\n         2,         3\n         3,         2\n"
+            "*MATRIX,TYPE=STIFFNESS\n 0.4000000000000E+01,\n-0.1000000000000E+01, 0.3000000000000E+01,\n"
+            " 0.5000000000000E+00, 0.2500000000000E+00, 0.2000000000000E+01,\n")
+    found = io.read(write("sub.mtx", text))
+    same("CalculiX", found.stiffness, k)
+    assert found.dofs.tolist() == [[11, 1], [11, 3], [20, 2]] and found.mass is None
+    # As *ELEMENT MATRIX OUTPUT of Abaqus, of a square of side 1 in plane stress; a page on the web shows these numbers.
+    text = ("**\n** ELEMENT NUMBER 11 STEP NUMBER 2 INCREMENT NUMBER 1\n** ELEMENT TYPE CPS4\n*USER ELEMENT, NODES= 2, LINEAR\n"
+            "** ELEMENT NODES\n** 101, 102\n1, 2\n*MATRIX,TYPE=STIFFNESS\n98.9 ,\n35.7 , 98.9\n-60.4 , 2.74 , 98.9\n"
+            "-2.74 , 10.9 , -35.7 , 98.9\n*MATRIX,TYPE=MASS\n2.,\n0., 2.,\n1., 0., 2.,\n0., 1., 0., 2.\n")
+    found = io.read(write("elem.mtx", text))
+    assert found.stiffness.toarray()[2].tolist() == [-60.4, 2.74, 98.9, -35.7] and found.dofs.tolist()[2] == [102, 1]
+    same("mass", found.mass, np.kron([[2, 1], [1, 2]], np.eye(2)))
+    bare = "*MATRIX, TYPE=STIFFNESS\n1.,\n2., 3.,\n"
+    found = io.read(write("bare.mtx", bare))
+    same("without nodes", found.stiffness, [[1, 2], [2, 3]])
+    whole = text.replace("LINEAR", "LINEAR, UNSYMM").split("*MATRIX,TYPE=MASS")[0].split("98.9 ,")[0]
+    whole += "".join("%d., %d., %d., %d.\n" % tuple(4 * j + i for i in range(4)) for j in range(4))
+    same("columns", io.read(write("u.inp", whole)).stiffness, np.arange(16.0).reshape(4, 4).T)
+    refused("short.mtx", text.replace("-2.74 , ", ""), "9 numbers, needs 10 for 4 degrees of freedom")
+    refused("two.mtx", text + text, "a second *USER ELEMENT")
+    refused("none.mtx", text.split("*MATRIX")[0], "without *MATRIX")
+    refused("bare.mtx", bare.replace("3.,", "3., 4."), "no triangle")
+
+
+def numpy_files():
+    rng = np.random.default_rng(5)
+    k = sp.random(6, 6, 0.4, random_state=rng).toarray() + np.eye(6)
+    m = np.diag(rng.uniform(1, 2, 6))
+    path = os.path.join(folder, "k.npz")
+    for form in (sp.csr_matrix, sp.csc_matrix, sp.coo_matrix, sp.csr_array):
+        for compressed in (False, True):
+            for kind in (float, complex, np.float32):
+                sp.save_npz(path, form(k.astype(kind)), compressed=compressed)
+                same(form.__name__, io.read(path).stiffness, k.astype(kind).astype(float))
+    for form in ("bsr", "dia"):
+        sp.save_npz(path, sp.csr_matrix(k).asformat(form))
+        with open(path, "rb") as file:
+            refused("other.npz", file.read(), ".tocsc()")
+    for save in (np.savez, np.savez_compressed):
+        for order in "CF":
+            save(path, stiffness=np.asarray(k, order=order), M=m.astype(">f8"), area=np.ones(3), damping_matrix=np.asarray(0.1 * k, order=order))
+            found = io.read(path)
+            same("plain", found.stiffness, k)
+            same("plain", found.mass, m)
+            same("plain", found.damping, 0.1 * k)
+            assert any("area" in line for line in found.facts)
+    sparse = sp.csr_matrix(k)
+    np.savez(path, K_data=sparse.data, K_indices=sparse.indices, K_indptr=sparse.indptr, K_shape=sparse.shape, K_format="csr",
+             M=m.astype(int), dofs=[[1, 1], [1, 2], [1, 3], [2, 1], [2, 2], [2, 3]])
+    found = io.read(path)
+    same("prefixed", found.stiffness, k)
+    same("whole numbers", found.mass, m.astype(int))
+    assert found.dofs.tolist()[4] == [2, 2]
+    np.savez(path, one=k)
+    same("one", io.read(path).stiffness, k)
+    np.save(os.path.join(folder, "k.npy"), np.asfortranarray(k))
+    same("npy", io.read(os.path.join(folder, "k.npy")).stiffness, k)
+
+    def bad(words, **arrays):
+        np.savez(path, **arrays)
+        with open(path, "rb") as file:
+            refused("bad.npz", file.read(), words)
+
+    bad("none has a name that is known", a=k, b1=m)
+    bad("two matrices of stiffness", K=k, stiffness=k)
+    bad("no matrix", area=np.ones(3))
+    bad("no matrix", K=np.array([{}, 1], dtype=object))
+    bad("not finite", K=np.where(k > 0.9, np.nan, k))
+    bad("needs a whole number 0 .. 5", data=[1.0], indices=[6], indptr=[0, 1, 1, 1, 1, 1, 1], shape=[6, 6], format="csc")
+    bad("run from 0 to 1", data=[1.0], indices=[5], indptr=[0, 0, 0, 0, 0, 0, 0], shape=[6, 6], format="csc")
+    bad("is less than", data=[1.0, 2], indices=[5, 5], indptr=[0, 2, 1, 1, 1, 1, 2], shape=[6, 6], format="csc")
+    bad("in a file of", data=[1.0], indices=[5], indptr=[0, 1], shape=[6, 1 << 40], format="csc")
+    bad("is missing", data=[1.0], shape=[6, 6], format="csc")
+
+
+def matlab_files():
+    rng = np.random.default_rng(6)
+    k = sp.random(6, 6, 0.4, random_state=rng).toarray() + np.eye(6)
+    m = np.diag(np.arange(1.0, 7))
+    path = os.path.join(folder, "k.mat")
+    dofs = [[node, d] for node in (4, 9) for d in (1, 2, 3)]
+    for compressed in (False, True):
+        for form in (np.asarray, sp.csc_matrix):
+            for kind in (float, complex):
+                scipy.io.savemat(path, dict(K=form(k.astype(kind)), M=form(m), area=np.ones(3), title="wheel", part=dict(a=1),
+                                            dofs=np.array(dofs)), do_compression=compressed)
+                found = io.read(path)
+                same("MATLAB", found.stiffness, k)
+                same("MATLAB", found.mass, m)
+                assert found.dofs.tolist() == dofs and any("title" in line and "part" in line for line in found.facts)
+    both = k + 1j * k.T
+    scipy.io.savemat(path, dict(D=sp.csc_matrix(both), k=both.astype(np.complex64)))
+    found = io.read(path)
+    assert np.array_equal(found.structural.toarray(), both) and np.array_equal(found.stiffness.toarray(), both.astype(np.complex64))
+    scipy.io.savemat(path, dict(anything=m.astype(np.int8)))
+    same("whole numbers", io.read(path).stiffness, m)
+    # The other byte order: a variable by hand.
+    def part(kind, data):
+        return struct.pack(">ii", kind, len(data)) + data + b"\x00" * (-len(data) % 8)
+    body = (part(6, struct.pack(">II", 6, 0)) + part(5, struct.pack(">ii", 2, 2)) + struct.pack(">hh4s", 1, 1, b"K")
+            + part(9, struct.pack(">4d", 2, -1, -1, 3)))
+    head = b"MATLAB 5.0 MAT-file, by hand".ljust(124) + b"\x01\x00MI"
+    same("high byte first", io.read(write("big.mat", head + part(14, body))).stiffness, [[2, -1], [-1, 3]])
+    refused("cut.mat", head + part(14, body)[:-9], "byte 128")
+    refused("type.mat", head + part(3, body), "type 3 at byte 128")
+    refused("nan.mat", head + part(14, body).replace(struct.pack(">d", 2), struct.pack(">d", np.inf)), "K(1, 1) is not finite")
+    refused("none.mat", head, "no matrix")
+
+
+def ansys_full():
+    """The layout that pymapdl-reader documents; a real file of Ansys 16.2 gave the matrices of that reader to the last bit."""
+    k = np.array([[9.0, 1, 2, 3], [1, 7, -1, 0], [2, -1, 6, 0.5], [3, 0, 0.5, 5]])
+    m = np.diag([4.0, 3, 2, 1]) + 0.25
+    # Nodes 8 and 3 with two degrees of freedom each; the first one is held.
+    for order in "<>":
+        def words(numbers, kind="i", flags=0x80000000):
+            data = struct.pack(order + "%d%s" % (len(numbers), kind), *numbers)
+            return struct.pack(order + "iI", len(data) // 4, flags) + data + struct.pack(order + "i", len(data) // 4)
+
+        def file(change=None):
+            first, second = [0] * 100, [0] * 100
+            first[0], second[0:2], second[7] = 4, [-4, 4], 2
+            after = words([1, 2]) + words([8, 3])
+            node_dofs = words([2, 2]) + words([-1, 1, 2, 3])
+
+            def rows(a):
+                return b"".join(words([i + 1 for i in range(j, 4)]) + words([a[i, j] for i in range(j, 4)], "d", 0) for j in range(4))
+            start = 2 * 103 + len(after) // 4
+            at = np.cumsum([start, len(node_dofs) // 4, len(rows(k)) // 4])
+            second[8], second[33] = 10, 10
+            second[35], second[18], second[26] = at
+            for place, value in (change or {}).items():
+                second[place] = value
+            return words(first) + words(second) + after + node_dofs + rows(k) + rows(m)
+
+        found = io.read(write("model.full", file()))
+        assert found.dofs.tolist() == [[3, 1], [3, 2], [8, 2]], found.dofs
+        picked = np.ix_([2, 3, 1], [2, 3, 1])
+        same("full", found.stiffness, k[picked])
+        same("full", found.mass, m[picked])
+        refused("model.full", file({0: 4}), "frontal")
+        refused("model.full", file({13: 1}), "unsymmetric")
+        refused("model.full", file({20: 1}), "constraint equations")
+        refused("model.full", file({1: 5}), "5 equations")
+        refused("model.full", file({18: 100000}), "cut off or damaged at byte 400000")
+        refused("model.full", file()[:-6], "cut off")
+        refused("model.sub", file().replace(struct.pack(order + "ii", 4, 0), struct.pack(order + "ii", 8, 0), 1), "superelement (.sub)")
+
+
+for case in (superelements, op4_kinds, abaqus_labels, harwell_boeing, matrix_market, dmig, elements, numpy_files, matlab_files, ansys_full,
+             other_formats):
     case()
 sys.stdout.write("ok\n")

@@ -69,3 +69,69 @@ with open("wheel_coordinate.mtx", "w") as file:
         file.write(f"{i + 1:8d} {j + 1:8d} {symmetric[i, j]:.15e}\n")
 keep("wheel_coordinate.mtx", symmetric)
 json.dump(values, open("values.json", "w"), indent=0)
+
+
+def universal():
+    """shapes.uff: as pyuff 2.5.8 writes data sets 151, 15, 2411, 82, 55, and 58 as text and binary. It announces half the bytes of the
+    binary one."""
+    import pyuff
+
+    file = pyuff.UFF("shapes.uff")
+    numbers = np.random.default_rng(2)
+    common = dict(def_cs=[0, 0], disp_cs=[0, 0], color=[1, 1], return_full_dict=True)
+    date = dict(db_app="x", date_db_created="26-Nov-26", time_db_created="18:30:00", version_db1=0, version_db2=0, file_type=0,
+                date_db_saved="26-Nov-26", time_db_saved="18:30:00", program="p", date_db_written="26-Nov-26",
+                time_db_written="18:30:00", return_full_dict=True)
+    shape = {f"r{k + 1}": numbers.normal(size=2) for k in range(6)}
+    for _ in range(6):
+        numbers.normal(size=4)
+    y = numbers.normal(size=5) + 1j * numbers.normal(size=5)
+    function = dict(type=58, abscissa_spec_data_type=18, ordinate_spec_data_type=12, orddenom_spec_data_type=13,
+                    z_axis_spec_data_type=0, rsp_node=7, rsp_dir=3, ref_node=1, ref_dir=-2, id1="u")
+    for one in [
+        pyuff.prepare_151(model_name="wheel", description="two nodes", **date),
+        pyuff.prepare_15(node_nums=[1, 7], x=[0.0, 1.5], y=[-2.0, 0.25], z=[3e-3, -1.0], **common),
+        pyuff.prepare_2411(node_nums=[12, 13], x=[1 / 3, -1 / 3], y=[-2 / 7, 2 / 7], z=[1e-10 / 3, 0], **common),
+        pyuff.prepare_82(trace_num=1, n_nodes=4, color=1, id="line", nodes=np.array([1, 7, 0, 12]), return_full_dict=True),
+        pyuff.prepare_55(model_type=1, id1="a", id2="b", id3="c", id4="d", id5="e", analysis_type=2, data_ch=2, spec_data_type=8,
+                         data_type=2, n_data_per_node=6, node_nums=[1, 7], load_case=1, mode_n=4, freq=123.45, modal_m=2.0,
+                         modal_damp_vis=0.01, modal_damp_his=0.0, return_full_dict=True, **shape),
+        dict(function, binary=0, func_type=4, data=y, x=np.arange(5) * 0.5, abscissa_spacing=1, ord_data_type=6, abscissa_inc=0.5),
+        dict(function, binary=1, func_type=4, data=y, x=np.arange(5) * 0.5, abscissa_spacing=1, ord_data_type=6, abscissa_inc=0.5),
+        dict(function, binary=0, func_type=1, data=y.real, x=np.array([0, 0.1, 0.3, 0.7, 2.0]), abscissa_spacing=0, ord_data_type=4),
+    ]:
+        file._write_set(one, "add")
+
+
+def small():
+    """Small files for mutations: small.mat, packed.mat and packed.npz of scipy and NumPy; small.full in the layout of Ansys' files."""
+    import struct
+
+    k = np.array([[4.0, -1, 0], [-1, 4, -1], [0, -1, 4]])
+    m = np.diag([1.0, 2, 3])
+    both = dict(K=sp.csc_matrix(k), M=m, dofs=np.array([[1, 1], [1, 2], [2, 1]]))
+    scipy.io.savemat("small.mat", both)
+    scipy.io.savemat("packed.mat", both, do_compression=True)
+    np.savez_compressed("packed.npz", K=k, M=m)
+
+    def words(numbers, kind="i", flags=0x80000000):
+        data = struct.pack("<%d%s" % (len(numbers), kind), *numbers)
+        return struct.pack("<iI", len(data) // 4, flags) + data + struct.pack("<i", len(data) // 4)
+
+    def rows(a):
+        return b"".join(words(range(j + 1, 4)) + words(a[j:, j].tolist(), "d", 0) for j in range(3))
+
+    first, second = [0] * 100, [0] * 100
+    first[0], second[0:2], second[7] = 4, [-4, 3], 1
+    after = words([1]) + words([2, 3, 1])
+    node_dofs = words([1, 1, 1]) + words([0, -1, 0])
+    at = np.cumsum([206 + len(after) // 4, len(node_dofs) // 4, len(rows(k)) // 4])
+    second[8] = second[33] = 6
+    second[35], second[18], second[26] = at.tolist()
+    with open("small.full", "wb") as file:
+        file.write(words(first) + words(second) + after + node_dofs + rows(k) + rows(m))
+
+
+if __name__ == "__main__":
+    universal()
+    small()

@@ -1,0 +1,183 @@
+//! Running a job: its analyses one after the other, and what each writes.
+
+use crate::build::{Built, Outcome, built};
+use crate::curve::{Before, Curve};
+use crate::end::{self, End};
+use crate::files::Files;
+use crate::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
+use crate::progress::watched;
+use crate::responses::{self, ResponsePart};
+use crate::restart::{self, Begin};
+use crate::solver::solver;
+use crate::stored_response::Stored;
+use crate::{campbell, check, contact_tables, html_report, map, motion_files, output, study, tornado, verification};
+use hbvib::{
+    Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
+    nonlinear_mode,
+};
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Runs a job; returns the exit code.
+///
+/// # Errors
+/// A sentence where nothing was computed.
+pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
+    let stop = end::stop_flag()?;
+    let job = Job::read(path)?;
+    job.needs_analysis(path)?;
+    let built = built(&job)?;
+    // A mistake in one part is told before another has taken its time.
+    check::parts(&job, &built)?;
+    let stored = restart::stored(&job, &built)?;
+    built.warn(strict)?;
+    let mut files = Files::of(&job);
+    let mut end = End::default();
+    over_quantities(&job, &built, &stop, &mut files, &mut end);
+    if (job.forced.is_some() || job.mode.is_some()) && end.goes_on(&stop) {
+        let solved = solve(&job, &built, stored, &stop);
+        if let Some((branch, before)) = end.take(solved, &stop) {
+            written(&job, &built, &Curve::new(&branch, before.as_ref()), &mut files);
+            judged(&job, (&built.model, &branch), &stop, &mut files, &mut end);
+        }
+    }
+    Ok(end.code(&files))
+}
+
+/// Writes what a branch has, points before all else.
+fn written(job: &Job, built: &Built, curve: &Curve<'_>, files: &mut Files<'_>) {
+    if curve.points() > 0 {
+        output::write(job, curve, files);
+        contact_tables::write(job, curve, built, files);
+        motion_files::write(job, curve, built, files);
+        html_report::write(job, curve, built, files);
+    }
+    files.tell(&output::summary(curve));
+    files.tell(&responses::summary(curve));
+}
+
+/// Tells why a branch ended, and compares points with integration in time.
+fn judged(job: &Job, (model, branch): (&Model, &Branch), stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
+    let whole = branch.status() == Status::Ok;
+    if let Some(part) = job.verify.as_ref().filter(|_| whole || !stop.load(Ordering::Relaxed)) {
+        let outcome = verified(part, (model, branch), stop, files, end);
+        end.take(outcome, stop);
+    }
+    if !whole {
+        let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
+        end.early(&format!("the run ended early, {:?}{reason}", branch.status()));
+    }
+}
+
+/// Diagrams, curves, maps and tornados, each of its own.
+fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
+    let model = &built.model;
+    if let Some(part) = job.campbell.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| campbell::write(part, model, hooks, files));
+        files.tell(&end.take(outcome, stop).unwrap_or_default());
+    }
+    if let Some(part) = job.study.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| study::write(part, built, hooks, files));
+        files.tell(&end.take(outcome, stop).unwrap_or_default());
+    }
+    if let Some(part) = job.map.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| map::write(part, built, hooks, files));
+        ended(outcome, "map", stop, files, end);
+    }
+    if let Some(part) = job.tornado.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| tornado::write(part, built, hooks, files));
+        ended(outcome, "tornado", stop, files, end);
+    }
+}
+
+fn ended(outcome: Outcome<map::Written>, part: &str, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
+    let Some((text, early)) = end.take(outcome, stop) else {
+        return;
+    };
+    files.tell(&text);
+    if early {
+        end.early(&format!("[{part}]: the run ended early"));
+    }
+}
+
+/// Compares points with integration in time.
+fn verified(
+    part: &VerifyPart,
+    (model, branch): (&Model, &Branch),
+    stop: &AtomicBool,
+    files: &mut Files<'_>,
+    end: &mut End,
+) -> Outcome<()> {
+    let all = watched(stop, |hooks| verification::compare(part, (model, branch), hooks, files))?;
+    verification::write(part, &all.compared, files);
+    files.tell(&verification::summary(&all.compared));
+    if !all.complete {
+        end.early("the verification ended early");
+    }
+    end.differs |= !all.compared.iter().all(|(_, found)| found.same);
+    Ok(())
+}
+
+fn solve(job: &Job, built: &Built, stored: Option<Stored>, stop: &AtomicBool) -> Outcome<(Branch, Option<Before>)> {
+    watched(stop, |hooks| match (&job.forced, &job.mode) {
+        (Some(part), _) => {
+            let mut run = |begin: &Begin<'_>| forced((part, &job.response), built, begin, hooks);
+            match stored {
+                Some(stored) => restart::go_on(part, stored, &mut run).map(|(branch, before)| (branch, Some(before))),
+                None => run(&Begin {
+                    from_hz: part.from_hz,
+                    at_hz: part.at_hz.clone(),
+                    guess: None,
+                })
+                .map(|branch| (branch, None)),
+            }
+        }
+        (None, Some(part)) => mode(part, built, hooks).map(|branch| (branch, None)),
+        (None, None) => Err("names no analysis".into()),
+    })
+}
+
+fn forced(
+    (part, watched): (&ForcedPart, &[ResponsePart]),
+    built: &Built,
+    begin: &Begin<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Outcome<Branch> {
+    let dofs = responses::dofs(watched, built)?;
+    let responses = responses::responses(watched, &dofs);
+    let at: Vec<f64> = begin.at_hz.iter().map(|f| TAU * f).collect();
+    let range = ForcedOptions {
+        omega_start: TAU * begin.from_hz,
+        omega_stop: TAU * part.to_hz,
+        at: &at,
+        guess: begin.guess,
+        responses: &responses,
+        together: false,
+    };
+    let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
+    let solver = SolverOptions {
+        estimate_error: part.estimate_error,
+        stability: part.stability.map(|waves| match waves {
+            WavesName::Wave => Waves::Wave,
+            WavesName::Wheel => Waves::Wheel,
+        }),
+        ..named.map_err(|e| format!("[forced]: {e}"))?
+    };
+    forced_response(&built.model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
+}
+
+fn mode(part: &ModePart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+    let range = ModeOptions {
+        choice: ModeChoice::Index(part.index),
+        log10_start: part.log10_from,
+        log10_stop: part.log10_to,
+        ..ModeOptions::default()
+    };
+    let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
+    let solver = SolverOptions {
+        estimate_error: part.estimate_error,
+        ..named.map_err(|e| format!("[mode]: {e}"))?
+    };
+    nonlinear_mode(&built.model, &solver, &range, hooks).map_err(|e| format!("[mode]: {e}"))
+}

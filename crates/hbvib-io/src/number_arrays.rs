@@ -1,0 +1,55 @@
+//! Arrays of numbers of a NumPy archive (.npz), for callers that know its names.
+
+use crate::Result;
+use crate::bytes_read::whole_file;
+use crate::error::Error;
+use crate::npy::{Npy, array};
+use crate::zip_archive::members;
+use std::path::Path;
+
+/// An array of numbers with rows next to each other.
+#[derive(Clone, Debug)]
+pub struct NumberArray {
+    /// Name in the archive.
+    pub name: String,
+    /// Length of each dimension.
+    pub shape: Vec<usize>,
+    /// Real parts.
+    pub real: Vec<f64>,
+    /// Imaginary parts; empty for real numbers.
+    pub imaginary: Vec<f64>,
+}
+
+/// Reads the arrays of numbers of an archive; texts and objects are left out.
+///
+/// # Errors
+/// File, array and reason.
+pub fn read_number_arrays(path: &Path) -> Result<Vec<NumberArray>> {
+    let bytes = whole_file(path)?;
+    let said = |reason: String| Error::new(path, 0, format_args!("NumPy file: {reason}"));
+    let mut all = Vec::new();
+    for member in members(&bytes).map_err(said)? {
+        let Some(name) = member.name.strip_suffix(".npy") else {
+            continue;
+        };
+        let Npy::Numbers(found) = array(name, member.content(&bytes).map_err(said)?).map_err(said)? else {
+            continue;
+        };
+        if found.is_by_columns() {
+            return Err(said(format!(
+                "{name} is stored by columns, needs rows (numpy.ascontiguousarray)"
+            )));
+        }
+        let mut one = NumberArray {
+            name: name.to_owned(),
+            shape: found.shape.clone(),
+            real: (0..found.len()).map(|k| found.value(k).0).collect(),
+            imaginary: Vec::new(),
+        };
+        if found.is_complex() {
+            one.imaginary = (0..found.len()).map(|k| found.value(k).1).collect();
+        }
+        all.push(one);
+    }
+    Ok(all)
+}
