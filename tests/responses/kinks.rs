@@ -53,14 +53,33 @@ fn a_change_of_the_leading_instant_is_told_with_both_slopes() {
         let fine = solve(&model, (0.3, 1.6), &responses, 2e-3);
         let places: Vec<f64> = found.kinks().map(|(before, _)| before.omega).collect();
         let same: Vec<f64> = fine.responses()[0].kinks().map(|(before, _)| before.omega).collect();
-        for (i, w) in branch.omega().iter().enumerate().filter(|(_, w)| **w > 0.32 && **w < 0.34) {
+        for (i, w) in branch
+            .omega()
+            .iter()
+            .enumerate()
+            .filter(|(_, w)| **w > 0.32 && **w < 0.34)
+        {
             println!("P{w} {} {}", found.values()[i], found.instants()[i]);
         }
         for (before, after) in found.kinks() {
-            println!("K{} {} {}", before.omega, found.instants()[before.point], found.instants()[after.point]);
+            println!(
+                "K{} {} {}",
+                before.omega,
+                found.instants()[before.point],
+                found.instants()[after.point]
+            );
         }
-        for (i, w) in fine.omega().iter().enumerate().filter(|(_, w)| **w > 0.325 && **w < 0.335) {
-            println!("F{w} {} {}", fine.responses()[0].values()[i], fine.responses()[0].instants()[i]);
+        for (i, w) in fine
+            .omega()
+            .iter()
+            .enumerate()
+            .filter(|(_, w)| **w > 0.325 && **w < 0.335)
+        {
+            println!(
+                "F{w} {} {}",
+                fine.responses()[0].values()[i],
+                fine.responses()[0].instants()[i]
+            );
         }
         let has = |list: &[f64], at: f64| list.iter().any(|other| (other / at - 1.0).abs() < 1e-8);
         assert!(places.iter().all(|at| has(&same, *at)), "{places:?} {same:?}");
