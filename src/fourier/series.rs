@@ -93,9 +93,9 @@ impl<'a> Approach<'a> {
     }
 }
 
-/// Longest step, in angles of the highest harmonic, after which the error of Halley's method no longer matters: it is the cube
-/// of the step, and forces err by the square of that.
-const LAST_STEP: f64 = 2e-5;
+/// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
+/// cube of the step.
+const LAST_STEP: f64 = 3e-6;
 
 fn last_step(set: &HarmonicSet) -> f64 {
     LAST_STEP / set.highest_reduced().max(1) as f64
