@@ -96,6 +96,15 @@ Examples:
   hbvib convert wheel.op4 --output wheel.mtx                        # wheel_stiffness.mtx, wheel_mass.mtx
   hbvib convert wheel.op4 --format op4-binary --output other.op4")]
     Convert(ConvertArguments),
+    /// Reduces the model of a job by Craig and Bampton, tells the error, and writes the matrices and a job on them.
+    ///
+    /// Degrees of freedom of faces, contacts, forces and responses stay; all others follow them statically, and by their natural modes.
+    #[command(after_help = "\
+Examples:
+  hbvib reduce job.toml --output reduced.npz                # and reduced.toml, which runs
+  hbvib reduce job.toml --modes 100 --output reduced.pch    # DMIG
+  hbvib reduce job.toml --up-to-hz 5000 --keep 12.3 --output reduced.op4")]
+    Reduce(ReduceArguments),
     /// Draws stored responses (.npz of [output]), several of them in one figure.
     #[command(after_help = "\
 Examples:
@@ -206,7 +215,34 @@ pub struct ConvertArguments {
     pub overwrite: bool,
 }
 
+/// A job whose model is reduced.
+#[derive(Debug, clap::Args)]
+pub struct ReduceArguments {
+    /// File of the job.
+    #[arg(value_name = "JOB.TOML")]
+    pub job: PathBuf,
+    /// File of the reduced matrices; its name tells the format, as in convert.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Format that is written, as in convert.
+    #[arg(long, value_name = "FORMAT")]
+    pub format: Option<String>,
+    /// Number of modes with the kept degrees of freedom fixed; as many as the tolerance needs unless given.
+    #[arg(long, value_name = "N", conflicts_with = "up_to_hz")]
+    pub modes: Option<usize>,
+    /// Largest relative error of natural frequencies up to half above the range of [forced], or of the first three without it.
+    #[arg(long, value_name = "ERROR", default_value_t = 1e-6, conflicts_with_all = ["modes", "up_to_hz"])]
+    pub tolerance: f64,
+    /// Frequency up to which all of these modes are taken.
+    #[arg(long, value_name = "HZ")]
+    pub up_to_hz: Option<f64>,
+    /// More degrees of freedom that stay, by number or as 12.3.
+    #[arg(long, value_name = "DOF", value_delimiter = ',')]
+    pub keep: Vec<String>,
+}
+
 /// Stored responses, and what is drawn of them.
+#[allow(clippy::struct_excessive_bools, reason = "switches of a command line")]
 #[derive(Debug, clap::Args)]
 pub struct PlotArguments {
     /// Files of [output], npz.

@@ -42,6 +42,10 @@ pub struct Built {
     pub areas: Vec<Option<f64>>,
     /// Left and right node of each pair of the faces, and the distance of the right one from the image of the left one.
     pub face_pairs: Vec<(i64, i64, f64)>,
+    /// Degrees of freedom of both faces.
+    pub face_dofs: Vec<usize>,
+    /// Degrees of freedom that do not move.
+    pub fixed: Vec<usize>,
     /// Real part of the diagonal of the stiffness.
     pub stiffness_diagonal: Vec<f64>,
     /// Mass that moves with each row in a translation along its direction; empty without names of nodes.
@@ -109,6 +113,8 @@ pub fn built(job: &Job) -> Outcome<Built> {
         facts,
         fixed,
         pairs: face_pairs,
+        dofs: face_dofs,
+        mut fixed,
     } = match &part.faces {
         Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
         None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
@@ -119,6 +125,7 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model.set_wave(part.engine_order);
     if part.faces.is_none() && !part.fixed.is_empty() {
         model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
+        fixed.clone_from(&part.fixed);
     }
     for (kind, a) in &given.own {
         with_view(a, |view| model.set_matrix(*kind, view)).map_err(|e| format!("[model]: {e}"))?;
@@ -177,6 +184,8 @@ pub fn built(job: &Job) -> Outcome<Built> {
         nodes,
         areas,
         face_pairs,
+        face_dofs,
+        fixed,
         stiffness_diagonal: diagonal(&given),
         moved_mass: moved_mass(&given),
         report,

@@ -38,6 +38,9 @@ pub struct Sector {
     pub fixed: Vec<usize>,
     /// Left and right node of each pair, and the distance of the right one from the image of the left one.
     pub pairs: Vec<(i64, i64, f64)>,
+    /// Degrees of freedom of both faces, and those that are fixed.
+    pub dofs: Vec<usize>,
+    pub fixed: Vec<usize>,
 }
 
 impl Sector {
@@ -49,6 +52,8 @@ impl Sector {
             facts: Vec::new(),
             fixed: Vec::new(),
             pairs: Vec::new(),
+            dofs: Vec::new(),
+            fixed: Vec::new(),
         }
     }
 }
@@ -99,6 +104,8 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         facts: faces.facts,
         fixed: faces.fixed,
         pairs: faces.pairs,
+        dofs: faces.left.iter().chain(&faces.right).flatten().copied().collect(),
+        fixed,
     })
 }
 

@@ -73,14 +73,17 @@ pub fn bounds(values: impl Iterator<Item = f64>) -> Range<f64> {
     (low - room)..(high + room)
 }
 
-/// Writes the numbers of an axis; what is round-off beside its range is 0.
+/// Writes the numbers of an axis; what is round-off beside its range is 0. A short range of large numbers has more digits.
 pub fn scientific(range: &Range<f64>) -> impl Fn(&f64) -> String + use<> {
-    let small = 1e-9 * (range.end - range.start);
+    let length = range.end - range.start;
+    let small = 1e-9 * length;
+    let largest = range.start.abs().max(range.end.abs());
+    let digits = (largest / length).log10().max(0.0).ceil() as usize + 2;
     move |v| {
         if v.abs() < small {
             "0".into()
         } else {
-            format!("{v:.2e}")
+            format!("{v:.*e}", digits.min(12))
         }
     }
 }

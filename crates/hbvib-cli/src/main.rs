@@ -19,6 +19,7 @@ mod contact_tables;
 mod contacts;
 mod convert;
 mod counted;
+mod craig_bampton;
 mod curve;
 mod end;
 mod events;
@@ -54,6 +55,7 @@ mod output;
 mod plot;
 mod points;
 mod progress;
+mod reduce;
 mod responses;
 mod restart;
 mod run_job;
@@ -104,6 +106,7 @@ fn done(verb: &Verb) -> Outcome<u8> {
         Verb::Modes(of) => modes_table::modes(&of.job, of.strict),
         Verb::Init(of) => init::init(of),
         Verb::Convert(of) => convert::convert(of),
+        Verb::Reduce(of) => reduce::reduce(of),
         Verb::Plot(of) => plot::plot(of),
         Verb::Schema => schema(),
         Verb::Completions { shell } => print(&manual::completions(*shell)).map(|()| 0),

@@ -12,6 +12,9 @@ const ROOM: f64 = 30.0;
 /// Most nodes that are drawn beside those of contacts.
 const MOST: usize = 20_000;
 
+/// Nodes of a small mesh, whose points are larger.
+const SMALL: usize = 1000;
+
 /// Nodes seen along the direction (1, 1, 1) of their axes; those of contacts from pale (they stick) to dark red (they slip all the
 /// time), and blue where they are open all the time.
 pub fn svg(places: &Places, field: &ContactField) -> String {
@@ -32,10 +35,11 @@ pub fn svg(places: &Places, field: &ContactField) -> String {
         "<svg width=\"{}\" height=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">\n<g fill=\"#bbb\">\n",
         SIZE.0, SIZE.1
     );
+    let size = if flat.len() < SMALL { 2 } else { 1 };
     let step = flat.len().div_ceil(MOST).max(1);
     for i in (0..flat.len()).step_by(step) {
         let (x, y) = at(i);
-        let _ = writeln!(text, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"1\"/>");
+        let _ = writeln!(text, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{size}\"/>");
     }
     text += "</g>\n";
     for (i, place) in field.places.iter().enumerate() {

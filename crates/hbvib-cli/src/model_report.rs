@@ -300,12 +300,13 @@ fn contacts(job: &Job, built: &Built, frequencies: &[Frequencies], warnings: &mu
     let model = &built.model;
     let lowest = frequencies.iter().flat_map(|of| &of.stuck_hz).filter(|f| **f > 0.0);
     let lowest = lowest.copied().fold(f64::INFINITY, f64::min);
-    let rest = match model.ndof() <= AT_REST && lowest.is_finite() {
-        false => Vec::new(),
-        true => at_rest(built, 0.3 * TAU * lowest).unwrap_or_else(|e| {
+    let rest = if model.ndof() <= AT_REST && lowest.is_finite() {
+        at_rest(built, 0.3 * TAU * lowest).unwrap_or_else(|e| {
             warnings.push(format!("contacts at rest: {e}"));
             Vec::new()
-        }),
+        })
+    } else {
+        Vec::new()
     };
     let name = |dofs: &[Option<usize>; 3]| dofs.iter().flatten().map(|dof| built.nodes.name_of(*dof)).collect();
     let position = |dofs: &[Option<usize>; 3]| {

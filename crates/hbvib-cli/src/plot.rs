@@ -31,9 +31,10 @@ pub fn plot(of: &PlotArguments) -> Outcome<u8> {
     };
     let chart = Chart {
         title: of.title.clone().unwrap_or_default(),
-        x_label: match is_mode && of.damping {
-            true => "log10 of the modal amplitude".into(),
-            false => "frequency, Hz".into(),
+        x_label: if is_mode && of.damping {
+            "log10 of the modal amplitude".into()
+        } else {
+            "frequency, Hz".into()
         },
         y_label,
         log_x: of.log_x,

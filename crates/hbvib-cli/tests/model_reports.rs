@@ -5,6 +5,7 @@ mod common;
 
 use serde_json::Value;
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -43,10 +44,10 @@ fn three_nodes() -> String {
     std::fs::create_dir_all(&folder).unwrap();
     let (mut stiffness, mut mass, mut mesh) = (String::new(), String::new(), String::new());
     for (node, x, k, m) in NODES {
-        mesh += &format!("{node}, {x}, 1.0, -2.0\n");
+        let _ = writeln!(mesh, "{node}, {x}, 1.0, -2.0");
         for d in 1..=3 {
-            stiffness += &format!("{node},{d}, {node},{d}, {k:?}\n");
-            mass += &format!("{node},{d}, {node},{d}, {m:?}\n");
+            let _ = writeln!(stiffness, "{node},{d}, {node},{d}, {k:?}");
+            let _ = writeln!(mass, "{node},{d}, {node},{d}, {m:?}");
         }
     }
     let file = |name: &str, text: &str| {
