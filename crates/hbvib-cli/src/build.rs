@@ -114,7 +114,6 @@ pub fn built(job: &Job) -> Outcome<Built> {
         fixed,
         pairs: face_pairs,
         dofs: face_dofs,
-        mut fixed,
     } = match &part.faces {
         Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
         None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
@@ -125,7 +124,6 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model.set_wave(part.engine_order);
     if part.faces.is_none() && !part.fixed.is_empty() {
         model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
-        fixed.clone_from(&part.fixed);
     }
     for (kind, a) in &given.own {
         with_view(a, |view| model.set_matrix(*kind, view)).map_err(|e| format!("[model]: {e}"))?;

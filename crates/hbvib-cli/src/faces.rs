@@ -38,9 +38,8 @@ pub struct Sector {
     pub fixed: Vec<usize>,
     /// Left and right node of each pair, and the distance of the right one from the image of the left one.
     pub pairs: Vec<(i64, i64, f64)>,
-    /// Degrees of freedom of both faces, and those that are fixed.
+    /// Degrees of freedom of both faces.
     pub dofs: Vec<usize>,
-    pub fixed: Vec<usize>,
 }
 
 impl Sector {
@@ -53,7 +52,6 @@ impl Sector {
             fixed: Vec::new(),
             pairs: Vec::new(),
             dofs: Vec::new(),
-            fixed: Vec::new(),
         }
     }
 }
@@ -105,7 +103,6 @@ pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcom
         fixed: faces.fixed,
         pairs: faces.pairs,
         dofs: faces.left.iter().chain(&faces.right).flatten().copied().collect(),
-        fixed,
     })
 }
 

@@ -168,6 +168,15 @@ fn kept(job: &Job, full: &Built, more: &[String]) -> Outcome<Vec<usize>> {
             .map_or_else(|_| DofName::Node(name.clone()), DofName::Number);
         kept.insert(full.nodes.dof(&name).map_err(|e| format!("--keep: {e}"))?);
     }
+    // Relative motions of surfaces need both sides.
+    if let Some(relative) = &full.nodes.relative {
+        let others: Vec<usize> = kept
+            .iter()
+            .flat_map(|row| relative.weights(*row))
+            .map(|(row, _)| *row as usize)
+            .collect();
+        kept.extend(others);
+    }
     for row in &full.fixed {
         kept.remove(row);
     }
