@@ -12,26 +12,31 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "rod of 40, 10 sliders, H 3, an evaluation",
         unit: Unit::Lu11,
+        stored: 162.0,
         run: || evaluation(&rod(40, 10)?, 39),
     },
     Row {
         name: "rod of 2,000, 10 sliders, H 3, an evaluation",
         unit: Unit::Lu11,
+        stored: 5_950.0,
         run: || evaluation(&rod(2000, 10)?, 1999),
     },
     Row {
         name: "plate of 54, 10 sliders, H 3, an evaluation",
         unit: Unit::Lu11,
+        stored: 53.7,
         run: || plate_evaluation([3, 2, 1]),
     },
     Row {
         name: "plate of 2,040, 10 sliders, H 3, an evaluation",
         unit: Unit::Lu11,
+        stored: 170.0,
         run: || plate_evaluation([20, 16, 1]),
     },
     Row {
         name: "plate of 5,130, 20 sliders, H 3, whole response",
         unit: Unit::Faer(500),
+        stored: 171.0,
         run: || {
             let plate = Plate::new([30, 18, 2]);
             let model = plate.with_sliders(20, 2e5, 0.05)?;
@@ -42,6 +47,7 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "300 sliders on 1,000, H 3, most slipping, one of 40 points",
         unit: Unit::Faer(1000),
+        stored: 9.98,
         run: || {
             let model = rod(1000, 300)?;
             let (branch, seconds) = about_first_mode(&model, 999, (40, 0.0))?;
@@ -56,7 +62,7 @@ pub const ROWS: &[Row] = &[
 ];
 
 /// A rod of n equal masses, clamped at one end and forced at the other, with sliders to the ground.
-fn rod(n: usize, sliders: usize) -> Result<Model> {
+pub fn rod(n: usize, sliders: usize) -> Result<Model> {
     let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
     let spring = 1e6 * n as f64;
     for i in 0..n {
@@ -86,7 +92,7 @@ fn rod(n: usize, sliders: usize) -> Result<Model> {
 }
 
 /// A sweep over a tenth about the first resonance with stuck contacts, and its seconds without the modes.
-fn about_first_mode(
+pub fn about_first_mode(
     model: &Model,
     response: usize,
     (max_points, step_max): (usize, f64),

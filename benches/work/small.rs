@@ -13,31 +13,37 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "case B, 20 N, H 9, about 200 points",
         unit: Unit::Lu11,
+        stored: 2_440.0,
         run: || Ok(Work::whole(&case_b(9, 8.2e-3, 20_000)?)),
     },
     Row {
         name: "case B, 20 N, H 9, default steps",
         unit: Unit::Lu11,
+        stored: 1_240.0,
         run: || Ok(Work::whole(&case_b(9, 0.0, 20_000)?)),
     },
     Row {
         name: "case B, 20 N, H 127, all",
         unit: Unit::Lu11,
+        stored: 56_300.0,
         run: || Ok(Work::whole(&case_b(127, 0.0, 20_000)?)),
     },
     Row {
         name: "case B, 20 N, H 127, first point",
         unit: Unit::Lu11,
+        stored: 2_840.0,
         run: || Ok(Work::whole(&case_b(127, 0.0, 1)?)),
     },
     Row {
         name: "ring damper, backbone, H 9, about 64 points",
         unit: Unit::Lu11,
+        stored: 2_490.0,
         run: backbone,
     },
     Row {
         name: "ring damper, 5 N, tolerance 1e-3, 205 to 213 Hz",
         unit: Unit::Lu11,
+        stored: 94_100.0,
         run: tolerance,
     },
 ];

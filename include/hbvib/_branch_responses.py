@@ -10,7 +10,7 @@ from ._c import Reading
 from ._calls import _call, _Owner, _stoppable
 from ._convert import _whole
 from ._responses import Response, Responses, WatchedResponse, listed, structures
-from ._results import Points
+from ._results import Kinks, Points
 from ._structs import _new
 
 if TYPE_CHECKING:
@@ -72,8 +72,9 @@ class _BranchResponses(_Owner):
         curve: Branch = cast("Branch", self)
         asked = listed(responses)
         value, number, instant = self._read(asked, curve.stored, dict(phase=phase, cancel=cancel))
-        none, nowhere = np.full(curve.stored, np.nan), Points(np.empty(0), np.empty(0), np.empty(0, np.int64))
-        return tuple(WatchedResponse(one, len(curve), (value[r], number[r], none, instant[r]), nowhere)
+        none, place, no_number = np.full(curve.stored, np.nan), np.empty(0), np.empty(0, np.int64)
+        beside = Points(place, place, no_number), Kinks(place, place, no_number, no_number)
+        return tuple(WatchedResponse(one, len(curve), (value[r], number[r], none, instant[r]), *beside)
                      for r, one in enumerate(asked))
 
     def _read(self, asked: list[Response], stored: int,
@@ -90,7 +91,8 @@ class _BranchResponses(_Owner):
     def _watched(self, r: int, response: Response, points: int) -> WatchedResponse:
         readings = [self._reading(r, reading) for reading in Reading]
         peaks = Points(*self._listed("hbvib_branch_response_peaks", (r,), [float, float, np.int64]))
-        return WatchedResponse(response, points, readings, peaks)
+        kinks = Kinks(*self._listed("hbvib_branch_response_kinks", (r,), [float, float, np.int64, np.int64]))
+        return WatchedResponse(response, points, readings, peaks, kinks)
 
     def _reading(self, r: int, reading: Reading) -> Any:
         """A copy of a result of a response at all stored points."""

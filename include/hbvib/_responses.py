@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ._choices import Components, Measures
-    from ._results import ComplexArray, FloatArray, Points
+    from ._results import ComplexArray, FloatArray, Kinks, Points
 
 
 class Response:
@@ -136,7 +136,7 @@ class WatchedResponse:
     array([0.362])
     """
 
-    def __init__(self, response: Response, points: int, readings: Sequence[Any], peaks: Points) -> None:
+    def __init__(self, response: Response, points: int, readings: Sequence[Any], peaks: Points, kinks: Kinks) -> None:
         value, number, error, instant = readings
         self.response: Response = response
         self.stored: FloatArray = value
@@ -144,7 +144,7 @@ class WatchedResponse:
         self.complex: ComplexArray = number[:points]
         self.error: FloatArray = error[:points]
         self.instant: FloatArray = instant[:points]
-        self._readings, self._peaks = readings, peaks
+        self._readings, self._peaks, self._kinks = readings, peaks, kinks
 
     def __repr__(self) -> str:
         return f"<hbvib.WatchedResponse of {self.response!r}: {len(self.amplitude)} points, {len(self._peaks.omega)} peaks>"
@@ -160,3 +160,17 @@ class WatchedResponse:
         array([1.416])
         """
         return self._peaks
+
+    def kinks(self) -> Kinks:
+        """Where another instant of the period takes the lead of a peak or a range: omega, amplitude, and the numbers of the
+        points on both sides, at which derivatives are those of the sides.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+        >>> model.add_force(0, 0.2)
+        >>> model.add_force(0, 0.3j, harmonic=2)
+        >>> branch = model.forced_response((0.6, 0.9), responses=[hbvib.Response(0, "peak")])
+        >>> branch.responses[0].kinks().omega.round(3)
+        array([])
+        """
+        return self._kinks

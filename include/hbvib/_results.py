@@ -316,6 +316,22 @@ class Verification(NamedTuple):
     status: Status
 
 
+class Kinks(NamedTuple):
+    """Kinks of a response: omega, amplitude, numbers of the points before and behind them.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.2), responses=[hbvib.Response(0, "peak")])
+    >>> len(branch.responses[0].kinks().omega)  # one harmonic has one largest instant
+    0
+    """
+    omega: FloatArray
+    amplitude: FloatArray
+    before: IntArray
+    after: IntArray
+
+
 class Optima(NamedTuple):
     """Optima of a parameter response: value of the parameter, amplitude or damping ratio, kind, point number.
 

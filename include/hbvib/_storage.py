@@ -15,7 +15,7 @@ from ._model import Model
 from ._recomputed import check, recomputed
 from ._responses import Response, WatchedResponse
 from ._responses import contents as response_contents
-from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Wanted
+from ._results import Bifurcations, HigherPeaks, Kinks, LimitCycles, Loop, Optima, Points, Wanted
 from ._stored_point import requests
 from ._tables import fields
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction
@@ -47,6 +47,7 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
     about["responses"] = [response_contents(watched.response) for watched in branch.responses]
     for r, watched in enumerate(branch.responses):
         lists[f"response/{r}/peaks"] = watched.peaks()
+        lists[f"response/{r}/kinks"] = watched.kinks()
         for reading, values in zip(Reading, watched._readings):
             arrays[f"response/{r}/{reading.name.lower()}"] = values
     arrays["at_values"] = branch._at
@@ -281,7 +282,10 @@ class SavedBranch(Branch):
         found = []
         for r, about in enumerate(self._about.get("responses", [])):
             readings = [self._arrays[f"response/{r}/{reading.name.lower()}"] for reading in Reading]
-            found.append(WatchedResponse(Response(**about), len(self), readings, self._list(Points, f"response/{r}/peaks")))
+            place = f"response/{r}/kinks"
+            # Earlier files do not know them.
+            kinks = self._list(Kinks, place) if f"{place}/omega" in self._arrays else Kinks(*[np.empty(0)] * 4)
+            found.append(WatchedResponse(Response(**about), len(self), readings, self._list(Points, f"response/{r}/peaks"), kinks))
         return tuple(found)
 
     def _read(self, asked: list[Response], stored: int,

@@ -25,6 +25,7 @@ impl BranchTracer<'_> {
             })?;
         }
         self.find_peaks_of_responses(analysis, a, b)?;
+        self.find_kinks_of_responses(analysis, a, b)?;
         if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
             && level.between(a.0, b.0)
         {

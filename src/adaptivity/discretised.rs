@@ -7,6 +7,7 @@ use crate::error_estimate::Estimate;
 use crate::interrupt::Interrupt;
 use crate::model::resonances::Resonance;
 use crate::problem::Problem;
+use crate::problem::gauges::Seen;
 use crate::results::{Branch, SpecialKind, Verdict};
 
 /// An estimate with the error that the tolerance bounds; NaN if unknown.
@@ -89,6 +90,16 @@ pub(crate) trait Discretised {
     /// A point of a resolution as a further response sees it: its amplitude and slope are those of the response.
     fn seen_by(&mut self, _response: usize, (point, _resolution): PointAt<'_>) -> Result<Point> {
         point.try_clone()
+    }
+
+    /// Number of the responses that were asked for.
+    fn responses(&self) -> usize {
+        0
+    }
+
+    /// A response at a point of a resolution; `None` where it has no instant.
+    fn reading_of(&mut self, _response: usize, (_point, _resolution): PointAt<'_>) -> Result<Option<Seen>> {
+        Ok(None)
     }
 
     /// Selects the most accurate evaluation for [`Self::linear_at`].

@@ -231,6 +231,7 @@ impl BranchTracer<'_> {
                 let high = analysis.seen_by(response, (high, resolution))?;
                 self.find_peaks(analysis, SpecialKind::PeakOf(response), &low, &high)?;
             }
+            self.find_kinks_of_responses(analysis, (a, resolution), (b, resolution))?;
         }
         for (i, &p) in self.course.at.iter().enumerate() {
             let inside = (pa <= p && p < pb) || (pb < p && p <= pa) || (last && p.to_bits() == pb.to_bits());

@@ -24,6 +24,7 @@ mod linear_stretch;
 pub(crate) mod resolutions;
 pub(crate) mod resonance_bands;
 pub(crate) mod resonance_grid;
+mod response_kinks;
 mod response_peaks;
 mod retracing;
 pub(crate) mod transfer;

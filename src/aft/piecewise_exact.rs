@@ -13,6 +13,7 @@ use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// Tables and memory of the exact evaluation for one harmonic set.
@@ -126,15 +127,68 @@ pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Comp
     // (e^{−ina} − e^{−inb})/(in) = e^{−inc}·2 sin(nd)/n about the middle c: relative accuracy for pieces however short,
     // which near-rigid contacts multiply by a large stiffness.
     let (middle, half) = (Complex64::cis(-0.5 * (a + b)), Complex64::cis(0.5 * (b - a)));
-    // Four powers side by side, none of which waits for another.
-    let powers = |z: Complex64| [z, z * z, z * z * z, (z * z) * (z * z)];
-    let (mut zc, mut zd) = (powers(middle), powers(half));
-    let fourth = (zc[3], zd[3]);
-    for (k, to) in rest.chunks_mut(4).enumerate() {
-        for ((i, to), (zc, zd)) in to.iter_mut().enumerate().zip(zc.iter_mut().zip(&mut zd)) {
-            *to = *zc * (2.0 * scale * zd.im / (4 * k + i + 1) as f64);
-            *zc *= fourth.0;
-            *zd *= fourth.1;
+    Arch::new().dispatch(Harmonics(middle, half, 2.0 * scale, rest));
+}
+
+/// Powers side by side, none of which waits for another.
+const SIDE_BY_SIDE: usize = 4;
+
+/// zₙ = middleⁿ·(factor·Im halfⁿ/n) for n from 1 on.
+struct Harmonics<'a>(Complex64, Complex64, f64, &'a mut [Complex64]);
+
+/// Four complex numbers, real parts first.
+type Powers = [[f64; SIDE_BY_SIDE]; 2];
+
+impl WithSimd for Harmonics<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self(middle, half, factor, to) = self;
+        let ((mut of_middle, by_middle), (mut of_half, by_half)) = (powers(middle), powers(half));
+        let mut number = [1.0, 2.0, 3.0, 4.0];
+        let (blocks, last) = to.as_chunks_mut::<SIDE_BY_SIDE>();
+        for to in blocks {
+            *to = products(&of_middle, &of_half, factor, &number);
+            multiply(&mut of_middle, by_middle);
+            multiply(&mut of_half, by_half);
+            number = number.map(|n| n + SIDE_BY_SIDE as f64);
         }
+        let rest = products(&of_middle, &of_half, factor, &number);
+        last.copy_from_slice(&rest[..last.len()]);
     }
+}
+
+/// z, z², z³, z⁴ and z⁴.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+fn powers(z: Complex64) -> (Powers, Complex64) {
+    let square = z * z;
+    let all = [z, square, square * z, square * square];
+    ([all.map(|z| z.re), all.map(|z| z.im)], all[3])
+}
+
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+fn multiply([re, im]: &mut Powers, by: Complex64) {
+    for (re, im) in re.iter_mut().zip(im) {
+        (*re, *im) = (*re * by.re - *im * by.im, *re * by.im + *im * by.re);
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+fn products(
+    [re, im]: &Powers,
+    [_, sine]: &Powers,
+    factor: f64,
+    number: &[f64; SIDE_BY_SIDE],
+) -> [Complex64; SIDE_BY_SIDE] {
+    let mut to = [Complex64::ZERO; SIDE_BY_SIDE];
+    for i in 0..SIDE_BY_SIDE {
+        let factor = factor * sine[i] / number[i];
+        to[i] = Complex64::new(re[i] * factor, im[i] * factor);
+    }
+    to
 }

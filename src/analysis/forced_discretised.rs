@@ -23,8 +23,9 @@ use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::resonances::Resonance;
 use crate::model::spring::along;
-use crate::options::{Response, SolverOptions};
+use crate::options::{Measure, Response, SolverOptions};
 use crate::problem::Problem;
+use crate::problem::gauges::Seen;
 use crate::results::{Branch, Resolution, SpecialKind, Verdict};
 use num_complex::Complex64;
 
@@ -372,6 +373,32 @@ impl Discretised for ForcedDiscretised<'_> {
 
     fn further_responses(&self) -> core::ops::Range<usize> {
         usize::from(self.responses.is_observed())..self.responses.list.len()
+    }
+
+    fn responses(&self) -> usize {
+        self.responses.list.len()
+    }
+
+    fn reading_of(&mut self, response: usize, (point, resolution): PointAt<'_>) -> Result<Option<Seen>> {
+        let has_instant = |one: &Response<'_>| matches!(one.measure, Measure::Peak | Measure::Range);
+        if !self.responses.list.get(response).is_some_and(has_instant) {
+            return Ok(None);
+        }
+        let current = self.resolutions.index();
+        let is_known = self.responses.has_read((point, resolution));
+        if !is_known {
+            self.select(resolution)?;
+        }
+        let problem = &mut self.resolutions.current.problem;
+        let found = self
+            .responses
+            .read_at(problem, (point, resolution))?
+            .get(response)
+            .copied();
+        if !is_known {
+            self.select(current)?;
+        }
+        Ok(found)
     }
 
     fn observes_peaks(&self) -> bool {

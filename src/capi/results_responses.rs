@@ -125,6 +125,76 @@ pub unsafe extern "C" fn hbvib_branch_response_peaks(
     })
 }
 
+/// Kinks of a peak or a range, where another instant of the period takes the lead and the slope of
+/// the measure jumps. Derivatives at the two points of a kink are those of its two sides.
+///
+/// response   number of the response, from 0.
+/// capacity   numbers that fit into each array.
+/// omega      receives their angular frequencies, or NULL.
+/// value      receives the measures there, or NULL.
+/// before     receives the numbers of the last points before them, or NULL.
+/// after      receives the numbers of the first points behind them, or NULL.
+/// kinks      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity too small: the arrays are
+/// untouched), HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any
+/// number on one branch.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_branch_response_kinks(
+    branch: *const hbvib_branch,
+    response: i64,
+    capacity: i64,
+    omega: *mut f64,
+    value: *mut f64,
+    before: *mut i64,
+    after: *mut i64,
+    kinks: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        check_pointer(kinks, 8, "kinks")?;
+        let all = kept.branch.responses();
+        let of = &all[index(response, all.len(), 2, "response")?];
+        let n = of.kinks().len();
+        let capacity = count(capacity, 3, "capacity")?;
+        unsafe { kinks.write(n as i64) };
+        let none = omega.is_null() && value.is_null() && before.is_null() && after.is_null();
+        if none {
+            return Ok(Status::Ok);
+        }
+        if capacity < n {
+            return fail!(Dimension, "capacity = {capacity}, needs {n}").with_argument(3);
+        }
+        disjoint(
+            &[],
+            &[
+                Range::new(omega, n, 4, "omega")?,
+                Range::new(value, n, 5, "value")?,
+                Range::new(before, n, 6, "before")?,
+                Range::new(after, n, 7, "after")?,
+            ],
+        )?;
+        for (i, (first, last)) in of.kinks().enumerate() {
+            unsafe {
+                if !omega.is_null() {
+                    omega.add(i).write(first.omega);
+                }
+                if !value.is_null() {
+                    value.add(i).write(first.amplitude);
+                }
+                if !before.is_null() {
+                    before.add(i).write(first.point as i64);
+                }
+                if !after.is_null() {
+                    after.add(i).write(last.point as i64);
+                }
+            }
+        }
+        Ok(Status::Ok)
+    })
+}
+
 /// Number of the response with the largest error at a stored point, in the norm that the tolerance
 /// has; HBVIB_E_INDEX where there is no such point, HBVIB_E_ARGUMENT where no error is known.
 ///

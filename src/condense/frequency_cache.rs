@@ -179,8 +179,10 @@ impl FrequencyCache {
             && let Some(lanes) = &self.lanes
             && lanes.evaluate(omega, &mut self.current)
         {
-            for (i, table) in self.current.iter_mut().enumerate() {
-                condensed.exchange(i, table);
+            if condensed.has_exchanges() {
+                for (i, table) in self.current.iter_mut().enumerate() {
+                    condensed.exchange(i, table);
+                }
             }
             self.tabulated = Some((omega, self.way));
             return Ok(());

@@ -16,6 +16,9 @@ use std::f64::consts::{PI, TAU};
 
 const CONTEXT: &str = "a response";
 
+/// Relative difference of extremes that rounding makes.
+const SAME_SIZE: f64 = 1e-12;
+
 /// The number that was read.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
@@ -32,6 +35,8 @@ pub struct Reader {
     turning_points: TurningPoints,
     extrema: Vec<Extremum>,
     weights: Vec<Complex64>,
+    /// Instants of the extremes that were read last; NaN for measures without them.
+    instants: [f64; 2],
 }
 
 impl Reader {
@@ -48,6 +53,7 @@ impl Reader {
             turning_points: TurningPoints::new(set)?,
             extrema,
             weights: try_vec(set.numbers().len(), Complex64::ZERO, CONTEXT)?,
+            instants: [f64::NAN; 2],
         })
     }
 
@@ -64,6 +70,23 @@ impl Reader {
         self.weights.iter().enumerate().map(part).sum()
     }
 
+    /// The reduced times of the extremes that were read last, and their derivatives −ẋ′/ẍ along a change of the signal; NaN for
+    /// measures without them.
+    #[must_use]
+    pub fn instants(&self, set: &HarmonicSet, packed: &[f64], change: &[f64]) -> ([f64; 2], [f64; 2]) {
+        let rates = self.instants.map(|tau| {
+            let (mut moved, mut bend) = (0.0, 0.0);
+            for (i, number) in set.numbers().iter().enumerate() {
+                let p = (number / set.base().max(1)) as f64;
+                let turn = Complex64::cis(p * tau);
+                moved += (Complex64::new(0.0, p) * set.get(change, i) * turn).re;
+                bend -= (p * p * set.get(packed, i) * turn).re;
+            }
+            -moved / bend
+        });
+        (self.instants, rates)
+    }
+
     /// Reads a packed signal.
     ///
     /// # Errors
@@ -76,6 +99,7 @@ impl Reader {
         interrupt: &Interrupt<'_>,
     ) -> Result<Reading> {
         self.weights.fill(Complex64::ZERO);
+        self.instants = [f64::NAN; 2];
         let nothing = Complex64::new(f64::NAN, f64::NAN);
         Ok(match measure {
             Measure::Fundamental => self.harmonic(set, set.numbers().get(set.watched()).copied().unwrap_or(0), packed),
@@ -99,6 +123,7 @@ impl Reader {
             }
             Measure::Peak => {
                 let first = self.extremes(set, packed, interrupt, f64::abs)?;
+                self.instants[0] = first.tau;
                 self.add_instant(set, first.tau, if first.x < 0.0 { -1.0 } else { 1.0 });
                 Reading {
                     value: first.x.abs(),
@@ -109,6 +134,7 @@ impl Reader {
             Measure::Range => {
                 let high = self.extremes(set, packed, interrupt, |x| x)?;
                 let low = self.extremes(set, packed, interrupt, |x| -x)?;
+                self.instants = [high.tau, low.tau];
                 self.add_instant(set, high.tau, 1.0);
                 self.add_instant(set, low.tau, -1.0);
                 Reading {
@@ -159,7 +185,8 @@ impl Reader {
                 *e
             };
             let of = size(e.x);
-            if of > largest {
+            // Of images of each other, which differ by rounding, the first one leads.
+            if largest == f64::NEG_INFINITY || of > largest + SAME_SIZE * largest.abs() {
                 (best, largest) = (e, of);
             }
         }

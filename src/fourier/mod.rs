@@ -1,5 +1,6 @@
 //! Real Fourier series: the carried harmonics and their packing, values and roots, transforms.
 
+mod cubic_cell;
 mod harmonic_set;
 mod measured;
 mod roots;

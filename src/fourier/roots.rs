@@ -8,7 +8,7 @@ const EVENT_TOLERANCE: f64 = 1e-9;
 const MOST_VALUES: usize = 100;
 
 /// Largest error that the curvature leaves after the last step of Halley's method.
-const LAST_ERROR: f64 = 1e-17;
+const LAST_ERROR: f64 = 3e-15;
 
 /// Two times between which a function changes its sign.
 struct Bracket {

@@ -93,9 +93,9 @@ impl<'a> Approach<'a> {
     }
 }
 
-/// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
-/// cube of the step.
-const LAST_STEP: f64 = 3e-6;
+/// Longest step, in angles of the highest harmonic, after which the error of Halley's method no longer matters: it is the cube
+/// of the step, and forces err by the square of that.
+const LAST_STEP: f64 = 2e-5;
 
 fn last_step(set: &HarmonicSet) -> f64 {
     LAST_STEP / set.highest_reduced().max(1) as f64
@@ -116,12 +116,16 @@ pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: 
     })
 }
 
-/// The time between two at which x′ vanishes, and x there; `slopes` are the values of x′ at both, of opposite sign.
-pub(super) fn turning_point(set: &HarmonicSet, packed: &[f64], (a, b): (f64, f64), slopes: (f64, f64)) -> (f64, f64) {
-    let guess = a - slopes.0 * (b - a) / (slopes.1 - slopes.0);
+/// The time between two at which x′, of opposite signs there, vanishes, and x there; from x′ at the first one and a guess.
+pub(super) fn turning_point(
+    set: &HarmonicSet,
+    packed: &[f64],
+    (a, b): (f64, f64),
+    (slope, guess): (f64, f64),
+) -> (f64, f64) {
     let mut signal = Approach::new(set, packed);
     let mut last = (0.0, 0.0, 0.0);
-    let tau = safe_halley((a, b), slopes.0, (guess, last_step(set)), |tau| {
+    let tau = safe_halley((a, b), slope, (guess, last_step(set)), |tau| {
         let at = signal.at(tau);
         last = (tau, at.x, at.dx);
         [at.dx, at.ddx, at.dddx]

@@ -2,6 +2,7 @@
 
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::fourier::cubic_cell::CubicCell;
 use crate::fourier::series::{jet, turning_point};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
@@ -28,7 +29,8 @@ const POINTS_PER_WAVE: usize = 8;
 /// Highest reduced harmonic up to which a table of sines is quicker than a transform.
 const TABLE_LIMIT: usize = 40;
 
-/// Finds every turning point of motions with one harmonic set: x′ on a grid, then roots in its cells.
+/// Finds every turning point of motions with one harmonic set: x′ and x″ on a grid, then roots of x′ in its cells, where it is
+/// nearly a cubic.
 ///
 /// For sets of odd harmonics only [0, π) is scanned: x(τ + π) = −x(τ).
 pub struct TurningPoints {
@@ -36,13 +38,15 @@ pub struct TurningPoints {
     points: usize,
     spacing: f64,
     slope: Vec<f64>,
+    /// x″ there.
+    turning: Vec<f64>,
     kind: Grid,
 }
 
 enum Grid {
     /// Per harmonic the rows −p sin(pτⱼ) and −p cos(pτⱼ).
     Table(Vec<f64>),
-    /// Inverse transform of i·p·Xₚ over the whole turn.
+    /// Inverse transform over the whole turn of x′ + i x″.
     Transform {
         plan: Arc<dyn Fft<f64>>,
         buffer: Vec<Complex64>,
@@ -82,6 +86,7 @@ impl TurningPoints {
                 points: if set.is_odd() { whole / 2 } else { whole },
                 spacing: TAU / whole as f64,
                 slope: try_vec(whole + 1, 0.0, "a scan for turning points")?,
+                turning: try_vec(whole + 1, 0.0, "a scan for turning points")?,
                 kind: Grid::Transform {
                     plan,
                     buffer: try_vec(whole, Complex64::ZERO, "a transform")?,
@@ -94,6 +99,7 @@ impl TurningPoints {
             points,
             spacing,
             slope: try_vec(points + 1, 0.0, "a scan for turning points")?,
+            turning: try_vec(points + 1, 0.0, "a scan for turning points")?,
             kind,
         })
     }
@@ -102,7 +108,7 @@ impl TurningPoints {
     /// [0, π) for sets of odd harmonics. A constant signal has none.
     ///
     /// No turning point is missed, however close to another: a force that lost a pair of them would jump as the
-    /// motion varies. Bounds of x‴ identify the cells with at most one root; the others are halved until x varies
+    /// motion varies. Bounds of derivatives identify the cells with at most one root; the others are halved until x varies
     /// in them by no more than rounding.
     ///
     /// # Errors
@@ -124,7 +130,9 @@ impl TurningPoints {
         let n = self.points;
         let odd = set.is_odd();
         // One point past the end closes the cycle, with the sign that the mirror image has there.
-        self.slope[n] = if odd { -self.slope[0] } else { self.slope[0] };
+        for values in [&mut self.slope, &mut self.turning] {
+            values[n] = if odd { -values[0] } else { values[0] };
+        }
         // The sign at the start is that of the last value before it above rounding.
         let before = self.slope[..n].iter().rfind(|f| f.abs() > bounds.noise);
         let first = before.map_or(self.slope[0] > 0.0, |f| (*f > 0.0) != odd);
@@ -138,31 +146,37 @@ impl TurningPoints {
         let mut left = Slope {
             tau: 0.0,
             value: self.slope[0],
+            turning: self.turning[0],
             positive: sign(self.slope[0], first),
         };
         let start = left.positive;
         let hidden = bounds.largest_dip(self.spacing);
         // Most cells hold no root, and certainly none: both ends are far from zero, on the same side.
         let far = hidden.max(bounds.noise);
-        let mut j = 1;
+        let (mut j, mut next_block) = (1, 1);
         while j <= n {
-            if j + BLOCK <= n
-                && let Some(block) = self.slope[j..].first_chunk::<BLOCK>()
-                && is_far(left.value, block, far)
-            {
-                j += BLOCK;
-                (left.tau, left.value) = ((j - 1) as f64 * self.spacing, block[BLOCK - 1]);
-                continue;
+            if j >= next_block {
+                next_block = j + BLOCK;
+                if next_block <= n
+                    && let Some(block) = self.slope[j..].first_chunk::<BLOCK>()
+                    && is_far(left.value, block, far)
+                {
+                    j = next_block;
+                    (left.tau, left.value) = ((j - 1) as f64 * self.spacing, block[BLOCK - 1]);
+                    left.turning = self.turning[j - 1];
+                    continue;
+                }
             }
-            let (value, tau) = (self.slope[j], j as f64 * self.spacing);
+            let (value, turning, tau) = (self.slope[j], self.turning[j], j as f64 * self.spacing);
             j += 1;
-            if j <= n && (value.min(left.value) > far || value.max(left.value) < -far) {
-                (left.tau, left.value) = (tau, value);
+            if j <= n && ((value > far && left.value > far) || (value < -far && left.value < -far)) {
+                (left.tau, left.value, left.turning) = (tau, value, turning);
                 continue;
             }
             let right = Slope {
                 tau,
                 value,
+                turning,
                 positive: if j > n {
                     start != odd
                 } else {
@@ -189,22 +203,32 @@ impl TurningPoints {
         Ok(())
     }
 
-    /// x′ at the grid points.
+    /// x′ and x″ at the grid points.
     fn scan(&mut self, set: &HarmonicSet, packed: &[f64]) {
         let n = self.points;
         let rest = &packed[usize::from(set.has_mean())..];
-        let slope = &mut self.slope[..n];
+        let (slope, turning) = (&mut self.slope[..n], &mut self.turning[..n]);
         match &mut self.kind {
-            Grid::Table(table) => self.arch.dispatch(Scan { slope, rest, table }),
+            Grid::Table(table) => self.arch.dispatch(Scan {
+                slope,
+                turning,
+                rest,
+                table,
+                numbers: (1.0, set.stride() as f64),
+            }),
             Grid::Transform { plan, buffer, scratch } => {
+                let whole = buffer.len();
                 buffer.fill(Complex64::ZERO);
                 for (k, pair) in rest.chunks_exact(2).enumerate() {
                     let p = set.reduced(k);
-                    buffer[p] = Complex64::new(-pair[1], pair[0]) * p as f64;
+                    // Half of i·p·Xₚ, and i times half of −p²·Xₚ, with their mirror images.
+                    let (half, number) = (0.5 * p as f64 * Complex64::new(-pair[1], pair[0]), p as f64);
+                    buffer[p] = half - number * half;
+                    buffer[whole - p] = (half + number * half).conj();
                 }
                 plan.process_with_scratch(buffer, scratch);
-                for (s, z) in slope.iter_mut().zip(buffer.iter()) {
-                    *s = z.re;
+                for ((slope, turning), z) in slope.iter_mut().zip(turning).zip(buffer.iter()) {
+                    (*slope, *turning) = (z.re, z.im);
                 }
             }
         }
@@ -212,17 +236,17 @@ impl TurningPoints {
 }
 
 /// Cells that are judged together.
-const BLOCK: usize = 8;
+const BLOCK: usize = 4;
 
 /// Whether a value and all that follow are farther from zero than `far`, on the same side.
 #[inline]
 fn is_far(first: f64, block: &[f64; BLOCK], far: f64) -> bool {
-    let (mut above, mut below) = (first > far, first < -far);
-    for value in block {
-        above &= *value > far;
-        below &= *value < -far;
+    let (mut low, mut high) = (first, first);
+    for &value in block {
+        low = if value < low { value } else { low };
+        high = if value > high { value } else { high };
     }
-    above || below
+    low > far || high < -far
 }
 
 /// Sines of the angles that divide a turn into equal parts, a multiple of 4.
@@ -255,11 +279,14 @@ impl Sines {
     }
 }
 
-/// x′ at the times of a table.
+/// x′ and x″ at the times of a table.
 struct Scan<'a> {
     slope: &'a mut [f64],
+    turning: &'a mut [f64],
     rest: &'a [f64],
     table: &'a [f64],
+    /// The first reduced number, and the distance to the next.
+    numbers: (f64, f64),
 }
 
 impl WithSimd for Scan<'_> {
@@ -268,22 +295,33 @@ impl WithSimd for Scan<'_> {
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let Self { slope, rest, table } = self;
+        let Self {
+            slope,
+            turning,
+            rest,
+            table,
+            numbers: (mut p, stride),
+        } = self;
         let n = slope.len();
         slope.fill(0.0);
+        turning.fill(0.0);
         for (pair, rows) in rest.chunks_exact(2).zip(table.chunks_exact(2 * n)) {
             let (sines, cosines) = rows.split_at(n);
-            for ((s, &a), &b) in slope.iter_mut().zip(sines).zip(cosines) {
+            let faster = [p * pair[0], p * pair[1]];
+            for (((s, t), &a), &b) in slope.iter_mut().zip(&mut *turning).zip(sines).zip(cosines) {
                 *s += pair[0] * a + pair[1] * b;
+                *t += faster[0] * b - faster[1] * a;
             }
+            p += stride;
         }
     }
 }
 
 /// Bounds that distinguish one root of x′ in a cell from several.
 struct Bounds {
-    /// Bound of |x‴|.
+    /// Bounds of |x‴| and of the fifth derivative.
     bend: f64,
+    fifth: f64,
     /// Values of x′ up to this are rounding, mostly that of the angles pτ.
     noise: f64,
     /// Bound of |x|.
@@ -293,17 +331,19 @@ struct Bounds {
 impl Bounds {
     fn new(set: &HarmonicSet, packed: &[f64]) -> Self {
         let rest = &packed[usize::from(set.has_mean())..];
-        let (mut size, mut turn, mut bend) = (0.0, 0.0, 0.0);
+        let (mut size, mut turn, mut bend, mut fifth) = (0.0, 0.0, 0.0, 0.0);
         let (mut p, stride) = (1.0, set.stride() as f64);
         for [a, b] in rest.as_chunks::<2>().0 {
             let amplitude = a.abs() + b.abs();
             size += amplitude;
             turn += amplitude * p * p;
             bend += amplitude * p * p * p;
+            fifth += amplitude * p * p * p * p * p;
             p += stride;
         }
         Self {
             bend,
+            fifth,
             noise: 4.0 * f64::EPSILON * turn,
             size,
         }
@@ -325,6 +365,8 @@ impl Bounds {
 struct Slope {
     tau: f64,
     value: f64,
+    /// x″ there.
+    turning: f64,
     positive: bool,
 }
 
@@ -338,34 +380,38 @@ fn isolate(
 ) -> Result<()> {
     let width = b.tau - a.tau;
     let crosses = a.positive != b.positive;
-    // x″ departs from the slope of the chord of x′ by at most bend·width/2.
-    let certain = if crosses {
-        (b.value - a.value).abs() > 0.5 * bounds.bend * width * width
-    } else {
-        a.value.abs().min(b.value.abs()) > bounds.largest_dip(width)
-    };
-    if certain || width < bounds.finest() {
+    let cell = CubicCell::new([a.value, b.value], [a.turning, b.turning], width);
+    let is_certain =
+        cell.is_monotone(bounds.fifth, bounds.noise) || (!crosses && cell.keeps_sign(bounds.fifth, bounds.noise));
+    if is_certain || width < bounds.finest() {
         if crosses {
-            push_root(set, packed, a, b, found);
+            let guess = a.tau + width * cell.root();
+            push_root((set, packed), [a, b], guess, found);
         }
         return Ok(());
     }
     // A motion that hardly moves is halved to the end of the digits.
     interrupt.check_before(packed.len() as u64)?;
     let tau = 0.5 * (a.tau + b.tau);
-    let value = jet(set, packed, tau).dx;
+    let at = jet(set, packed, tau);
+    let (value, turning) = (at.dx, at.ddx);
     let positive = if value.abs() <= bounds.noise {
         a.positive
     } else {
         value > 0.0
     };
-    let middle = Slope { tau, value, positive };
+    let middle = Slope {
+        tau,
+        value,
+        turning,
+        positive,
+    };
     isolate((set, packed), [a, middle], bounds, found, interrupt)?;
     isolate((set, packed), [middle, b], bounds, found, interrupt)
 }
 
-/// Refines the root of x′ between two times of opposite sign and stores it.
-fn push_root(set: &HarmonicSet, packed: &[f64], a: Slope, b: Slope, found: &mut Vec<Extremum>) {
+/// Refines the root of x′ between two times of opposite sign from a guess, and stores it.
+fn push_root((set, packed): (&HarmonicSet, &[f64]), [a, b]: [Slope; 2], guess: f64, found: &mut Vec<Extremum>) {
     // Values of equal sign mean that one of them is rounding.
     if a.value * b.value >= 0.0 {
         let tau = if a.value.abs() < b.value.abs() { a.tau } else { b.tau };
@@ -373,7 +419,7 @@ fn push_root(set: &HarmonicSet, packed: &[f64], a: Slope, b: Slope, found: &mut 
         found.push(Extremum { tau, x });
         return;
     }
-    let (tau, x) = turning_point(set, packed, (a.tau, b.tau), (a.value, b.value));
+    let (tau, x) = turning_point(set, packed, (a.tau, b.tau), (a.value, guess));
     found.push(Extremum { tau, x });
 }
 
@@ -391,11 +437,13 @@ mod tests {
     #[test]
     fn turning_points_alternate_and_are_complete() {
         // Compared with a dense scan, on motions rich in high harmonics, by table and by transform.
-        for highest in [1, 2, 5, 9, 63] {
+        for (highest, k) in [1, 2, 5, 9, 63].into_iter().flat_map(|h| (0..8).map(move |k| (h, k))) {
             for odd in [false, true] {
                 let set = HarmonicSet::excited(&[1], highest, true, odd, false).unwrap();
                 let packed: Vec<f64> = (0..set.packed_len())
-                    .map(|i| ((i * 37 + highest) as f64 * 0.7).sin() / (1.0 + 0.3 * i as f64))
+                    .map(|i| {
+                        ((i * 37 + highest + 11 * k) as f64 * 0.7).sin() / (1.0 + 0.3 * i as f64).powi(1 + k as i32 % 3)
+                    })
                     .collect();
                 let found = extrema(&set, &packed);
                 let turn = if odd { PI } else { TAU };

@@ -114,6 +114,16 @@ impl WithSimd for Product<'_> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let Self(factor, a, x, out) = self;
         let rows = out.len();
+        // With few rows most of the time would be spent around loops of unknown length.
+        match rows {
+            2 => return few_rows::<2>(factor, a, x, out),
+            4 => return few_rows::<4>(factor, a, x, out),
+            6 => return few_rows::<6>(factor, a, x, out),
+            8 => return few_rows::<8>(factor, a, x, out),
+            10 => return few_rows::<10>(factor, a, x, out),
+            12 => return few_rows::<12>(factor, a, x, out),
+            _ => {}
+        }
         // Four columns at a time are summed before they are stored.
         let (fours, rest) = x.as_chunks::<4>();
         let (of_fours, of_rest) = a.split_at(4 * fours.len() * rows);
@@ -139,6 +149,22 @@ impl WithSimd for Product<'_> {
                 *out += a * x;
             }
         }
+    }
+}
+
+/// The same with N rows, which are summed in registers.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+fn few_rows<const N: usize>(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
+    let mut sum = [0.0; N];
+    for (column, x) in a.as_chunks::<N>().0.iter().zip(x) {
+        let x = factor * x;
+        for i in 0..N {
+            sum[i] += column[i] * x;
+        }
+    }
+    for (out, sum) in out.iter_mut().zip(sum) {
+        *out += sum;
     }
 }
 

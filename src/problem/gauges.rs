@@ -94,6 +94,10 @@ pub struct Seen {
     pub slope: f64,
     /// Derivative of the complex amplitude, NaN where there is none.
     pub complex_slope: Complex64,
+    /// Reduced times of the extremes, of a range the largest value first, and their changes along the direction; NaN where the
+    /// measure has none.
+    pub instants: [f64; 2],
+    pub instant_rates: [f64; 2],
 }
 
 impl Seen {
@@ -212,7 +216,10 @@ impl<'a> Gauges<'a> {
                 Measure::Fundamental => Some(set.watched()),
                 Measure::Peak | Measure::Rms | Measure::Range => None,
             };
+            let (instants, instant_rates) = self.reader.instants(set, signal, change);
             let of_seen = Seen {
+                instants,
+                instant_rates,
                 reading,
                 slope: self.reader.along(set, change),
                 complex_slope: number.map_or(Complex64::ZERO, |i| set.get(change, i)),

@@ -359,7 +359,15 @@ impl Jacobian for HarmonicBalance<'_> {
         let coordinates = self.condensed.coordinates();
         let n = active.len();
         self.forces.mark_active(active);
-        if active.contains(&true) {
+        let is_active = active.contains(&true);
+        if is_active
+            && self
+                .forces
+                .fill_single(self.tables.current(), &mut self.flexibility, matrix)?
+        {
+            return Ok(());
+        }
+        if is_active {
             for (i, table) in self.tables.current().iter().enumerate() {
                 let forces = table.value.chunks_exact(coordinates + 1).take(coordinates);
                 for (force, column) in forces.enumerate() {

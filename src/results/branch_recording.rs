@@ -49,6 +49,8 @@ pub(crate) enum SpecialKind {
     Peak,
     /// A peak of a further response.
     PeakOf(usize),
+    /// One side of a kink of a response; the other one follows or comes before.
+    KinkOf(usize),
     Fold,
     At(usize),
     /// Any but a fold, with the numbers of unstable directions before and after it.
@@ -64,10 +66,10 @@ impl SpecialKind {
         matches!(self, Self::Fold | Self::Bifurcation(BifurcationKind::Fold, _))
     }
 
-    /// The further response whose peak it is.
+    /// The response whose peak or kink it is.
     pub fn response(self) -> Option<usize> {
         match self {
-            Self::PeakOf(response) => Some(response),
+            Self::PeakOf(response) | Self::KinkOf(response) => Some(response),
             _ => None,
         }
     }
@@ -270,6 +272,13 @@ impl Branch {
                     return Ok(());
                 }
                 &mut self.peaks
+            }
+            SpecialKind::KinkOf(response) => {
+                let Some(of) = self.responses.get_mut(response) else {
+                    return crate::error::fail!(Internal, "a kink of an unknown response");
+                };
+                let amplitude = of.values()[point];
+                return of.push_kink(Special { amplitude, ..special });
             }
             SpecialKind::Fold => {
                 self.push_bifurcation((BifurcationKind::Fold, [None; 2]), after, special)?;

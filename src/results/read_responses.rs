@@ -102,6 +102,8 @@ impl Branch {
                     reading,
                     slope: f64::NAN,
                     complex_slope: Complex64::ZERO,
+                    instants: [f64::NAN; 2],
+                    instant_rates: [f64::NAN; 2],
                 };
                 // The recovered motion has the caller's unit.
                 series.push(&SeenWithError { seen, error: f64::NAN }, 1.0)?;

@@ -32,6 +32,8 @@ pub struct ResponseSeries {
     error: Vec<f64>,
     instant: Vec<f64>,
     peaks: Vec<Special>,
+    /// Both sides of each kink.
+    kinks: Vec<Special>,
 }
 
 impl ResponseSeries {
@@ -51,6 +53,7 @@ impl ResponseSeries {
             error: Vec::new(),
             instant: Vec::new(),
             peaks: Vec::new(),
+            kinks: Vec::new(),
         })
     }
 
@@ -70,6 +73,10 @@ impl ResponseSeries {
 
     pub(super) fn push_peak(&mut self, peak: Special) -> Result<()> {
         try_push(&mut self.peaks, peak, CONTEXT)
+    }
+
+    pub(super) fn push_kink(&mut self, side: Special) -> Result<()> {
+        try_push(&mut self.kinks, side, CONTEXT)
     }
 
     /// The response as it was asked for.
@@ -107,6 +114,12 @@ impl ResponseSeries {
     #[must_use]
     pub fn instants(&self) -> &[f64] {
         &self.instant
+    }
+
+    /// Kinks of a peak or a range, where another instant of the period takes the lead: the last solution before and the first one
+    /// behind, in the order of the branch. Derivatives at these points are those of the two sides.
+    pub fn kinks(&self) -> impl ExactSizeIterator<Item = (Special, Special)> {
+        self.kinks.chunks_exact(2).map(|sides| (sides[0], sides[1]))
     }
 
     /// Maxima of the measure, refined on the solution, in the order of the branch.

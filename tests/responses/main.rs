@@ -6,6 +6,7 @@ mod common;
 mod derivatives;
 mod engine_orders;
 mod everywhere;
+mod kinks;
 mod peaks;
 mod readings;
 mod refused;

@@ -332,10 +332,6 @@ fn couple_columns<const P: usize, K: Fn(usize) -> Complex64>(by: Coupling<'_, K>
         change,
         columns: (columns, n),
     } = by;
-    if P > 0 && mean == 0 && n == 2 * P {
-        couple_single::<P, K>(rows, jacobian, (kappa, first / 2), columns);
-        return;
-    }
     let pairs = if P > 0 { P } else { (change.len() - mean) / 2 };
     let m = 2 * pairs + mean;
     let change = &mut change[..m];
@@ -365,36 +361,6 @@ fn couple_columns<const P: usize, K: Fn(usize) -> Complex64>(by: Coupling<'_, K>
                 x[0] += g.re * z[0] - g.im * z[1];
                 x[1] += g.re * z[1] + g.im * z[0];
             }
-        }
-    }
-}
-
-/// The same for a single coordinate whose mean is not carried, from a column of a real part on; κ of the harmonics from `first`
-/// on belongs to these columns.
-#[inline(always)]
-fn couple_single<const P: usize, K: Fn(usize) -> Complex64>(
-    rows: &[Complex64],
-    jacobian: &[f64],
-    (kappa, first): (K, usize),
-    columns: &mut [f64],
-) {
-    let Some(g) = rows.first_chunk::<P>() else { return };
-    let (columns, jacobian) = (columns.as_chunks_mut::<2>().0, jacobian.as_chunks::<2>().0);
-    let columns = columns
-        .as_chunks_mut::<P>()
-        .0
-        .iter_mut()
-        .zip(jacobian.as_chunks::<P>().0);
-    for (q, (column, from)) in columns.enumerate() {
-        let mut z = *from;
-        let kappa = kappa(first + q / 2);
-        let own = &mut z[first + q / 2];
-        let lost = if q % 2 == 0 { kappa } else { kappa * Complex64::I };
-        own[0] -= lost.re;
-        own[1] -= lost.im;
-        for ((x, z), g) in column.iter_mut().zip(z).zip(g) {
-            x[0] += g.re * z[0] - g.im * z[1];
-            x[1] += g.re * z[1] + g.im * z[0];
         }
     }
 }

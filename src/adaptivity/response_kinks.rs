@@ -1,0 +1,220 @@
+//! Kinks of a peak or a range over the period: another instant takes the lead, and the slope of the measure jumps.
+//!
+//! With the leading instant τ and its change τ′ along the branch known at both ends of an arc, a jump is what a smooth motion
+//! leaves unexplained. The kink lies where the parabolas of the measure from both sides meet; solutions there decide which side they
+//! are on, until both sides are next to each other. The last solution of each is recorded: their slopes are those of both sides.
+
+use crate::adaptivity::branch_tracer::BranchTracer;
+use crate::adaptivity::discretised::Traceable;
+use crate::continuation::special_points::Locator;
+use crate::continuation::{Metric, Point, PointAt};
+use crate::error::{Result, try_push};
+use crate::linalg::norm;
+use crate::problem::gauges::Seen;
+use crate::results::SpecialKind;
+use std::f64::consts::{PI, TAU};
+
+const CONTEXT: &str = "the kinks of a response";
+
+/// Smallest unexplained change of an instant that may be a jump.
+const JUMP: f64 = 0.1;
+
+/// Distance of the two sides of a kink, over the arc, at which they are next to each other.
+const NEXT_TO: f64 = 1e-8;
+
+/// Smallest jump of the slope over the slopes: below it two instants that lead together are images of each other.
+const SLOPES_DIFFER: f64 = 1e-5;
+
+/// Share of the arc below which a slope that changes in proportion to the share, times this factor, has no jump.
+const SMOOTH: (f64, f64) = (1e-5, 3.0);
+
+/// Share of the gap by which the far side is brought nearer, and halvings in search of the place where two parabolas meet.
+const BEYOND: f64 = 0.1;
+const HALVINGS: usize = 50;
+
+/// Most solutions in search of a kink, and most kinks of an arc.
+const MOST_PLACES: usize = 40;
+const MOST_KINKS: usize = 4;
+
+/// A solution on an arc of one response.
+struct Side {
+    /// Share of the arc.
+    s: f64,
+    point: Point,
+    seen: Seen,
+    /// Length of the arc over that of the tangent.
+    unit: f64,
+}
+
+impl Side {
+    fn slope(&self) -> f64 {
+        self.seen.slope * self.unit
+    }
+
+    /// The unexplained change of an instant to another side, if both are smooth between them.
+    fn mismatch(&self, other: &Side, which: usize) -> f64 {
+        let rate = 0.5 * (self.seen.instant_rates[which] * self.unit + other.seen.instant_rates[which] * other.unit);
+        let change = other.seen.instants[which] - self.seen.instants[which] - rate * (other.s - self.s);
+        ((change + PI).rem_euclid(TAU) - PI).abs()
+    }
+
+    fn jumps(&self, other: &Side) -> Option<usize> {
+        (0..2).find(|which| self.mismatch(other, *which) > JUMP)
+    }
+}
+
+/// The measure near one side of a kink, as two solutions tell it.
+struct Parabola {
+    s: f64,
+    value: f64,
+    slope: f64,
+    bend: f64,
+}
+
+impl Parabola {
+    fn new(side: &Side, other: &Side) -> Self {
+        let distance = side.s - other.s;
+        let bend = (side.slope() - other.slope()) / distance;
+        Self {
+            s: side.s,
+            value: side.seen.reading.value,
+            slope: side.slope(),
+            bend: if distance == 0.0 { 0.0 } else { bend },
+        }
+    }
+
+    fn at(&self, s: f64) -> f64 {
+        let away = s - self.s;
+        self.value + (self.slope + 0.5 * self.bend * away) * away
+    }
+}
+
+/// Where the two sides are equally large, between two places; their middle where they are not.
+fn meeting(sides: &(Parabola, Parabola), (mut low, mut high): (f64, f64)) -> f64 {
+    let leads = |s: f64| sides.0.at(s) - sides.1.at(s);
+    if leads(low) > 0.0 && leads(high) < 0.0 {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if leads(middle) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+    }
+    0.5 * (low + high)
+}
+
+impl BranchTracer<'_> {
+    /// Records the kinks of all responses between two neighbours.
+    pub(super) fn find_kinks_of_responses(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        a: PointAt<'_>,
+        b: PointAt<'_>,
+    ) -> Result<()> {
+        let highest = a.1.max(b.1);
+        for response in 0..analysis.responses() {
+            analysis.select(highest)?;
+            let arc = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
+            let size = norm(arc.0.unknowns()).max(norm(arc.1.unknowns()));
+            let metric = Metric::along(size, &self.course.settings);
+            let width = metric.distance(&arc.0.v, &arc.1.v);
+            let side = |analysis: &mut dyn Traceable, point: &Point, at: PointAt<'_>, s: f64| -> Result<Option<Side>> {
+                let Some(seen) = analysis.reading_of(response, at)? else {
+                    return Ok(None);
+                };
+                Ok(Some(Side {
+                    s,
+                    point: point.try_clone()?,
+                    seen,
+                    unit: width / metric.norm(&point.tangent),
+                }))
+            };
+            let ends = (side(analysis, &arc.0, a, 0.0)?, side(analysis, &arc.1, b, 1.0)?);
+            let (Some(mut low), Some(high)) = ends else { continue };
+            for _ in 0..MOST_KINKS {
+                let Some(which) = low.jumps(&high) else { break };
+                analysis.select(highest)?;
+                let between = |tracer: &mut Self, analysis: &mut dyn Traceable, s: f64| -> Result<Option<Side>> {
+                    let locator = Locator::new(arc.0.unknowns().len(), tracer.course.settings)?;
+                    let mut locator = locator.with_response(Some(response));
+                    let ends = (&arc.0, &arc.1);
+                    let Some(point) = locator.between(analysis.problem(), ends, s, tracer.interrupt)? else {
+                        return Ok(None);
+                    };
+                    side(analysis, &point, (&point, highest), s)
+                };
+                let Some(after) = self.find_kink(analysis, response, (&low, &high, which), &between)? else {
+                    break;
+                };
+                low = after;
+            }
+        }
+        Ok(())
+    }
+
+    /// Records the first kink between two solutions that an instant's jump tells; returns the solution behind it.
+    fn find_kink(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        response: usize,
+        (low, high, which): (&Side, &Side, usize),
+        between: &dyn Fn(&mut Self, &mut dyn Traceable, f64) -> Result<Option<Side>>,
+    ) -> Result<Option<Side>> {
+        let mut sides = Vec::new();
+        let (mut before, mut after) = (low, high);
+        // Both sides are kept with their places among those that were found.
+        for _ in 0..MOST_PLACES {
+            let gap = after.s - before.s;
+            if gap <= 2.0 * NEXT_TO {
+                break;
+            }
+            let tangents = before.slope() - after.slope();
+            if gap < SMOOTH.0 && tangents.abs() <= SMOOTH.1 * gap * (high.slope() - low.slope()).abs() {
+                return Ok(None);
+            }
+            let of = |wanted: bool| {
+                let mut own = sides.iter().filter(|(_, is)| *is == wanted).map(|(side, _)| side);
+                own.rfind(|side: &&Side| side.s.to_bits() != if wanted { before.s } else { after.s }.to_bits())
+            };
+            let parabolas = (
+                Parabola::new(before, of(true).unwrap_or(low)),
+                Parabola::new(after, of(false).unwrap_or(high)),
+            );
+            // Twice on one side: the other one is brought nearer.
+            let mut last = sides.iter().rev().map(|(_, is)| *is);
+            let beyond = match (last.next(), last.next()) {
+                (Some(true), Some(true)) => BEYOND * gap,
+                (Some(false), Some(false)) => -BEYOND * gap,
+                _ => 0.0,
+            };
+            let (first, last) = (before.s + 0.5 * NEXT_TO, after.s - 0.5 * NEXT_TO);
+            let s = (meeting(&parabolas, (before.s, after.s)) + beyond).clamp(first, last);
+            let Some(found) = between(self, analysis, s)? else {
+                return Ok(None);
+            };
+            // Where a third instant leads between them, the first of two kinks is sought.
+            let (to_before, to_after) = (before.mismatch(&found, which), after.mismatch(&found, which));
+            let is_before = to_before <= to_after && to_before <= JUMP;
+            try_push(&mut sides, (found, is_before), CONTEXT)?;
+            let of = |wanted: bool| sides.iter().filter(move |(_, is)| *is == wanted).map(|(side, _)| side);
+            before = of(true).max_by(|a, b| a.s.total_cmp(&b.s)).unwrap_or(low);
+            after = of(false).min_by(|a, b| a.s.total_cmp(&b.s)).unwrap_or(high);
+        }
+        let (slopes, gap) = ((before.slope(), after.slope()), after.s - before.s);
+        let differ = (slopes.1 - slopes.0).abs() > SLOPES_DIFFER * slopes.0.abs().max(slopes.1.abs());
+        if gap > 2.0 * NEXT_TO || !differ {
+            return Ok(None);
+        }
+        for side in [before, after] {
+            self.record_special_as_it_is(analysis, SpecialKind::KinkOf(response), &side.point)?;
+        }
+        Ok(Some(Side {
+            s: after.s,
+            point: after.point.try_clone()?,
+            seen: after.seen,
+            unit: after.unit,
+        }))
+    }
+}

@@ -1,0 +1,138 @@
+//! Newton's matrix of a single relative motion without a mean: I + G (∂f/∂y − κ), written at once.
+
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
+use crate::condense::flexibility::Table;
+use crate::error::Result;
+use crate::problem::contact_forces::ContactForces;
+use num_complex::Complex64;
+use pulp::{Simd, WithSimd};
+
+/// Numbers of the matrix that are written between two checks.
+const NUMBERS_TOGETHER: usize = 1 << 16;
+
+impl ContactForces<'_> {
+    /// Fills in the matrix, with memory for G of all harmonics; `false` where there are several motions or a mean.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn fill_single(&self, tables: &[Table], memory: &mut [Complex64], matrix: &mut [f64]) -> Result<bool> {
+        let set = self.condensed.set();
+        if self.condensed.coordinates() != 1 || set.has_mean() {
+            return Ok(false);
+        }
+        let Some((_, jacobian)) = self.jacobians.of_motion(0).next() else {
+            return Ok(false);
+        };
+        for (g, table) in memory.iter_mut().zip(tables) {
+            *g = table.value[0];
+        }
+        let (m, g) = (set.packed_len(), &memory[..tables.len()]);
+        // An even number of columns, those of whole harmonics.
+        let together = (NUMBERS_TOGETHER / m).max(2) & !1;
+        let blocks = matrix.chunks_mut(together * m).zip(jacobian.chunks(together * m));
+        for (k, (matrix, jacobian)) in blocks.enumerate() {
+            self.interrupt.check()?;
+            let first = k * together / 2;
+            let kappa = |i: usize| self.condensed.kappa(0, i);
+            self.arch.dispatch(Fill {
+                g,
+                first,
+                jacobian,
+                kappa,
+                matrix,
+            });
+        }
+        Ok(true)
+    }
+}
+
+/// Columns from those of the harmonic `first` on.
+struct Fill<'a, K> {
+    g: &'a [Complex64],
+    first: usize,
+    jacobian: &'a [f64],
+    kappa: K,
+    matrix: &'a mut [f64],
+}
+
+impl<K: Fn(usize) -> Complex64> WithSimd for Fill<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        // With few harmonics most of the time would be spent around loops of unknown length.
+        match self.g.len() {
+            1 => self.write::<2>(),
+            2 => self.write::<4>(),
+            3 => self.write::<6>(),
+            4 => self.write::<8>(),
+            5 => self.write::<10>(),
+            6 => self.write::<12>(),
+            7 => self.write::<14>(),
+            8 => self.write::<16>(),
+            9 => self.write::<18>(),
+            _ => self.write_any(),
+        }
+    }
+}
+
+impl<K: Fn(usize) -> Complex64> Fill<'_, K> {
+    /// For N numbers.
+    #[inline(always)]
+    fn write<const N: usize>(self) {
+        // With z′ the parts of z exchanged, g z = along·z + across·z′ number by number.
+        let (mut along, mut across) = ([0.0; N], [0.0; N]);
+        for (i, g) in self.g.iter().enumerate().take(N / 2) {
+            (along[2 * i], along[2 * i + 1]) = (g.re, g.re);
+            (across[2 * i], across[2 * i + 1]) = (-g.im, g.im);
+        }
+        let columns = self.matrix.as_chunks_mut::<N>().0.iter_mut();
+        for (q, (column, from)) in columns.zip(self.jacobian.as_chunks::<N>().0).enumerate() {
+            let (at, lost) = lost(self.first, q, &self.kappa);
+            let mut z = *from;
+            z[at] -= lost.re;
+            z[at + 1] -= lost.im;
+            let mut exchanged = [0.0; N];
+            for i in 0..N {
+                exchanged[i] = z[i ^ 1];
+            }
+            for i in 0..N {
+                column[i] = along[i] * z[i] + across[i] * exchanged[i];
+            }
+            column[at + q % 2] += 1.0;
+        }
+    }
+
+    /// For any number of harmonics.
+    #[inline(always)]
+    fn write_any(self) {
+        let m = 2 * self.g.len();
+        let columns = self.matrix.chunks_exact_mut(m).zip(self.jacobian.chunks_exact(m));
+        for (q, (column, from)) in columns.enumerate() {
+            let pairs = column.as_chunks_mut::<2>().0.iter_mut().zip(from.as_chunks::<2>().0);
+            for ((x, z), g) in pairs.zip(self.g) {
+                *x = [g.re * z[0] - g.im * z[1], g.re * z[1] + g.im * z[0]];
+            }
+            let (at, lost) = lost(self.first, q, &self.kappa);
+            let own = self.g[at / 2] * (Complex64::new(from[at], from[at + 1]) - lost);
+            (column[at], column[at + 1]) = (own.re, own.im);
+            column[at + q % 2] += 1.0;
+        }
+    }
+}
+
+/// Place of its harmonic in column q from that of the harmonic `first` on, and κ times its motion, 1 or i.
+#[inline(always)]
+fn lost(first: usize, q: usize, kappa: impl Fn(usize) -> Complex64) -> (usize, Complex64) {
+    let i = first + q / 2;
+    let kappa = kappa(i);
+    (
+        2 * i,
+        if q.is_multiple_of(2) {
+            kappa
+        } else {
+            kappa * Complex64::I
+        },
+    )
+}
