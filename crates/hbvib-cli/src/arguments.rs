@@ -49,7 +49,7 @@ pub enum ShellName {
     Fish,
 }
 
-/// What the command does.
+/// Verbs of the command.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Solves a job and writes what it names.

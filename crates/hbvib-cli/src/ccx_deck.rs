@@ -33,8 +33,9 @@ pub fn deck(mesh: &Mesh, material: Material, fixed: &[String]) -> Outcome<String
     let used: BTreeSet<i64> = elements.iter().flat_map(|element| &element.nodes).copied().collect();
     let mut text = String::from("** Written by hbvib init: ccx stores the matrices of this mesh.\n*NODE, NSET=NALL\n");
     for node in &used {
+        // CalculiX reads numbers of at most 20 characters.
         let [x, y, z] = mesh.position(*node)?;
-        let _ = writeln!(text, "{node}, {x:.15e}, {y:.15e}, {z:.15e}");
+        let _ = writeln!(text, "{node}, {x:.12e}, {y:.12e}, {z:.12e}");
     }
     let mut by_kind: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (i, element) in elements.iter().enumerate() {

@@ -110,7 +110,7 @@ impl Guess {
         let ([a, b], [x, y, z]) = (&self.sets, self.normal);
         let _ = write!(
             text,
-            "\n[[contact]]\nname = \"{a}\"\nkind = \"friction_3d\"\n{:<36}# from side b to side a\n\
+            "\n[[contact]]\nname = \"{a}\"\nkind = \"friction_3d\"\n{:<35} # from side b to side a\n\
              {:<36}# of each pair of nodes; here a hundredth of the mesh at a node: measure it\n\
              {:<36}# the smaller, the more constant is the load of each pair\nmu = {MU}\n{:<36}# force of each pair at rest: with this one some of them begin to slip\n\n\
              [contact.nodes]\na = {a:?}\nb = {b:?}\nlargest_distance = {:.3e}\n",

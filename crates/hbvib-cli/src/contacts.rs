@@ -1,7 +1,7 @@
 //! The contacts of a job.
 
 use crate::build::Outcome;
-use crate::job::{ContactPart, Job, KindName, Node, NodeList, NodesPart};
+use crate::job::{ContactPart, DofName, Job, KindName, Node, NodeList, NodesPart, SideDof};
 use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
@@ -17,6 +17,8 @@ struct Pairs {
     areas: Vec<f64>,
     /// Normal of each pair, from side b to side a, where surfaces tell it.
     normals: Vec<[f64; 3]>,
+    /// Gap of each pair beside that of the entry, likewise.
+    gaps: Vec<f64>,
 }
 
 /// The contacts of an entry.
@@ -46,11 +48,19 @@ pub fn contacts(
         Some(nodes) if part.a.is_empty() && part.b.is_empty() => matched(job, (part, nodes), places, table)?,
         Some(_) => return Err("names degrees of freedom and nodes: needs one of a and nodes".into()),
         None => {
-            let pairs = listed(part, width)?;
+            let pairs = listed(part, width, table)?;
             check_normal(part, &pairs, width, table)?;
             pairs
         }
     };
+    if part.surfaces.is_none() {
+        let rows = pairs
+            .a
+            .iter()
+            .chain(&pairs.b)
+            .filter_map(|dof| usize::try_from(*dof).ok());
+        table.refuse_relative(rows)?;
+    }
     let repeated = pairs.leave_out_repeated(width, images);
     if part.tangent.is_some() && part.normal.is_none() && part.surfaces.is_none() {
         return Err("tangent without normal".into());
@@ -94,7 +104,7 @@ pub fn contacts(
                 mu: part.mu,
                 // An infinite pressure on no area is no load.
                 preload: if area == 0.0 { 0.0 } else { part.preload * area },
-                gap: part.gap,
+                gap: part.gap + pairs.gaps.get(k).copied().unwrap_or(0.0),
                 cubic: part.cubic * area,
                 velocity: part.velocity,
                 dofs: Vec::new(),
@@ -159,7 +169,7 @@ fn places(part: &ContactPart) -> &'static [usize] {
     }
 }
 
-fn listed(part: &ContactPart, width: usize) -> Outcome<Pairs> {
+fn listed(part: &ContactPart, width: usize, table: &Nodes) -> Outcome<Pairs> {
     let numbers = part.a.len();
     if numbers == 0 || !numbers.is_multiple_of(width) {
         return Err(format!("a has {numbers} numbers, needs a multiple of {width}"));
@@ -170,12 +180,26 @@ fn listed(part: &ContactPart, width: usize) -> Outcome<Pairs> {
             part.b.len()
         ));
     }
-    let ground = || vec![-1; numbers];
+    let rows = |name: &str, side: &[SideDof]| -> Outcome<Vec<i64>> {
+        let row = |(i, dof): (usize, &SideDof)| match dof {
+            SideDof::Number(number) => Ok(*number),
+            SideDof::Node(node) => {
+                let row = table.dof(&DofName::Node(node.clone()));
+                row.map(|row| row as i64).map_err(|e| format!("{name}[{i}]: {e}"))
+            }
+        };
+        side.iter().enumerate().map(row).collect()
+    };
     Ok(Pairs {
-        a: part.a.clone(),
-        b: if part.b.is_empty() { ground() } else { part.b.clone() },
+        a: rows("a", &part.a)?,
+        b: if part.b.is_empty() {
+            vec![-1; numbers]
+        } else {
+            rows("b", &part.b)?
+        },
         areas: vec![1.0; numbers / width],
         normals: Vec::new(),
+        gaps: Vec::new(),
     })
 }
 
@@ -238,6 +262,7 @@ fn matched(job: &Job, (part, nodes): (&ContactPart, &NodesPart), places: &[usize
         b: dofs_b,
         areas,
         normals: Vec::new(),
+        gaps: Vec::new(),
     })
 }
 
@@ -280,5 +305,10 @@ fn between_surfaces(
         b: vec![-1; 3 * kept.len()],
         areas: kept.iter().map(|k| areas[*k]).collect(),
         normals: kept.iter().map(|k| all[*k].1.normal.map(|x| -x)).collect(),
+        gaps: if part.surfaces.as_ref().is_some_and(|surfaces| surfaces.mesh_gaps) {
+            kept.iter().map(|k| all[*k].1.gap).collect()
+        } else {
+            Vec::new()
+        },
     })
 }

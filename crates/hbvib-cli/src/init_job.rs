@@ -18,7 +18,7 @@ const RIGID: f64 = 1e-4;
 /// Range of the response about the first natural frequency.
 const AROUND: f64 = 0.1;
 
-/// What the arguments say about a job.
+/// Choices that the arguments make for a job.
 pub struct Choices {
     /// Lines of [model] that name the files.
     pub files: String,
@@ -61,7 +61,7 @@ impl Choices {
     }
 }
 
-/// What a job was made of.
+/// A job and the model that it was made for.
 pub struct Written {
     pub text: String,
     pub built: Built,

@@ -169,12 +169,13 @@ pub struct ContactPart {
     /// Name for the outputs.
     pub name: Option<String>,
     pub kind: KindName,
-    /// Degrees of freedom of side a: one number, those of the directions, or a list of them, one for each pair.
+    /// Degrees of freedom of side a: one number, those of the directions, or a list of them, one for each pair; or their names, as
+    /// "33.2".
     #[serde(default)]
-    pub a: Vec<i64>,
+    pub a: Vec<SideDof>,
     /// Those of side b; -1 is the ground.
     #[serde(default)]
-    pub b: Vec<i64>,
+    pub b: Vec<SideDof>,
     /// Instead of a and b: two lists of nodes that are matched by their distance.
     pub nodes: Option<NodesPart>,
     /// Instead of a and b: faces of the mesh on both sides, which need not match.
@@ -242,6 +243,14 @@ pub enum NodeList {
     Set(String),
     Sets(Vec<String>),
     Nodes(Vec<Node>),
+}
+
+/// A degree of freedom of a side of a contact: its number, -1 for the ground, or its name as of a force.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SideDof {
+    Number(i64),
+    Node(String),
 }
 
 /// A degree of freedom by its number from 0, or by node and direction from 1 as "12.3", where the name of a set of one node

@@ -17,6 +17,9 @@ pub struct SurfacesPart {
     pub method: SurfaceMethod,
     #[serde(default)]
     pub areas: AreasName,
+    /// Adds the distance of both sides at each node to the gap.
+    #[serde(default)]
+    pub mesh_gaps: bool,
 }
 
 /// The name of a set, or several.

@@ -22,7 +22,7 @@ const ALL_DIAMETERS: usize = 50_000;
 /// Degrees of freedom up to which contacts at rest are computed.
 const AT_REST: usize = 20_000;
 
-/// What is known of a model.
+/// Facts about a model.
 #[derive(Debug, Serialize)]
 pub struct ModelReport {
     pub job: String,
@@ -62,7 +62,7 @@ pub struct Frequencies {
 pub struct FacePair {
     pub left: i64,
     pub right: i64,
-    /// Of the right node from the image of the left one.
+    /// Distance of the right node from the image of the left one.
     pub distance: f64,
 }
 

@@ -12,7 +12,7 @@ pub const UNLIMITED: usize = 0;
 /// Most bytes of a variable, or of one record of it, in this format.
 const MOST: u64 = u32::MAX as u64 - 3;
 
-/// What a file holds, without the numbers.
+/// Dimensions, attributes and variables of a file, without the numbers.
 #[derive(Default)]
 pub struct Dataset {
     dimensions: Vec<(String, usize)>,

@@ -114,3 +114,36 @@ fn separate_files_name_the_nodes_and_must_agree() {
     assert_eq!(output.status.code(), Some(1));
     assert!(printed(&output.stderr).contains("other_MASS1.mtx: names other nodes"));
 }
+
+/// Degrees of freedom of both sides by node and direction are those by number; the ground is no side at all, or -1.
+#[test]
+fn sides_are_named_by_node_and_direction() {
+    let folder = data();
+    let folder = folder.display();
+    let job = |sides: &str| {
+        format!(
+            "[model]\nmatrices = '{folder}/sector.sti'\n[[contact]]\nkind = 'friction_3d'\nnormal = [0, -1, 0]\n\
+             kt = 1e3\nkn = 1e3\nmu = 0.3\npreload = 1.0\n{sides}"
+        )
+    };
+    for (name, numbers, names) in [
+        ("ground", "a = [0, 1, 2]\n", "a = ['3.1', '3.2', '3.3']\n"),
+        (
+            "pair",
+            "a = [0, 1, 2, 3, 4, 5]\nb = [-1, -1, -1, 6, 7, 8]\n",
+            "a = ['3.1', 1, '3.3', '4.1', '4.2', '4.3']\nb = [-1, -1, -1, '5.1', '5.2', '5.3']\n",
+        ),
+    ] {
+        let [one, other] = [numbers, names].map(|sides| hbvib("modes", name, &job(sides)));
+        assert!(other.status.success(), "{}", printed(&other.stderr));
+        assert_eq!(printed(&one.stdout), printed(&other.stdout));
+        let free = hbvib("modes", name, &job("a = ['6.1', '6.2', '6.3']\n"));
+        assert_ne!(printed(&one.stdout), printed(&free.stdout));
+    }
+    let output = hbvib("modes", "unknown", &job("a = ['3.1', '3.2', '99.3']\n"));
+    assert!(
+        printed(&output.stderr).contains("a[2]: dof = \"99.3\""),
+        "{}",
+        printed(&output.stderr)
+    );
+}

@@ -393,3 +393,39 @@ fn surfaces_that_cannot_be_are_refused() {
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(errors.contains("moves relative to side b"), "{errors}");
 }
+
+/// Nodes of the outer ring lie off the chords of the inner one, by the height of an arc.
+#[test]
+fn distances_of_the_faces_are_added_to_the_gap() {
+    let rings = Rings::new(8, 9);
+    let model = rings.written(&folder("gaps"));
+    let contact = surfaces("mesh_gaps = true\n").replace("preload = 0.05", "gap = 0.01");
+    let (output, _) = common::hbvib("check", ("surface_pairs", "gaps"), &(model.clone() + &contact));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let job = Path::new(env!("CARGO_TARGET_TMPDIR")).join("surface_pairs/gaps/job.toml");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_hbvib"))
+        .args(["check", "--json"])
+        .arg(job)
+        .output()
+        .unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let pairs = report["contacts"][0]["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 27);
+    let mut largest = 0.0_f64;
+    for pair in pairs {
+        let name = pair["a"][0].as_str().unwrap();
+        let node: usize = name.split('.').next().unwrap().parse().unwrap();
+        let x = rings.nodes[node - 1];
+        let chord = TAU / SECTORS as f64 / 8.0;
+        let along = (x[1].atan2(x[0]) / chord).rem_euclid(1.0);
+        let height = 1.3 * (((along - 0.5) * chord).cos() - (chord / 2.0).cos());
+        let gap = pair["gap"].as_f64().unwrap();
+        // Normals of both sides differ by a few degrees.
+        assert!(
+            (gap - 0.01 - height).abs() <= 2e-3 * height + 1e-12,
+            "node {node}: {gap}, needs 0.01 + {height:.3e}"
+        );
+        largest = largest.max(height);
+    }
+    assert!(largest > 5e-4, "{largest:.1e}");
+}

@@ -134,8 +134,16 @@ impl RelativeCoordinates {
                 }
             }
         };
+        let mut found = Matrix::empty((a.rows, a.columns), a.symmetry, a.is_complex);
         for (k, value) in a.values.chunks_exact(parts).enumerate() {
             let (i, j, value) = (a.row[k], a.column[k], (value[0], value.get(1).copied().unwrap_or(0.0)));
+            if !self.rows.contains_key(&i) && !self.rows.contains_key(&j) {
+                // Most entries of a model stay as they are.
+                if !found.add(i, j, value) {
+                    return Err("no memory for the entries".into());
+                }
+                continue;
+            }
             add(i, j, value);
             if i != j {
                 match a.symmetry {
@@ -148,7 +156,6 @@ impl RelativeCoordinates {
         }
         let mut entries: Vec<((u32, u32), (f64, f64))> = sums.into_iter().collect();
         entries.sort_unstable_by_key(|(place, _)| *place);
-        let mut found = Matrix::empty((a.rows, a.columns), a.symmetry, a.is_complex);
         for ((row, column), value) in entries {
             if !found.add(row, column, value) {
                 return Err("no memory for the entries".into());

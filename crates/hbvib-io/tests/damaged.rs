@@ -3,6 +3,7 @@
 use hbvib_io::read;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Counts the memory in use, and the most of it.
@@ -26,6 +27,9 @@ unsafe impl GlobalAlloc for Counting {
 
 #[global_allocator]
 static COUNTING: Counting = Counting;
+
+/// One test at a time: the counts are those of the process.
+static ALONE: Mutex<()> = Mutex::new(());
 
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
@@ -213,6 +217,7 @@ fn damaged(format: &Format, text: &str) -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn damaged_files_are_refused_by_line_without_memory() {
+    let _alone = ALONE.lock();
     let folder = std::env::temp_dir().join(format!("hbvib_io_damaged_{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     for name in ["sector.dof", "sector.mas"] {
@@ -247,6 +252,7 @@ fn damaged_files_are_refused_by_line_without_memory() {
 /// Sizes that no file can hold, before memory is requested.
 #[test]
 fn sizes_beyond_the_file_are_refused() {
+    let _alone = ALONE.lock();
     let path = std::env::temp_dir().join(format!("hbvib_io_sizes_{}.mtx", std::process::id()));
     for size in [
         "99999999999999999999 1 1",

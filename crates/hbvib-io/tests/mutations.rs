@@ -122,6 +122,7 @@ fn originals(folder: &Path) -> Vec<(String, Vec<u8>)> {
         "packed.mat",
         "packed.npz",
         "small.full",
+        "wide.op4",
         "general.rua",
         "wheel_STIF1.mtx",
         "symmetric.mtx.gz",

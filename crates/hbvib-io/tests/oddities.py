@@ -1,6 +1,7 @@
 """Files as other programs write them, and right matrices for each: heads, names, labels and banners of public threads.
 
-OP4 of external superelements: pyNastran #746. OP4 binary and heads of 16 columns: pyNastran #695, #293, pyyeti #5, #7. Abaqus
+OP4 of external superelements: pyNastran #746. OP4 binary and heads of 16 columns: pyNastran #695, #293, pyyeti #5, #7; words of
+eight bytes as pyYeti reads them. Abaqus
 labels below zero: zxding.me. Harwell-Boeing and Matrix Market: MatrixMarket.jl #4, #37, scipy #8797, #18123, #9426, #24082,
 fast_matrix_market #10. DMIG and formats that are not read: pyNastran #699, #274,
 pymapdl-reader."""
@@ -51,26 +52,27 @@ def record(order, data):
     return struct.pack(order + "i", len(data)) + data + struct.pack(order + "i", len(data))
 
 
-def op4_binary(order, name, a, kind, sparse=False, large=False):
-    """One matrix of real numbers, single (1) or double (2) precision, as Fortran records."""
-    number, words = ("f", 1) if kind == 1 else ("d", 2)
+def op4_binary(order, name, a, kind, sparse=False, large=False, wide=False):
+    """One matrix of real numbers, single (1) or double (2) precision, as Fortran records; wide: of words of eight bytes."""
+    number, words = ("f", 1) if kind == 1 and not wide else ("d", 1 if wide else 2)
+    word, size, head = ("q", 8, "qqqq16s") if wide else ("i", 4, "iiii8s")
     a = np.asarray(a, float)
     rows, columns = a.shape
-    out = record(order, struct.pack(order + "iiii8s", columns, -rows if large else rows, 6, kind, name.ljust(8).encode()))
+    out = record(order, struct.pack(order + head, columns, -rows if large else rows, 6, kind, name.ljust(2 * size).encode()))
     for j in range(columns):
         used = np.flatnonzero(a[:, j])
         if not sparse:
             values = a[used[0]:used[-1] + 1, j]
             body = struct.pack(order + "%d%s" % (len(values), number), *values)
-            out += record(order, struct.pack(order + "iii", j + 1, used[0] + 1, words * len(values)) + body)
+            out += record(order, struct.pack(order + 3 * word, j + 1, used[0] + 1, words * len(values)) + body)
             continue
         body = b""
         for i in used:
-            body += struct.pack(order + "ii", words + 1, i + 1) if large else struct.pack(order + "i",
-                                                                                          (words + 1) * 65536 + i + 1)
+            body += struct.pack(order + 2 * word, words + 1, i + 1) if large else struct.pack(order + word,
+                                                                                              (words + 1) * 65536 + i + 1)
             body += struct.pack(order + number, a[i, j])
-        out += record(order, struct.pack(order + "iii", j + 1, 0, len(body) // 4) + body)
-    return out + record(order, struct.pack(order + "iii", columns + 1, 1, words) + struct.pack(order + number, 1.0))
+        out += record(order, struct.pack(order + 3 * word, j + 1, 0, len(body) // size) + body)
+    return out + record(order, struct.pack(order + 3 * word, columns + 1, 1, words) + struct.pack(order + number, 1.0))
 
 
 def superelements():
@@ -106,8 +108,12 @@ def op4_kinds():
                 label = f"binary{order}{kind}{sparse}{large}"
                 same(label, io.read(write("b.op4", op4_binary(order, "KAA", a, kind, sparse, large))).stiffness, a)
                 same(label, io.read(write("b.dat", op4_binary(order, "kaa", a, kind, sparse, large))).stiffness, a)
+                same(label, io.read(write("w.op4", op4_binary(order, "KAA", a, kind, sparse, large, wide=True))).stiffness, a)
     data = op4_binary("<", "KAA", a, 2)
     for cut in range(35, len(data) - 1, 7):
+        refused("cut.op4", data[:cut], "OP4 binary: ")
+    data = op4_binary(">", "KAA", a, 2, wide=True)
+    for cut in range(60, len(data) - 1, 7):
         refused("cut.op4", data[:cut], "OP4 binary: ")
     refused("short.op4", data[:20], "FORMATTED")
     refused("nan.op4", op4_binary("<", "KAA", [[1, np.nan], [np.nan, 1]], 2), "is not finite")

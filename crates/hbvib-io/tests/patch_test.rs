@@ -157,8 +157,10 @@ fn two_blocks_under_pressure_pass_the_patch_test() {
     let a = relative.transformed(&given).unwrap().stiffness.unwrap();
     let mut k = vec![vec![0.0; n]; n];
     for ((i, j), value) in a.row.iter().zip(&a.column).zip(&a.values) {
-        k[*i as usize][*j as usize] = *value;
-        k[*j as usize][*i as usize] = *value;
+        k[*i as usize][*j as usize] += *value;
+        if i != j {
+            k[*j as usize][*i as usize] += *value;
+        }
     }
     // Springs between relative motions along z and the ground.
     let (pressure, spring) = (7.0, 300.0);

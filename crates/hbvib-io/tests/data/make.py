@@ -104,7 +104,8 @@ def universal():
 
 
 def small():
-    """Small files for mutations: small.mat, packed.mat and packed.npz of scipy and NumPy; small.full in the layout of Ansys' files."""
+    """Small files for mutations: small.mat, packed.mat and packed.npz of scipy and NumPy; small.full in the layout of Ansys' files, wide.op4
+    in words of eight bytes."""
     import struct
 
     k = np.array([[4.0, -1, 0], [-1, 4, -1], [0, -1, 4]])
@@ -130,6 +131,15 @@ def small():
     second[35], second[18], second[26] = at.tolist()
     with open("small.full", "wb") as file:
         file.write(words(first) + words(second) + after + node_dofs + rows(k) + rows(m))
+
+    def record(data):
+        return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
+
+    with open("wide.op4", "wb") as file:
+        file.write(record(struct.pack("<4q16s", 3, -3, 6, 2, b"KAA")))
+        for j in range(3):
+            file.write(record(struct.pack("<5q3d", j + 1, 0, 5, 4, 1, *k[:, j])))
+        file.write(record(struct.pack("<3qd", 4, 1, 1, 1.0)))
 
 
 if __name__ == "__main__":
