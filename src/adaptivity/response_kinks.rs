@@ -34,9 +34,15 @@ const SURE: f64 = 10.0;
 const MOST_AWAY: f64 = 0.3;
 const HALVINGS: usize = 50;
 
+/// Least distance of two solutions over the gap that tell how a slope changes.
+const APART: f64 = 0.1;
+
 /// Most solutions in search of a kink, and most kinks of an arc.
 const MOST_PLACES: usize = 40;
 const MOST_KINKS: usize = 4;
+
+/// The solution at a share of an arc; `None` where there is none.
+type Between<'f, T> = dyn Fn(&mut T, &mut dyn Traceable, f64) -> Result<Option<Side>> + 'f;
 
 /// A solution on an arc of one response.
 struct Side {
@@ -157,12 +163,12 @@ impl BranchTracer<'_> {
     }
 
     /// Records the first kink between two solutions that an instant's jump tells; returns the solution behind it.
-    fn find_kink(
+    fn find_kink<'s>(
         &mut self,
         analysis: &mut dyn Traceable,
         response: usize,
-        (low, high, which): (&Side, &Side, usize),
-        between: &dyn Fn(&mut Self, &mut dyn Traceable, f64) -> Result<Option<Side>>,
+        (low, high, which): (&'s Side, &'s Side, usize),
+        between: &Between<'_, Self>,
     ) -> Result<Option<Side>> {
         let mut sides = Vec::new();
         let (mut before, mut after, mut expected) = (low, high, f64::INFINITY);
@@ -176,23 +182,31 @@ impl BranchTracer<'_> {
             if gap < SMOOTH.0 && tangents.abs() <= SMOOTH.1 * gap * (high.slope() - low.slope()).abs() {
                 return Ok(None);
             }
-            let of = |wanted: bool| {
-                let mut own = sides.iter().filter(|(_, is)| *is == wanted).map(|(side, _)| side);
-                own.rfind(|side: &&Side| side.s.to_bits() != if wanted { before.s } else { after.s }.to_bits())
+            // A solution too near to another one tells rounding of how the slope changes.
+            let other = |side: &Side, wanted: bool, end: &'s Side| {
+                let own = sides.iter().filter(|(_, is)| *is == wanted).map(|(side, _)| side);
+                let apart = own.filter(|other: &&Side| (other.s - side.s).abs() >= APART * gap);
+                let distance = |other: &&Side| (other.s - side.s).abs();
+                apart.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(end)
             };
             let parabolas = (
-                Parabola::new(before, of(true).unwrap_or(low)),
-                Parabola::new(after, of(false).unwrap_or(high)),
+                Parabola::new(before, other(before, true, low)),
+                Parabola::new(after, other(after, false, high)),
             );
-            // Twice on one side: the other one is brought as near as the place is known.
+            // Again on one side: the other one is brought as near as the place is known, and less near each time.
             let meeting = meeting(&parabolas, (before.s, after.s));
-            let away = (SURE * (meeting - expected).abs()).max(NEXT_TO).min(MOST_AWAY * gap);
+            let own = sides.last().is_some_and(|(_, is_before)| *is_before);
+            let again = sides
+                .iter()
+                .rev()
+                .take_while(|(_, is_before)| *is_before == own)
+                .count();
+            let away = (SURE * (meeting - expected).abs()).max(NEXT_TO) * SURE.powi(again as i32 - 2);
             expected = meeting;
-            let mut last = sides.iter().rev().map(|(_, is)| *is);
-            let beyond = match (last.next(), last.next()) {
-                (Some(true), Some(true)) => away,
-                (Some(false), Some(false)) => -away,
-                _ => 0.0,
+            let beyond = if again < 2 {
+                0.0
+            } else {
+                away.min(MOST_AWAY * gap) * if own { 1.0 } else { -1.0 }
             };
             let (first, last) = (before.s + 0.5 * NEXT_TO, after.s - 0.5 * NEXT_TO);
             let s = (meeting + beyond).clamp(first, last);

@@ -118,6 +118,7 @@ impl ResponseSeries {
 
     /// Kinks of a peak or a range, where another instant of the period takes the lead: the last solution before and the first one
     /// behind, in the order of the branch. Derivatives at these points are those of the two sides.
+    #[must_use]
     pub fn kinks(&self) -> impl ExactSizeIterator<Item = (Special, Special)> {
         self.kinks.chunks_exact(2).map(|sides| (sides[0], sides[1]))
     }
