@@ -40,7 +40,9 @@ fn other_programs_read_the_motion_of_the_wheel() {
     run("ccx", &["matrices"], &folder);
     let job = std::fs::read_to_string(example.join("job.toml")).unwrap();
     let job = job.replace("to_hz = 1020\n", "to_hz = 1020\nat_hz = [927.0, 939.0]\n");
-    let job = job.replace("report = \"report.html\"", "# report").replace("vtu = \"motion.pvd\"", "# vtu");
+    let job = job
+        .replace("report = \"report.html\"", "# report")
+        .replace("vtu = \"motion.pvd\"", "# vtu");
     let more = "vtu = 'motion.pvd'\nuff = 'response.uff'\nnetcdf = 'response.nc'\nfrd = 'response.frd'\n\
                 [output.motion]\npoints = 'requested'\nphases = 8\nwheel = true\n[output.units]\nlength = 'm'\n\
                 [[output.hysteresis]]\ncontact = 'rim'\npair = 1\npoints = 'requested'\nsamples = 8\ncsv = 'loop.csv'\n";
