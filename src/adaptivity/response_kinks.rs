@@ -8,7 +8,7 @@ use crate::adaptivity::branch_tracer::BranchTracer;
 use crate::adaptivity::discretised::Traceable;
 use crate::continuation::special_points::Locator;
 use crate::continuation::{Metric, Point, PointAt};
-use crate::error::{Result, try_push};
+use crate::error::{Result, try_copy, try_push};
 use crate::linalg::norm;
 use crate::problem::gauges::Seen;
 use crate::results::SpecialKind;
@@ -46,11 +46,12 @@ type Between<'f, T> = dyn Fn(&mut T, &mut dyn Traceable, f64) -> Result<Option<S
 
 /// A solution on an arc of one response.
 struct Side {
-    /// Share of the arc.
+    /// Share of the arc, by which it is solved for, and of its chord: the measure is a function of that.
     s: f64,
+    t: f64,
     point: Point,
     seen: Seen,
-    /// Length of the arc over that of the tangent.
+    /// The share of the chord per tangent is the reciprocal of this.
     unit: f64,
 }
 
@@ -62,7 +63,7 @@ impl Side {
     /// The unexplained change of an instant to another side, if both are smooth between them.
     fn mismatch(&self, other: &Side, which: usize) -> f64 {
         let rate = 0.5 * (self.seen.instant_rates[which] * self.unit + other.seen.instant_rates[which] * other.unit);
-        let change = other.seen.instants[which] - self.seen.instants[which] - rate * (other.s - self.s);
+        let change = other.seen.instants[which] - self.seen.instants[which] - rate * (other.t - self.t);
         ((change + PI).rem_euclid(TAU) - PI).abs()
     }
 
@@ -73,7 +74,7 @@ impl Side {
 
 /// The measure near one side of a kink, as two solutions tell it.
 struct Parabola {
-    s: f64,
+    t: f64,
     value: f64,
     slope: f64,
     bend: f64,
@@ -81,33 +82,34 @@ struct Parabola {
 
 impl Parabola {
     fn new(side: &Side, other: &Side) -> Self {
-        let distance = side.s - other.s;
+        let distance = side.t - other.t;
         let bend = (side.slope() - other.slope()) / distance;
         Self {
-            s: side.s,
+            t: side.t,
             value: side.seen.reading.value,
             slope: side.slope(),
             bend: if distance == 0.0 { 0.0 } else { bend },
         }
     }
 
-    fn at(&self, s: f64) -> f64 {
-        let away = s - self.s;
+    fn at(&self, t: f64) -> f64 {
+        let away = t - self.t;
         self.value + (self.slope + 0.5 * self.bend * away) * away
     }
 }
 
-/// Where the two sides are equally large, between two places; their middle where they are not.
+/// Where the two sides are equally large between two places, or the end that is next to it.
 fn meeting(sides: &(Parabola, Parabola), (mut low, mut high): (f64, f64)) -> f64 {
-    let leads = |s: f64| sides.0.at(s) - sides.1.at(s);
-    if leads(low) > 0.0 && leads(high) < 0.0 {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if leads(middle) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
+    let leads = |t: f64| sides.0.at(t) - sides.1.at(t);
+    if leads(high) >= 0.0 {
+        return high;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if leads(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
         }
     }
     0.5 * (low + high)
@@ -127,16 +129,26 @@ impl BranchTracer<'_> {
             let arc = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
             let size = norm(arc.0.unknowns()).max(norm(arc.1.unknowns()));
             let metric = Metric::along(size, &self.course.settings);
-            let width = metric.distance(&arc.0.v, &arc.1.v);
+            let mut chord = try_copy(&arc.1.v, CONTEXT)?;
+            for (x, from) in chord.iter_mut().zip(&arc.0.v) {
+                *x -= from;
+            }
+            let square = metric.dot(&chord, &chord);
             let side = |analysis: &mut dyn Traceable, point: &Point, at: PointAt<'_>, s: f64| -> Result<Option<Side>> {
                 let Some(seen) = analysis.reading_of(response, at)? else {
                     return Ok(None);
                 };
+                let unit = square / metric.dot(&point.tangent, &chord);
+                if !(unit > 0.0 && unit.is_finite()) {
+                    return Ok(None);
+                }
+                let along = metric.dot(&point.v, &chord) - metric.dot(&arc.0.v, &chord);
                 Ok(Some(Side {
                     s,
+                    t: along / square,
                     point: point.try_clone()?,
                     seen,
-                    unit: width / metric.norm(&point.tangent),
+                    unit,
                 }))
             };
             let ends = (side(analysis, &arc.0, a, 0.0)?, side(analysis, &arc.1, b, 1.0)?);
@@ -174,7 +186,7 @@ impl BranchTracer<'_> {
         let (mut before, mut after, mut expected) = (low, high, f64::INFINITY);
         // Both sides are kept with their places among those that were found.
         for _ in 0..MOST_PLACES {
-            let gap = after.s - before.s;
+            let gap = after.t - before.t;
             if gap <= 2.0 * NEXT_TO {
                 break;
             }
@@ -185,8 +197,8 @@ impl BranchTracer<'_> {
             // A solution too near to another one tells rounding of how the slope changes.
             let other = |side: &Side, wanted: bool, end: &'s Side| {
                 let own = sides.iter().filter(|(_, is)| *is == wanted).map(|(side, _)| side);
-                let apart = own.filter(|other: &&Side| (other.s - side.s).abs() >= APART * gap);
-                let distance = |other: &&Side| (other.s - side.s).abs();
+                let apart = own.filter(|other: &&Side| (other.t - side.t).abs() >= APART * gap);
+                let distance = |other: &&Side| (other.t - side.t).abs();
                 apart.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(end)
             };
             let parabolas = (
@@ -194,7 +206,7 @@ impl BranchTracer<'_> {
                 Parabola::new(after, other(after, false, high)),
             );
             // Again on one side: the other one is brought as near as the place is known, and less near each time.
-            let meeting = meeting(&parabolas, (before.s, after.s));
+            let meeting = meeting(&parabolas, (before.t, after.t));
             let own = sides.last().is_some_and(|(_, is_before)| *is_before);
             let again = sides
                 .iter()
@@ -208,8 +220,9 @@ impl BranchTracer<'_> {
             } else {
                 away.min(MOST_AWAY * gap) * if own { 1.0 } else { -1.0 }
             };
-            let (first, last) = (before.s + 0.5 * NEXT_TO, after.s - 0.5 * NEXT_TO);
-            let s = (meeting + beyond).clamp(first, last);
+            let (first, last) = (before.t + 0.5 * NEXT_TO, after.t - 0.5 * NEXT_TO);
+            let share = ((meeting + beyond).clamp(first, last) - before.t) / gap;
+            let s = before.s + share * (after.s - before.s);
             let Some(found) = between(self, analysis, s)? else {
                 return Ok(None);
             };
@@ -218,10 +231,10 @@ impl BranchTracer<'_> {
             let is_before = to_before <= to_after && to_before <= JUMP;
             try_push(&mut sides, (found, is_before), CONTEXT)?;
             let of = |wanted: bool| sides.iter().filter(move |(_, is)| *is == wanted).map(|(side, _)| side);
-            before = of(true).max_by(|a, b| a.s.total_cmp(&b.s)).unwrap_or(low);
-            after = of(false).min_by(|a, b| a.s.total_cmp(&b.s)).unwrap_or(high);
+            before = of(true).max_by(|a, b| a.t.total_cmp(&b.t)).unwrap_or(low);
+            after = of(false).min_by(|a, b| a.t.total_cmp(&b.t)).unwrap_or(high);
         }
-        let (slopes, gap) = ((before.slope(), after.slope()), after.s - before.s);
+        let (slopes, gap) = ((before.slope(), after.slope()), after.t - before.t);
         let differ = (slopes.1 - slopes.0).abs() > SLOPES_DIFFER * slopes.0.abs().max(slopes.1.abs());
         if gap > 2.0 * NEXT_TO || !differ {
             return Ok(None);
@@ -231,6 +244,7 @@ impl BranchTracer<'_> {
         }
         Ok(Some(Side {
             s: after.s,
+            t: after.t,
             point: after.point.try_clone()?,
             seen: after.seen,
             unit: after.unit,
