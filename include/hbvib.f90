@@ -1090,6 +1090,17 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_response_peaks
 
+      function hbvib_branch_response_kinks(branch, response, capacity, omega, value, before, after, &
+         kinks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: response, capacity
+         real(c_double), intent(inout), optional :: omega(*), value(*)
+         integer(c_int64_t), intent(inout), optional :: before(*), after(*)
+         integer(c_int64_t), intent(inout) :: kinks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_response_kinks
+
       function hbvib_branch_leading_response(branch, point) bind(c) result(answer)
          import
          type(c_ptr), value :: branch

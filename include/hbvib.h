@@ -2060,6 +2060,30 @@ hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch,
                                          int64_t *point,
                                          int64_t *peaks);
 
+/// Kinks of a peak or a range, where another instant of the period takes the lead and the slope of
+/// the measure jumps. Derivatives at the two points of a kink are those of its two sides.
+///
+/// response   number of the response, from 0.
+/// capacity   numbers that fit into each array.
+/// omega      receives their angular frequencies, or NULL.
+/// value      receives the measures there, or NULL.
+/// before     receives the numbers of the last points before them, or NULL.
+/// after      receives the numbers of the first points behind them, or NULL.
+/// kinks      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity too small: the arrays are
+/// untouched), HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any
+/// number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_response_kinks(const hbvib_branch *branch,
+                                         int64_t response,
+                                         int64_t capacity,
+                                         double *omega,
+                                         double *value,
+                                         int64_t *before,
+                                         int64_t *after,
+                                         int64_t *kinks);
+
 /// Number of the response with the largest error at a stored point, in the norm that the tolerance
 /// has; HBVIB_E_INDEX where there is no such point, HBVIB_E_ARGUMENT where no error is known.
 ///

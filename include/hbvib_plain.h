@@ -761,6 +761,7 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch, int64_t wanted, int64_t
 int64_t hbvib_branch_responses(const hbvib_branch *branch);
 hbvib_status hbvib_branch_response(const hbvib_branch *branch, int64_t response, int32_t reading, hbvib_view *out);
 hbvib_status hbvib_branch_response_peaks(const hbvib_branch *branch, int64_t response, int64_t capacity, double *omega, double *value, int64_t *point, int64_t *peaks);
+hbvib_status hbvib_branch_response_kinks(const hbvib_branch *branch, int64_t response, int64_t capacity, double *omega, double *value, int64_t *before, int64_t *after, int64_t *kinks);
 int64_t hbvib_branch_leading_response(const hbvib_branch *branch, int64_t point);
 hbvib_status hbvib_branch_read_responses(const hbvib_branch *branch, const hbvib_response *responses, int64_t responses_len, double *values, int64_t values_len, double *complex, int64_t complex_len, double *instants, int64_t instants_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_response_of(const hbvib_response *r, int64_t ndof, double omega, const double *x, int64_t x_len, double *value, double *amplitude, double *instant);

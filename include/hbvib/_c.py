@@ -928,6 +928,7 @@ branch_at: h l l p p p
 branch_responses: h -> int64
 branch_response: h l i view
 branch_response_peaks: h l l p p p p
+branch_response_kinks: h l l p p p p p
 branch_leading_response: h l -> int64
 branch_read_responses: h response l p l p l p l hooks
 response_of: response l d p l p p p
@@ -1096,6 +1097,8 @@ if TYPE_CHECKING:
         def hbvib_branch_response(self, branch: Any, response: int, reading: int, out: Any) -> int: ...
         def hbvib_branch_response_peaks(self, branch: Any, response: int, capacity: int, omega: Any, value: Any, point:
             Any, peaks: Any) -> int: ...
+        def hbvib_branch_response_kinks(self, branch: Any, response: int, capacity: int, omega: Any, value: Any, before:
+            Any, after: Any, kinks: Any) -> int: ...
         def hbvib_branch_leading_response(self, branch: Any, point: int) -> int: ...
         def hbvib_branch_read_responses(self, branch: Any, responses: Any, responses_len: int, values: Any, values_len:
             int, complex: Any, complex_len: int, instants: Any, instants_len: int, hooks: Any) -> int: ...
