@@ -284,7 +284,9 @@ class SavedBranch(Branch):
             readings = [self._arrays[f"response/{r}/{reading.name.lower()}"] for reading in Reading]
             place = f"response/{r}/kinks"
             # Earlier files do not know them.
-            kinks = self._list(Kinks, place) if f"{place}/omega" in self._arrays else Kinks(*[np.empty(0)] * 4)
+            none, nowhere = np.empty(0), np.empty(0, np.int64)
+            known = f"{place}/omega" in self._arrays
+            kinks = self._list(Kinks, place) if known else Kinks(none, none, nowhere, nowhere)
             found.append(WatchedResponse(Response(**about), len(self), readings, self._list(Points, f"response/{r}/peaks"), kinks))
         return tuple(found)
 
