@@ -197,8 +197,8 @@ static void ranges(void)
             REFUSED("75", hbvib_forced_residual(the_model, NULL, bad[i], x, 40, r, 40, NULL, 0, NULL, 0), wanted, 3, "omega");
     }
     o = frequencies(207, 211);
-    o.reserved = 1;
-    REFUSED("68", with(NULL, &o, NULL), HBVIB_E_ARGUMENT, 3, "reserved = 1");
+    o.together = 2;
+    REFUSED("68", with(NULL, &o, NULL), HBVIB_E_ARGUMENT, 3, "together = 2");
     o = frequencies(1e-300, 1e300); /* row 75: extreme, but a defined status */
     {
         hbvib_solver_options s = solver_options();

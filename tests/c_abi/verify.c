@@ -95,7 +95,7 @@ static void bad_input(hbvib_branch *branch)
     REFUSED("NULL", hbvib_verify_options_init(NULL, sizeof o), HBVIB_E_NULL, 1, "hbvib_verify_options");
     REFUSED("size", hbvib_verify_options_init(&o, 8), HBVIB_E_STRUCT_SIZE, 2, "needs 32");
     REFUSED("NULL", hbvib_verification_init(NULL, sizeof v), HBVIB_E_NULL, 1, "hbvib_verification");
-    REFUSED("size", hbvib_verification_init(&v, 8), HBVIB_E_STRUCT_SIZE, 2, "needs 112");
+    REFUSED("size", hbvib_verification_init(&v, 8), HBVIB_E_STRUCT_SIZE, 2, "needs 128");
     REFUSED("NULL", hbvib_verify(NULL, branch, 0, NULL, NULL, NULL, 0, NULL, 0, &v), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("NULL", hbvib_verify(the_model, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, &v), HBVIB_E_HANDLE, 2, "NULL");
     REFUSED("type", hbvib_verify((hbvib_model *)branch, branch, 0, NULL, NULL, NULL, 0, NULL, 0, &v), HBVIB_E_HANDLE, 1, "another type");
