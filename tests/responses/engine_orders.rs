@@ -16,16 +16,16 @@ const MASS: [f64; 4] = [1.0, 0.0, 0.0, 3.0];
 const OWN: [f64; 4] = [1.0, -1.0, -1.0, 4.0];
 const NEXT: [f64; 4] = [0.0, 0.0, 0.0, -1.0];
 
-/// A wheel whose blades rub against the ground, under harmonics 2 and 3 of the speed of rotation: one sector, and the whole as a plain
-/// structure.
-fn models() -> (Model, Model) {
+/// A wheel whose blades rub against the ground, under harmonics 2 and 3 of the speed of rotation, which travel forward or, with a sense
+/// of −1, backward: one sector, and the whole as a plain structure.
+fn models(sense: i64) -> (Model, Model) {
     let contact = Contact::jenkins(0, None, 0.6, 0.3, 0.2);
     let mut sector = Model::cyclic(NDOF, SECTORS).unwrap();
     let dense = |a: &'static [f64; 4]| MatrixView::dense(NDOF, a);
     sector.set_matrix(MatrixKind::Mass, &dense(&MASS)).unwrap();
     sector.set_matrix(MatrixKind::Stiffness, &dense(&OWN)).unwrap();
     sector.set_coupling(MatrixKind::Stiffness, &dense(&NEXT)).unwrap();
-    sector.set_wave(1);
+    sector.set_wave(sense);
     sector.add_contact(&contact).unwrap();
     let mut wheel = Wheel::new(NDOF, SECTORS);
     wheel.set(MatrixKind::Mass, &MASS, None, None);
@@ -33,7 +33,7 @@ fn models() -> (Model, Model) {
     wheel.add_contact(&contact);
     for (harmonic, force) in FORCES {
         sector.add_force(0, harmonic, force.into()).unwrap();
-        wheel.add_force(0, harmonic, force.into(), 1);
+        wheel.add_force(0, harmonic, force.into(), sense);
     }
     for model in [&mut sector, &mut wheel.model] {
         model.set_rayleigh(0.0, 0.02).unwrap();
@@ -69,7 +69,12 @@ const MEASURES: [Measure; 5] = [
 
 #[test]
 fn every_blade_is_that_of_the_whole_wheel() {
-    let (sector, wheel) = models();
+    every_blade(1);
+    every_blade(-1);
+}
+
+fn every_blade(sense: i64) {
+    let (sector, wheel) = models(sense);
     let sectors = [0, 1, 5, 7];
     let dofs: Vec<[usize; 1]> = sectors.iter().map(|s| [s * NDOF]).collect();
     let (mut of_sector, mut of_wheel) = (Vec::new(), Vec::new());
@@ -110,7 +115,7 @@ fn every_blade_is_that_of_the_whole_wheel() {
 
 #[test]
 fn the_response_by_itself_is_rms_and_no_point_is_rounding() {
-    let (sector, _) = models();
+    let (sector, _) = models(1);
     let branch = solve(&sector, (0.2, 0.6), &[], &SolverOptions::default());
     assert_eq!(branch.status(), hbvib::Status::Ok);
     assert_eq!(branch.responses().len(), 1);
@@ -128,7 +133,7 @@ fn the_response_by_itself_is_rms_and_no_point_is_rounding() {
 
 #[test]
 fn many_harmonics_are_the_whole_wheel_in_time() {
-    let (sector, wheel) = models();
+    let (sector, wheel) = models(1);
     let mut responses = Vec::new();
     for s in 0..SECTORS {
         for measure in MEASURES {
