@@ -355,8 +355,8 @@ module hbvib
       integer(c_int64_t) :: harmonic = 0
       complex(c_double_complex) :: response = 0
       real(c_double) :: response_error = 0, motion_error = 0, above = 0, distance = 0, peak = 0, peak_error = 0, residual = 0
-      integer(c_int64_t) :: periods = 0, events = 0, worst_response = -1
-      real(c_double) :: worst_response_error = NaN_c_double
+      integer(c_int64_t) :: periods = 0, events = 0, worst_response = 0
+      real(c_double) :: worst_response_error = 0
    end type hbvib_verification
 
    !> Options of hbvib_floquet.

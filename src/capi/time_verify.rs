@@ -132,8 +132,8 @@ unsafe impl VersionedStruct for hbvib_verification {
             residual: 0.0,
             periods: 0,
             events: 0,
-            worst_response: -1,
-            worst_response_error: f64::NAN,
+            worst_response: 0,
+            worst_response_error: 0.0,
         }
     }
 }

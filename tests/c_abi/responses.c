@@ -142,7 +142,7 @@ static void values(hbvib_model *model)
         k = hbvib_branch_leading_response(branch, 0);
         EXPECT("leading", k >= 0 && k < 3);
         WORKS("verify", hbvib_verification_init(&checked, sizeof checked));
-        EXPECT("verify", checked.worst_response == -1 && isnan(checked.worst_response_error));
+        EXPECT("verify", checked.worst_response == 0 && checked.worst_response_error == 0);
         WORKS("verify", hbvib_verify(model, branch, 0, NULL, NULL, NULL, 0, NULL, 0, &checked));
         EXPECT("verify", checked.worst_response >= 0 && checked.worst_response_error < 2e-3);
         WORKS("free", hbvib_branch_free(branch));

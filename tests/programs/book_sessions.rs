@@ -249,6 +249,9 @@ fn jobs_and_manifests_of_the_book_are_read() {
             let job = fs::read_to_string(own).unwrap();
             assert!(job.ends_with(&fence.text), "{place} is not the job of the example");
             continue;
+        } else if fence.text.contains("[contact.surfaces]") {
+            // These data have no faces: crates/hbvib-cli/tests/surface_pairs.rs runs such jobs.
+            continue;
         } else if fence.text.lines().any(|line| line == "[model]") {
             for file in ["stiffness.mtx", "mass.mtx", "coupling.mtx"] {
                 fs::copy(root().join("examples/jobs/ring_damper").join(file), folder.join(file)).unwrap();
