@@ -248,6 +248,7 @@ pub unsafe extern "C" fn hbvib_branch_read_responses(
         let hooks = unsafe { load_hooks(hooks, 10) }?;
         let kept = read::<KeptBranch>(branch, 1)?;
         let branch = &kept.branch;
+        check_pointer(responses, 2, "responses")?;
         let watched = unsafe { Watched::new(responses, responses_len, branch.ndof(), 2) }.with_argument(2)?;
         let list = unsafe { watched.responses(2) }.with_argument(2)?;
         check_responses(&list, branch.ndof(), branch.reduction().sectors).with_argument(2)?;
