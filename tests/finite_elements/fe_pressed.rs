@@ -254,6 +254,7 @@ fn balanced(model: &Model, solver: &SolverOptions, branch: &Branch, (omega, poin
 }
 
 #[test]
+#[ignore = "half a minute of processor time; run by tests/deep.sh"]
 fn pressed_contacts_of_a_sector_stick_and_then_slip_as_the_forced_response_does() {
     let sector = sector();
     let (mut model, tip) = pressed(&sector, 0.0);

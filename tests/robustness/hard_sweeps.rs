@@ -55,6 +55,7 @@ fn peak(branch: &Branch) -> f64 {
 }
 
 #[test]
+#[ignore = "half a minute of processor time; run by tests/deep.sh"]
 fn a_bladed_disk_is_swept_whole_at_every_force_harmonic_and_sampling() {
     for force in [0.05, 0.5, 2.0, 5.0, 20.0, 50.0] {
         let model = blade_and_ring(force, true);
