@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 use crate::node_table::Nodes;
 use crate::surface_pairs::SurfacePairs;
 use hbvib::{MatrixKind, MatrixView, Model, Part, Speed, Storage, Values};
-use hbvib_io::{Dof, Files, Matrix, Report, Symmetry};
+use hbvib_io::{Dof, Files, Matrices, Matrix, Report, Symmetry};
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -289,6 +289,31 @@ fn expected(job: &Job, report: &mut Report) {
     }
 }
 
+/// The matrices of a job as its files have them.
+///
+/// # Errors
+/// A sentence.
+pub fn read_matrices(job: &Job) -> Outcome<Matrices> {
+    let part = &job.model;
+    let files = [
+        &part.matrices,
+        &part.stiffness,
+        &part.mass,
+        &part.damping,
+        &part.structural,
+    ];
+    let paths = files.map(|path: &Option<PathBuf>| path.as_ref().map(|path| job.path(path)));
+    let [matrices, stiffness, mass, damping, structural] = paths.each_ref().map(Option::as_deref);
+    let files = Files {
+        matrices,
+        stiffness,
+        mass,
+        damping,
+        structural,
+    };
+    hbvib_io::read_files(&files).map_err(|e| e.to_string())
+}
+
 fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
     let part = &job.model;
     let one = |path: &Path| -> Outcome<(Matrix, Vec<Dof>)> {
@@ -303,24 +328,7 @@ fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
             )),
         }
     };
-    let at = |path: &Option<PathBuf>| path.as_ref().map(|path| job.path(path));
-    let paths = [
-        &part.matrices,
-        &part.stiffness,
-        &part.mass,
-        &part.damping,
-        &part.structural,
-    ]
-    .map(at);
-    let [all, stiffness, mass, damping, structural] = paths.each_ref().map(Option::as_deref);
-    let found = hbvib_io::read_files(&Files {
-        matrices: all,
-        stiffness,
-        mass,
-        damping,
-        structural,
-    })
-    .map_err(|e| e.to_string())?;
+    let found = read_matrices(job)?;
     let position = mesh.map(|mesh| |node: i64| mesh.position(node).ok());
     let positions = position.as_ref().map(|p| p as &dyn Fn(i64) -> Option<[f64; 3]>);
     let mut given = Given {

@@ -1,19 +1,19 @@
 //! The verb `reduce`: a Craig-Bampton model of a job, written as a superelement, with its error.
 
 use crate::arguments::ReduceArguments;
-use crate::build::{Built, Outcome, built};
+use crate::build::{Built, Outcome, built, read_matrices};
 use crate::convert::format_of;
 use crate::craig_bampton::{Basis, Modes};
 use crate::events;
 use crate::job::{DofName, Job};
 use crate::print;
 use hbvib::{ContactState, Interrupt};
-use hbvib_io::{Dof, Files, Format, Matrices};
+use hbvib_io::{Dof, Format, Matrices};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Frequency up to which errors are told over the highest one of [forced].
 const ABOVE: f64 = 1.5;
@@ -40,25 +40,7 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
     let format = format_of(of.format.as_deref(), &of.output)?;
     let full = built(&job)?;
     let kept = kept(&job, &full, &of.keep)?;
-    let path = |path: &Option<PathBuf>| path.as_ref().map(|path| job.path(path));
-    let part = &job.model;
-    let paths = [
-        &part.matrices,
-        &part.stiffness,
-        &part.mass,
-        &part.damping,
-        &part.structural,
-    ]
-    .map(path);
-    let [matrices, stiffness, mass, damping, structural] = paths.each_ref().map(Option::as_deref);
-    let found = hbvib_io::read_files(&Files {
-        matrices,
-        stiffness,
-        mass,
-        damping,
-        structural,
-    })
-    .map_err(|e| e.to_string())?;
+    let found = read_matrices(&job)?;
     let mut basis = Basis::new(&found, &kept, &full.fixed)?;
     let limit = range(&job, &full)?;
     let reference = Reference::of(&full, limit)?;

@@ -3,35 +3,10 @@
 
 mod common;
 
+use common::{printed, root, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn printed(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn run(program: impl AsRef<std::ffi::OsStr>, arguments: &[&str], folder: &Path) -> String {
-    let mut command = Command::new(program);
-    let output = command
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap_or_else(|e| {
-            panic!("{command:?}: {e}; python3 and ccx are needed (Debian: apt-get install python3 calculix-ccx)")
-        });
-    let text = printed(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{command:?}: {text}{}",
-        printed(&output.stderr)
-    );
-    text
-}
+use std::process::Output;
 
 /// A copy of the example, with the matrices of CalculiX.
 fn wheel() -> PathBuf {

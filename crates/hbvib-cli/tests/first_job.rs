@@ -3,31 +3,12 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn printed(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("first_job").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-fn hbvib(arguments: &[&str], folder: &Path) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hbvib"));
-    command.args(arguments).current_dir(folder).output().unwrap()
-}
+use common::{command, empty_folder, printed, root};
+use std::path::Path;
+use std::process::Command;
 
 fn done(arguments: &[&str], folder: &Path) -> String {
-    let output = hbvib(arguments, folder);
+    let output = command(arguments, folder);
     let (text, errors) = (printed(&output.stdout), printed(&output.stderr));
     assert!(output.status.success(), "{arguments:?}: {text}{errors}");
     text
@@ -41,7 +22,7 @@ fn number(text: &str, word: &str) -> f64 {
 
 #[test]
 fn a_job_from_two_matrices_runs() {
-    let folder = folder("matrices");
+    let folder = empty_folder("first_job", "matrices");
     for file in ["stiffness.mtx", "mass.mtx"] {
         std::fs::copy(root().join("examples/jobs/ring_damper").join(file), folder.join(file)).unwrap();
     }
@@ -71,7 +52,7 @@ fn a_job_from_two_matrices_runs() {
         "{job}"
     );
     // A job that is there is kept.
-    let output = hbvib(&arguments, &folder);
+    let output = command(&arguments, &folder);
     assert!(output.status.code() == Some(1) && printed(&output.stderr).contains("--overwrite"));
     done(&[&arguments[..], &["--overwrite"]].concat(), &folder);
     // Another folder has the path of the matrices.
@@ -89,7 +70,7 @@ fn a_job_from_two_matrices_runs() {
             "none.inp: cannot be read",
         ),
     ] {
-        let output = hbvib(arguments, &folder);
+        let output = command(arguments, &folder);
         let errors = printed(&output.stderr);
         assert!(
             output.status.code() == Some(1) && errors.contains(words),
@@ -124,7 +105,7 @@ fn mesh(folder: &Path) {
 
 #[test]
 fn a_job_from_a_mesh_alone_runs() {
-    let folder = folder("mesh");
+    let folder = empty_folder("first_job", "mesh");
     mesh(&folder);
     let arguments = [
         "init",
@@ -169,7 +150,7 @@ fn a_job_from_a_mesh_alone_runs() {
         (&["--contact", "RING"], "needs two sets of nodes as A:B"),
         (&["--contact", "RING:RIM"], "there is no set \"RING\""),
     ] {
-        let output = hbvib(&[&arguments[..], &["-o", "other.toml"], more].concat(), &folder);
+        let output = command(&[&arguments[..], &["-o", "other.toml"], more].concat(), &folder);
         let errors = printed(&output.stderr);
         assert!(
             output.status.code() == Some(1) && errors.contains(words),
@@ -181,7 +162,7 @@ fn a_job_from_a_mesh_alone_runs() {
 
 #[test]
 fn matrices_survive_all_formats() {
-    let folder = folder("convert");
+    let folder = empty_folder("first_job", "convert");
     let data = root().join("crates/hbvib-io/tests/data");
     for extension in ["sti", "mas", "dof"] {
         let file = Path::new("sector").with_extension(extension);
@@ -235,7 +216,7 @@ fn matrices_survive_all_formats() {
         ),
         (&["convert", "--output", "g.op4"], "required arguments"),
     ] {
-        let output = hbvib(arguments, &folder);
+        let output = command(arguments, &folder);
         let errors = printed(&output.stderr);
         assert!(
             output.status.code() == Some(1) && errors.contains(words),

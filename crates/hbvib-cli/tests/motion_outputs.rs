@@ -3,29 +3,8 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn printed(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn run(program: impl AsRef<std::ffi::OsStr>, arguments: &[&str], folder: &Path) -> String {
-    let mut command = Command::new(program);
-    let output = command.args(arguments).current_dir(folder).output();
-    let output = output.unwrap_or_else(|e| panic!("{command:?}: {e}; sh tests/run.sh installs what is needed"));
-    let text = printed(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{command:?}: {text}{}",
-        printed(&output.stderr)
-    );
-    text
-}
+use common::{printed, root, run};
+use std::path::Path;
 
 #[test]
 fn other_programs_read_the_motion_of_the_wheel() {

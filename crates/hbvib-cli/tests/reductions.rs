@@ -3,32 +3,13 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reductions").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-fn hbvib(arguments: &[&str], folder: &Path) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hbvib"));
-    command.args(arguments).current_dir(folder).output().unwrap()
-}
+use common::{command, empty_folder, printed, root};
+use std::path::Path;
+use std::process::Command;
 
 fn done(arguments: &[&str], folder: &Path) -> String {
-    let output = hbvib(arguments, folder);
-    let (text, errors) = (text(&output.stdout), text(&output.stderr));
+    let output = command(arguments, folder);
+    let (text, errors) = (printed(&output.stdout), printed(&output.stderr));
     assert!(
         output.status.success() && errors.is_empty(),
         "{arguments:?}: {text}{errors}"
@@ -83,7 +64,7 @@ print(abs(np.sqrt(theirs / own) - 1).max(), abs((T.T @ M @ T - m)[:nb, :nb]).max
 
 #[test]
 fn the_reduction_is_that_of_another_program_in_every_format() {
-    let folder = folder("beam");
+    let folder = empty_folder("reductions", "beam");
     beam(&folder);
     let own = root().join(".venv/bin/python");
     let python = if own.exists() { own } else { "python3".into() };
@@ -98,8 +79,8 @@ fn the_reduction_is_that_of_another_program_in_every_format() {
             .current_dir(&folder)
             .output()
             .unwrap();
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let found: Vec<f64> = text(&output.stdout)
+        assert!(output.status.success(), "{}", printed(&output.stderr));
+        let found: Vec<f64> = printed(&output.stdout)
             .split_whitespace()
             .map(|x| x.parse().unwrap())
             .collect();
@@ -170,7 +151,7 @@ fn the_reduction_is_that_of_another_program_in_every_format() {
 
 #[test]
 fn the_reduced_wheel_has_the_response_of_the_whole_one() {
-    let folder = folder("wheel");
+    let folder = empty_folder("reductions", "wheel");
     let example = root().join("examples/jobs/cover_plate");
     for file in ["mesh.py", "matrices.inp", "job.toml"] {
         std::fs::copy(example.join(file), folder.join(file)).unwrap();
@@ -202,7 +183,7 @@ fn the_reduced_wheel_has_the_response_of_the_whole_one() {
 
 #[test]
 fn models_that_are_not_reduced_are_refused() {
-    let folder = folder("refused");
+    let folder = empty_folder("reductions", "refused");
     beam(&folder);
     let job = std::fs::read_to_string(folder.join("job.toml")).unwrap();
     let bare = job.split("[[contact]]").next().unwrap();
@@ -224,8 +205,8 @@ fn models_that_are_not_reduced_are_refused() {
         ),
         (&["reduce", "job.toml"], "--output"),
     ] {
-        let output = hbvib(arguments, &folder);
-        let errors = text(&output.stderr);
+        let output = command(arguments, &folder);
+        let errors = printed(&output.stderr);
         assert!(
             output.status.code() == Some(1) && errors.contains(words),
             "{arguments:?}: {errors}"

@@ -1,32 +1,12 @@
 //! Small files of each format, cut and changed at every byte, are read or refused: no panic, and no memory beyond a multiple of the
 //! file.
 
+mod counting;
+
+use counting::{MOST, USED};
 use hbvib_io::{Format, Matrices, Matrix, Symmetry, read, read_universal, report, write};
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Counts the memory in use, and the most of it.
-struct Counting;
-
-static USED: AtomicUsize = AtomicUsize::new(0);
-static MOST: AtomicUsize = AtomicUsize::new(0);
-
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let used = USED.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
-        MOST.fetch_max(used, Ordering::Relaxed);
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        USED.fetch_sub(layout.size(), Ordering::Relaxed);
-        unsafe { System.dealloc(pointer, layout) };
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
+use std::sync::atomic::Ordering;
 
 /// Buffers of readers, which do not grow with the file.
 const BUFFERS: usize = 256 << 10;
