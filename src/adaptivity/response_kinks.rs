@@ -17,7 +17,7 @@ use std::f64::consts::{PI, TAU};
 const CONTEXT: &str = "the kinks of a response";
 
 /// Smallest unexplained change of an instant that may be a jump.
-const JUMP: f64 = 0.1;
+const INSTANT_JUMP: f64 = 0.1;
 
 /// Distance of the two sides of a kink, over the arc, at which they are next to each other.
 const NEXT_TO: f64 = 1e-8;
@@ -26,16 +26,16 @@ const NEXT_TO: f64 = 1e-8;
 const SLOPES_DIFFER: f64 = 1e-5;
 
 /// Share of the arc below which a slope that changes in proportion to the share, times this factor, has no jump.
-const SMOOTH: (f64, f64) = (1e-5, 3.0);
+const WITHOUT_JUMP: (f64, f64) = (1e-5, 3.0);
 
 /// Distance from the place where two parabolas meet to the far side, over the change of that place and at most over the gap, and
 /// halvings in search of it.
-const SURE: f64 = 10.0;
+const BESIDE_MEETING: f64 = 10.0;
 const MOST_AWAY: f64 = 0.3;
-const HALVINGS: usize = 50;
+const HALVINGS_OF_MEETING: usize = 50;
 
 /// Least distance of two solutions over the gap that tell how a slope changes.
-const APART: f64 = 0.1;
+const TELLS_BEND: f64 = 0.1;
 
 /// Most solutions in search of a kink, and most kinks of an arc.
 const MOST_PLACES: usize = 40;
@@ -68,7 +68,7 @@ impl Side {
     }
 
     fn jumps(&self, other: &Side) -> Option<usize> {
-        (0..2).find(|which| self.mismatch(other, *which) > JUMP)
+        (0..2).find(|which| self.mismatch(other, *which) > INSTANT_JUMP)
     }
 }
 
@@ -104,7 +104,7 @@ fn meeting(sides: &(Parabola, Parabola), (mut low, mut high): (f64, f64)) -> f64
     if leads(high) >= 0.0 {
         return high;
     }
-    for _ in 0..HALVINGS {
+    for _ in 0..HALVINGS_OF_MEETING {
         let middle = 0.5 * (low + high);
         if leads(middle) > 0.0 {
             low = middle;
@@ -125,6 +125,9 @@ impl BranchTracer<'_> {
     ) -> Result<()> {
         let highest = a.1.max(b.1);
         for response in 0..analysis.responses() {
+            if analysis.reading_of(response, a)?.is_none() {
+                continue;
+            }
             analysis.select(highest)?;
             let arc = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
             let size = norm(arc.0.unknowns()).max(norm(arc.1.unknowns()));
@@ -191,13 +194,13 @@ impl BranchTracer<'_> {
                 break;
             }
             let tangents = before.slope() - after.slope();
-            if gap < SMOOTH.0 && tangents.abs() <= SMOOTH.1 * gap * (high.slope() - low.slope()).abs() {
+            if gap < WITHOUT_JUMP.0 && tangents.abs() <= WITHOUT_JUMP.1 * gap * (high.slope() - low.slope()).abs() {
                 return Ok(None);
             }
             // A solution too near to another one tells rounding of how the slope changes.
             let other = |side: &Side, wanted: bool, end: &'s Side| {
                 let own = sides.iter().filter(|(_, is)| *is == wanted).map(|(side, _)| side);
-                let apart = own.filter(|other: &&Side| (other.t - side.t).abs() >= APART * gap);
+                let apart = own.filter(|other: &&Side| (other.t - side.t).abs() >= TELLS_BEND * gap);
                 let distance = |other: &&Side| (other.t - side.t).abs();
                 apart.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(end)
             };
@@ -213,7 +216,8 @@ impl BranchTracer<'_> {
                 .rev()
                 .take_while(|(_, is_before)| *is_before == own)
                 .count();
-            let away = (SURE * (meeting - expected).abs()).max(NEXT_TO) * SURE.powi(again as i32 - 2);
+            let away =
+                (BESIDE_MEETING * (meeting - expected).abs()).max(NEXT_TO) * BESIDE_MEETING.powi(again as i32 - 2);
             expected = meeting;
             let beyond = if again < 2 {
                 0.0
@@ -228,7 +232,7 @@ impl BranchTracer<'_> {
             };
             // Where a third instant leads between them, the first of two kinks is sought.
             let (to_before, to_after) = (before.mismatch(&found, which), after.mismatch(&found, which));
-            let is_before = to_before <= to_after && to_before <= JUMP;
+            let is_before = to_before <= to_after && to_before <= INSTANT_JUMP;
             try_push(&mut sides, (found, is_before), CONTEXT)?;
             let of = |wanted: bool| sides.iter().filter(move |(_, is)| *is == wanted).map(|(side, _)| side);
             before = of(true).max_by(|a, b| a.t.total_cmp(&b.t)).unwrap_or(low);

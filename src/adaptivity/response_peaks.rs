@@ -45,22 +45,9 @@ impl BranchTracer<'_> {
         for response in analysis.further_responses() {
             let mut k = start;
             while k + 1 < arc.len() {
-                analysis.select(resolution)?;
-                let (mut ends, mut seen_arc) = (Vec::new(), Vec::new());
-                for (i, (point, of)) in arc.iter().enumerate() {
-                    let is_end = i == k || i == k + 1;
-                    // Nodes beyond have the harmonics of the arc.
-                    if is_end || *of == resolution {
-                        if is_end {
-                            try_push(&mut ends, seen_arc.len(), CONTEXT)?;
-                        }
-                        let seen = analysis.seen_by(response, (point, *of))?;
-                        try_push(&mut seen_arc, analysis.transfer(&seen, *of)?, CONTEXT)?;
-                    }
-                }
                 k += 1;
-                let &[first, last] = ends.as_slice() else { continue };
-                if let Some(found) = self.find_peaks_of(analysis, response, (seen_arc, (first, last)))? {
+                analysis.select(resolution)?;
+                if let Some(found) = self.find_peaks_of(analysis, response, (&arc, k))? {
                     arc.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
                     arc.insert(k, found);
                     k += 1;
@@ -72,23 +59,34 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// Records the peaks of a further response between two solutions of the current resolution as it sees them; returns the
-    /// one, if it is one and has no other resolution.
+    /// Records the peaks of a further response between the solution `next` of an arc and the one before it, with the current
+    /// harmonics; returns the one, if it is one and has these.
     fn find_peaks_of(
         &mut self,
         analysis: &mut dyn Traceable,
         response: usize,
-        (mut nodes, between): (Vec<Point>, (usize, usize)),
+        (arc, next): (&[(Point, usize)], usize),
     ) -> Result<Option<(Point, usize)>> {
         let resolution = analysis.resolution();
-        let ends = (nodes[between.0].try_clone()?, nodes[between.1].try_clone()?);
-        let (first, last) = (&ends.0, &ends.1);
+        let first = seen_here(analysis, response, &arc[next - 1])?;
+        let last = seen_here(analysis, response, &arc[next])?;
+        let (first, last) = (&first, &last);
         let brackets = self.predicted_brackets(first, last)?;
         if SpecialPoint::Peak.between(first, last) && brackets.len() <= 1 {
+            // Nodes beyond the two have the harmonics of the arc.
+            let (mut nodes, mut place) = (Vec::new(), 0);
+            for (i, one) in arc.iter().enumerate() {
+                if i == next - 1 {
+                    place = nodes.len();
+                }
+                if i == next - 1 || i == next || one.1 == resolution {
+                    try_push(&mut nodes, seen_here(analysis, response, one)?, CONTEXT)?;
+                }
+            }
             let kind = SpecialKind::PeakOf(response);
             let locator = Locator::new(first.unknowns().len(), self.course.settings)?;
             let mut locator = locator.with_response(Some(response));
-            let found = locator.peak_on(analysis.problem(), &mut nodes, between, self.interrupt)?;
+            let found = locator.peak_on(analysis.problem(), &mut nodes, (place, place + 1), self.interrupt)?;
             if let Some(point) = found
                 && self.record_special(analysis, kind, &point)?
             {
@@ -173,4 +171,10 @@ impl BranchTracer<'_> {
         }
         Ok(found)
     }
+}
+
+/// A solution of some resolution with the current harmonics, as a response sees it.
+fn seen_here(analysis: &mut dyn Traceable, response: usize, (point, of): &(Point, usize)) -> Result<Point> {
+    let seen = analysis.seen_by(response, (point, *of))?;
+    analysis.transfer(&seen, *of)
 }

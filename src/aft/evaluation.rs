@@ -84,12 +84,12 @@ impl Evaluation {
         })
     }
 
-    /// Adds the share of the period that a state takes.
+    /// Adds the share of the period that a state takes. Rounding leaves no sum above 1.
     pub(super) fn count(&mut self, state: State, share: f64) {
         match state {
             State::Stick => {}
-            State::Slip => self.slip_fraction += share,
-            State::Open => self.open_fraction += share,
+            State::Slip => self.slip_fraction = (self.slip_fraction + share).min(1.0),
+            State::Open => self.open_fraction = (self.open_fraction + share).min(1.0),
         }
     }
 

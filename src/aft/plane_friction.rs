@@ -148,7 +148,7 @@ impl PlaneFrictionEvaluator {
         for piece in &self.path.pieces {
             interrupt.check_before((2 * m * STAGES) as u64)?;
             if piece.state() == State::Slip {
-                out.slip_fraction += (piece.end - piece.start) / turn;
+                out.count(State::Slip, (piece.end - piece.start) / turn);
             }
             if let PlaneForce::Stick { force, pull } = piece.force {
                 transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);

@@ -241,6 +241,21 @@ impl<'a> ForcedDiscretised<'a> {
         try_extend(&mut self.last_errors, &found.responses, "the responses")?;
         Ok(found.response)
     }
+
+    /// A response at a point of a resolution, which may have been read before; the current resolution remains.
+    fn read_response(&mut self, response: usize, at: PointAt<'_>) -> Result<Option<Seen>> {
+        let current = self.resolutions.index();
+        let is_known = self.responses.has_read(at);
+        if !is_known {
+            self.select(at.1)?;
+        }
+        let problem = &mut self.resolutions.current.problem;
+        let found = self.responses.read_at(problem, at)?.get(response).copied();
+        if !is_known {
+            self.select(current)?;
+        }
+        Ok(found)
+    }
 }
 
 impl Discretised for ForcedDiscretised<'_> {
@@ -379,46 +394,22 @@ impl Discretised for ForcedDiscretised<'_> {
         self.responses.list.len()
     }
 
-    fn reading_of(&mut self, response: usize, (point, resolution): PointAt<'_>) -> Result<Option<Seen>> {
+    fn reading_of(&mut self, response: usize, at: PointAt<'_>) -> Result<Option<Seen>> {
         let has_instant = |one: &Response<'_>| matches!(one.measure, Measure::Peak | Measure::Range);
         if !self.responses.list.get(response).is_some_and(has_instant) {
             return Ok(None);
         }
-        let current = self.resolutions.index();
-        let is_known = self.responses.has_read((point, resolution));
-        if !is_known {
-            self.select(resolution)?;
-        }
-        let problem = &mut self.resolutions.current.problem;
-        let found = self
-            .responses
-            .read_at(problem, (point, resolution))?
-            .get(response)
-            .copied();
-        if !is_known {
-            self.select(current)?;
-        }
-        Ok(found)
+        self.read_response(response, at)
     }
 
     fn observes_peaks(&self) -> bool {
         self.responses.list.is_empty() || self.responses.is_observed()
     }
 
-    fn seen_by(&mut self, response: usize, (point, resolution): PointAt<'_>) -> Result<Point> {
-        let mut seen = point.try_clone()?;
-        let current = self.resolutions.index();
-        let is_known = self.responses.has_read((point, resolution));
-        if !is_known {
-            self.select(resolution)?;
-        }
-        let problem = &mut self.resolutions.current.problem;
-        let found = self.responses.read_at(problem, (point, resolution))?;
-        if let Some(found) = found.get(response) {
+    fn seen_by(&mut self, response: usize, at: PointAt<'_>) -> Result<Point> {
+        let mut seen = at.0.try_clone()?;
+        if let Some(found) = self.read_response(response, at)? {
             (seen.amplitude, seen.slope) = found.observed();
-        }
-        if !is_known {
-            self.select(current)?;
         }
         Ok(seen)
     }

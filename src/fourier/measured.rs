@@ -185,7 +185,7 @@ impl Reader {
                 *e
             };
             let of = size(e.x);
-            // Of images of each other, which differ by rounding, the first one leads.
+            // The first one leads among images of each other, which differ by rounding.
             if largest == f64::NEG_INFINITY || of > largest + SAME_SIZE * largest.abs() {
                 (best, largest) = (e, of);
             }
