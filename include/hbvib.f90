@@ -124,7 +124,8 @@ module hbvib
    ! hbvib_parameter_kind
    integer(c_int32_t), parameter, public :: HBVIB_PARAMETER_FORCE = 0, HBVIB_PARAMETER_PRELOAD = 1, HBVIB_PARAMETER_MU = 2, &
       HBVIB_PARAMETER_KT = 3, HBVIB_PARAMETER_KN = 4, HBVIB_PARAMETER_GAP = 5, HBVIB_PARAMETER_MASS = 6, &
-      HBVIB_PARAMETER_DAMPING = 7, HBVIB_PARAMETER_STIFFNESS = 8, HBVIB_PARAMETER_SPEED = 9
+      HBVIB_PARAMETER_DAMPING = 7, HBVIB_PARAMETER_STIFFNESS = 8, HBVIB_PARAMETER_SPEED = 9, HBVIB_PARAMETER_SLIDER_T1 = 10, &
+      HBVIB_PARAMETER_SLIDER_T2 = 11
    ! hbvib_scaling
    integer(c_int32_t), parameter, public :: HBVIB_SCALING_ADDITIVE = 0, HBVIB_SCALING_FACTOR = 1
    ! hbvib_quantity
@@ -136,6 +137,8 @@ module hbvib
    ! hbvib_follow
    integer(c_int32_t), parameter, public :: HBVIB_FOLLOW_OMEGA = 0, HBVIB_FOLLOW_PEAK = 1, HBVIB_FOLLOW_FOLD = 2, &
       HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
+   ! hbvib_band_of
+   integer(c_int32_t), parameter, public :: HBVIB_BAND_AMPLITUDE = 0, HBVIB_BAND_PEAK_AMPLITUDE = 1, HBVIB_BAND_PEAK_OMEGA = 2
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -403,6 +406,21 @@ module hbvib
       type(c_ptr) :: responses = c_null_ptr
       integer(c_int64_t) :: responses_len = 0
    end type hbvib_batch_options
+
+   !> Options of hbvib_band.
+   type, bind(c) :: hbvib_band_options
+      integer(c_int32_t) :: struct_size = 32, of = 0
+      type(c_ptr) :: contacts = c_null_ptr
+      integer(c_int64_t) :: contacts_len = 0, starts = 3
+   end type hbvib_band_options
+
+   !> Numbers of a band.
+   type, bind(c) :: hbvib_band_info
+      integer(c_int32_t) :: struct_size = 96, complete = 0
+      integer(c_int64_t) :: sliders = 0, states = 0, solved = 0
+      real(c_double) :: lower = 0, upper = 0, lower_omega = 0, upper_omega = 0, lower_gain = 0, upper_gain = 0
+      integer(c_int64_t) :: lower_at_limit = 0, upper_at_limit = 0
+   end type hbvib_band_info
 
    abstract interface
       !> A force of the caller.
@@ -773,6 +791,14 @@ module hbvib
          real(c_double), value :: preload
          integer(c_int32_t) :: status
       end function hbvib_model_set_preload
+
+      function hbvib_model_set_slider(model, id, direction, place) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: id, direction
+         real(c_double), value :: place
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_slider
 
       function hbvib_model_add_jenkins(model, n, dof_a, dof_b, sector_offset, kt, mu, preload, first_id) bind(c) result(status)
          import
@@ -1637,6 +1663,50 @@ module hbvib
          type(c_ptr), intent(inout) :: out
          integer(c_int32_t) :: status
       end function hbvib_batch_branch
+
+      function hbvib_branch_freedom(model, branch, point, capacity, contact, direction, place, derivative, count, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point, capacity
+         integer(c_int64_t), intent(inout), optional :: contact(*), direction(*)
+         real(c_double), intent(inout), optional :: place(*), derivative(*)
+         integer(c_int64_t), intent(inout) :: count
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_freedom
+
+      function hbvib_band_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_band_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_band_options_init
+
+      function hbvib_band_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_band_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_band_info_init
+
+      function hbvib_band(model, branch, point, solver, options, hooks, info, capacity, contact, direction, lower_place, &
+         upper_place, states_capacity, states, lower, upper) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_band_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_band_info), intent(inout) :: info
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: contact(*), direction(*)
+         real(c_double), intent(inout), optional :: lower_place(*), upper_place(*)
+         integer(c_int64_t), value :: states_capacity
+         real(c_double), intent(inout), optional :: states(*)
+         type(c_ptr), intent(inout) :: lower, upper
+         integer(c_int32_t) :: status
+      end function hbvib_band
 
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)

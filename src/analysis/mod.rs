@@ -1,5 +1,8 @@
 //! The crate's public face: each analysis puts the layers together.
 
+pub mod band;
+mod band_line;
+mod band_search;
 pub mod batch;
 mod branch_stability;
 pub mod campbell;
@@ -15,8 +18,10 @@ mod followed;
 mod forced_discretised;
 mod forced_equations;
 pub mod forced_response;
+pub mod freedom;
 pub mod further_threads;
 pub mod harmonic_residual;
+mod held_sliders;
 pub mod interference;
 pub mod linear_contacts;
 mod mode_discretised;
@@ -37,7 +42,9 @@ mod residual_numbering;
 pub mod response_of_motion;
 mod sampling;
 pub mod sensitivity_analysis;
+mod slip_margins;
 mod static_solution;
+mod stuck_contacts;
 pub mod synthesis;
 pub mod time_response;
 mod tracked_damping;
@@ -46,11 +53,13 @@ mod verified_responses;
 pub mod verify;
 mod watched_responses;
 
+pub use crate::analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::design_peak::DesignPeak;
 pub use crate::analysis::floquet::floquet;
 pub use crate::analysis::forced_response::forced_response;
+pub use crate::analysis::freedom::{FreeSlider, freedom, freedom_with};
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };

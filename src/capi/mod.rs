@@ -30,6 +30,7 @@ pub mod thread_memory;
 pub mod thread_start;
 mod versioned_struct;
 
+mod band;
 mod batch;
 mod caller_laws;
 mod caller_laws_check;
@@ -73,6 +74,7 @@ mod time;
 mod time_verify;
 mod version_and_errors;
 
+pub use band::*;
 pub use batch::*;
 pub use caller_laws::*;
 pub use caller_laws_check::*;

@@ -19,6 +19,7 @@ mod preload;
 mod reduced_structures;
 mod reference_point;
 mod reference_response;
+mod residual_band;
 mod ring_damper_speeds;
 mod rotation;
 mod small_systems;

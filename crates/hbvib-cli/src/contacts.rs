@@ -107,6 +107,7 @@ pub fn contacts(
                 gap: part.gap + pairs.gaps.get(k).copied().unwrap_or(0.0),
                 cubic: part.cubic * area,
                 velocity: part.velocity,
+                slider: [0.0; 2],
                 dofs: Vec::new(),
             })
         })
