@@ -1708,6 +1708,23 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_band
 
+      function hbvib_static_history(model, solver, steps, factors, speeds, hooks, motion, motion_len, places, places_len, &
+         forces, forces_len) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         integer(c_int64_t), value :: steps
+         real(c_double), intent(in), optional :: factors(*), speeds(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         real(c_double), intent(inout), optional :: motion(*)
+         integer(c_int64_t), value :: motion_len
+         real(c_double), intent(inout), optional :: places(*)
+         integer(c_int64_t), value :: places_len
+         real(c_double), intent(inout), optional :: forces(*)
+         integer(c_int64_t), value :: forces_len
+         integer(c_int32_t) :: status
+      end function hbvib_static_history
+
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)
          import

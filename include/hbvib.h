@@ -3988,6 +3988,44 @@ hbvib_status hbvib_band(const hbvib_model *model,
                         hbvib_branch **lower,
                         hbvib_branch **upper);
 
+/// Static states of a model along a load history, with friction: constant forces and speeds that
+/// rise and fall, between straight steps. Sliders begin at the places of hbvib_model_set_slider and
+/// are dragged along; the places of a step are the residual state that the history has left there,
+/// for hbvib_model_set_slider. The first load is reached at once. Vibrating forces have no effect.
+///
+/// solver     options; NULL: the defaults.
+/// steps      number of loads, >= 1.
+/// factors    factors of the constant forces, one for each step, or NULL: 1.
+/// speeds     fixed speeds of rotation, one for each step, or NULL: that of the model.
+/// hooks      phase, log and cancellation; progress is not called. NULL: none.
+/// motion     receives the displacements, steps x ndof, step after step; or NULL.
+/// motion_len numbers in it: steps x ndof.
+/// places     receives the places of the sliders along t1 and t2, steps x contacts x 2; or NULL.
+/// places_len numbers in it: steps x contacts x 2.
+/// forces     receives the forces of the contacts along t1, t2 and n, steps x contacts x 3, in the
+///            sense in which they act against the relative motion, so that the one along n is minus
+///            the normal load; or NULL.
+/// forces_len numbers in it: steps x contacts x 3.
+/// Errors: HBVIB_E_DIMENSION (steps, lengths), HBVIB_E_NOT_FINITE, HBVIB_E_UNSUPPORTED (a speed
+/// that is tied to the frequency, and loads that follow it), HBVIB_E_NO_CONVERGENCE or
+/// HBVIB_E_SINGULAR where there is no equilibrium, HBVIB_E_ARGUMENT (overlapping arrays),
+/// HBVIB_E_CALLBACK,
+/// HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; the
+/// arrays are untouched then. HBVIB_STOPPED_BY_CALLER likewise. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_static_history(const hbvib_model *model,
+                                  const hbvib_solver_options *solver,
+                                  int64_t steps,
+                                  const double *factors,
+                                  const double *speeds,
+                                  const hbvib_hooks *hooks,
+                                  double *motion,
+                                  int64_t motion_len,
+                                  double *places,
+                                  int64_t places_len,
+                                  double *forces,
+                                  int64_t forces_len);
+
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1
  * ============================================================================================== */

@@ -49,6 +49,7 @@ from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
 from ._sensitivity import Parameter, Sensitivities
+from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
 from ._types import *
@@ -59,7 +60,7 @@ __all__ = [
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve",
-    "FreeSlider", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "FreeSlider", "StaticHistory", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
     "get_include",

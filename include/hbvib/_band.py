@@ -49,7 +49,7 @@ class BandEnd(NamedTuple):
 
     >>> import hbvib
     >>> import numpy as np
-    >>> hbvib.BandEnd(1.0, 2.0, np.zeros(1), 0, 0.0, None, None).value
+    >>> hbvib.BandEnd(1.0, 2.0, np.zeros(1), 0, 0.0, hbvib.Model(1), None).value
     1.0
     """
     value: float
@@ -57,7 +57,7 @@ class BandEnd(NamedTuple):
     places: FloatArray
     at_limit: int
     gain: float
-    model: Optional[Model]
+    model: Model
     branch: Optional[Branch]
 
 

@@ -1012,6 +1012,7 @@ branch_freedom: h h l l p p p p p hooks
 band_options_init: band_options z
 band_info_init: band_info z
 band: h h l solver_options band_options hooks band_info l p p p p l p p p
+static_history: h solver_options l p p hooks p l p l p l
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -1219,6 +1220,8 @@ if TYPE_CHECKING:
         def hbvib_band(self, model: Any, branch: Any, point: int, solver: Any, options: Any, hooks: Any, info: Any,
             capacity: int, contact: Any, direction: Any, lower_place: Any, upper_place: Any, states_capacity: int,
             states: Any, lower: Any, upper: Any) -> int: ...
+        def hbvib_static_history(self, model: Any, solver: Any, steps: int, factors: Any, speeds: Any, hooks: Any,
+            motion: Any, motion_len: int, places: Any, places_len: int, forces: Any, forces_len: int) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,

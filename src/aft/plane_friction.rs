@@ -115,7 +115,7 @@ impl PlaneFrictionEvaluator {
         law.path(motion, pieces, &mut self.path, interrupt)?;
         self.add_forces(law, set, motion, out, interrupt)?;
         out.linear = matches!(self.path.repetition, Repetition::Rests([None, None]));
-        out.stuck = out.linear && law.slider() == [0.0; 2];
+        out.stuck = out.linear && law.slider().iter().all(|w| *w == 0.0);
         let Some(sensitivity) = self.sensitivity.as_mut().filter(|_| !out.is_force_alone()) else {
             return Ok(());
         };

@@ -79,8 +79,8 @@ pub(super) fn line(held: &HeldSliders<'_>, first: HeldState) -> Result<Line> {
     }
     let mut walk = Walk { held, width, solved: 0 };
     let first = walk.within(first)?;
-    let (mut below, reached_below) = walk.to_limit(&first, -1.0)?;
-    let (mut above, reached_above) = walk.to_limit(&first, 1.0)?;
+    let (mut below, reached_below) = walk.up_to_limit(&first, -1.0)?;
+    let (mut above, reached_above) = walk.up_to_limit(&first, 1.0)?;
     below.reverse();
     let mut states = below;
     if first.least_margin() >= -AT_LIMIT || states.is_empty() {
@@ -125,7 +125,7 @@ impl Walk<'_, '_> {
     }
 
     /// The states behind the first one up to the limit in one direction, and whether that was reached.
-    fn to_limit(&mut self, first: &HeldState, sign: f64) -> Result<(Vec<HeldState>, bool)> {
+    fn up_to_limit(&mut self, first: &HeldState, sign: f64) -> Result<(Vec<HeldState>, bool)> {
         let mut states: Vec<HeldState> = Vec::new();
         let mut step = self.width / STEPS;
         let mut last = first.clone();
@@ -180,7 +180,7 @@ impl Walk<'_, '_> {
             if place.is_nan() || (place - a) * (place - b) >= 0.0 {
                 place = 0.5 * (a + b);
             }
-            if place == a || place == b {
+            if (place - a).abs() == 0.0 || (place - b).abs() == 0.0 {
                 return Ok(Some(low));
             }
             let Some(next) = self.solve(place, &guess)? else {

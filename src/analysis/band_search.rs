@@ -138,16 +138,14 @@ impl Search<'_, '_> {
                 continue;
             };
             // Curvature takes a step beyond the limits; a second step brings it back.
-            let next = if next.least_margin() < -WITHIN {
-                match self.within(next)? {
-                    Some(next) => next,
-                    None => {
-                        radius *= SHRINKING;
-                        continue;
-                    }
-                }
+            let within = if next.least_margin() < -WITHIN {
+                self.within(next)?
             } else {
-                next
+                Some(next)
+            };
+            let Some(next) = within else {
+                radius *= SHRINKING;
+                continue;
             };
             let gain = sign * (next.value - state.value);
             if gain < ENOUGH * foretold {

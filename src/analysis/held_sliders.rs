@@ -183,35 +183,10 @@ impl<'a> HeldSliders<'a> {
         }
         condensed.set().transfer(set, motion, 1.0 / length, &mut u);
         let mut point = self.point(&condensed, omega)?;
-        let mut adjoint = self.newton(&mut point, &mut u, omega)?;
         let is_peak = self.of != BandOf::Amplitude;
+        let mut adjoint = newton(&mut point, &mut u, omega)?;
         if is_peak {
-            let mut settled = f64::INFINITY;
-            for _ in 0..CORRECTIONS {
-                let (_, curvature) = peak_row(&mut point, &u, omega, &adjoint)?;
-                if curvature.is_nan() || curvature >= 0.0 {
-                    return fail!(NoConvergence, "the peak vanishes where a slider is held");
-                }
-                // The matrix of the point again.
-                adjoint = self.adjoint(&mut point, &u, omega)?;
-                let change = -adjoint.by_omega / curvature;
-                settled = (change / omega).abs();
-                if settled < SETTLED {
-                    break;
-                }
-                let tangent = point.tangent(omega)?;
-                for (u, t) in u.iter_mut().zip(&tangent) {
-                    *u += change * t;
-                }
-                omega += change;
-                adjoint = self.newton(&mut point, &mut u, omega)?;
-            }
-            if settled > NEARLY {
-                return fail!(
-                    NoConvergence,
-                    "the frequency of the peak does not settle where a slider is held"
-                );
-            }
+            adjoint = to_peak(&mut point, &mut u, &mut omega, adjoint)?;
         }
         let at_frequency = model.at_frequency(omega)?;
         let samples = self.solver.samples;
@@ -236,7 +211,7 @@ impl<'a> HeldSliders<'a> {
             try_vec(count, 0.0, CONTEXT)?
         };
         // The matrix of the point itself again.
-        self.adjoint(&mut point, &u, omega)?;
+        adjoint_at(&mut point, &u, omega)?;
         let tangent = if is_peak { point.tangent(omega)? } else { Vec::new() };
         let mut sliders = try_copy(&self.sliders, CONTEXT)?;
         let mut by_place = Vec::new();
@@ -290,31 +265,63 @@ impl<'a> HeldSliders<'a> {
             None => Ok(point),
         }
     }
+}
 
-    fn adjoint(&self, point: &mut ForcedPoint<'_>, u: &[f64], omega: f64) -> Result<Adjoint> {
-        match point.adjoint(u, omega)? {
-            Some(adjoint) => Ok(adjoint),
-            None => fail!(NoConvergence, "the response has a fold where a slider is held"),
+fn adjoint_at(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64) -> Result<Adjoint> {
+    match point.adjoint(u, omega)? {
+        Some(adjoint) => Ok(adjoint),
+        None => fail!(NoConvergence, "the response has a fold where a slider is held"),
+    }
+}
+
+/// Newton's method at a fixed frequency; the adjoint of the solution.
+fn newton(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: f64) -> Result<Adjoint> {
+    let mut last = f64::INFINITY;
+    for _ in 0..ITERATIONS {
+        let adjoint = adjoint_at(point, u, omega)?;
+        let residual = norm(point.residual()) / point.scale();
+        if residual < RESIDUAL || (residual < ENOUGH && residual > 0.5 * last) {
+            return Ok(adjoint);
+        }
+        if !residual.is_finite() {
+            break;
+        }
+        last = residual;
+        for (u, step) in u.iter_mut().zip(&point.newton_step()?) {
+            *u += step;
         }
     }
+    fail!(NoConvergence, "no solution was found where a slider is held")
+}
 
-    /// Newton's method at a fixed frequency; the adjoint of the solution.
-    fn newton(&self, point: &mut ForcedPoint<'_>, u: &mut [f64], omega: f64) -> Result<Adjoint> {
-        let mut last = f64::INFINITY;
-        for _ in 0..ITERATIONS {
-            let adjoint = self.adjoint(point, u, omega)?;
-            let residual = norm(point.residual()) / point.scale();
-            if residual < RESIDUAL || (residual < ENOUGH && residual > 0.5 * last) {
-                return Ok(adjoint);
-            }
-            if !residual.is_finite() {
-                break;
-            }
-            last = residual;
-            for (u, step) in u.iter_mut().zip(&point.newton_step()?) {
-                *u += step;
-            }
+/// Corrects the frequency to that of the peak; the adjoint there.
+fn to_peak(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: &mut f64, first: Adjoint) -> Result<Adjoint> {
+    let mut adjoint = first;
+    let mut settled = f64::INFINITY;
+    for _ in 0..CORRECTIONS {
+        let (_, curvature) = peak_row(point, u, *omega, &adjoint)?;
+        if curvature.is_nan() || curvature >= 0.0 {
+            return fail!(NoConvergence, "the peak vanishes where a slider is held");
         }
-        fail!(NoConvergence, "no solution was found where a slider is held")
+        // The matrix of the point again.
+        adjoint = adjoint_at(point, u, *omega)?;
+        let change = -adjoint.by_omega / curvature;
+        settled = (change / *omega).abs();
+        if settled < SETTLED {
+            break;
+        }
+        let tangent = point.tangent(*omega)?;
+        for (u, t) in u.iter_mut().zip(&tangent) {
+            *u += change * t;
+        }
+        *omega += change;
+        adjoint = newton(point, u, *omega)?;
     }
+    if settled > NEARLY {
+        return fail!(
+            NoConvergence,
+            "the frequency of the peak does not settle where a slider is held"
+        );
+    }
+    Ok(adjoint)
 }

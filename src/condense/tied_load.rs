@@ -74,7 +74,7 @@ impl TiedLoad {
         };
         let number = contact;
         let contact = &model.contacts()[contact];
-        if contact.slider != [0.0; 2] {
+        if contact.is_placed() {
             return fail!(
                 Unsupported,
                 "contact {number}: the place of its slider is given, but its normal load follows the frequency; set a fixed speed"

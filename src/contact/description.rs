@@ -222,6 +222,12 @@ impl Contact {
         self.ask(|law| law.sliders())
     }
 
+    /// Whether the place of a slider is given.
+    #[must_use]
+    pub fn is_placed(&self) -> bool {
+        self.slider.iter().any(|place| *place != 0.0)
+    }
+
     /// Name of the contact if it has no normal load.
     #[must_use]
     pub fn without_load(&self) -> Option<&'static str> {

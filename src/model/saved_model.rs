@@ -140,7 +140,7 @@ impl Model {
 
     /// Whether the place of a slider is given.
     fn has_places(&self) -> bool {
-        self.contacts.iter().any(|contact| contact.slider != [0.0; 2])
+        self.contacts.iter().any(Contact::is_placed)
     }
 
     fn content_from(input: &mut ByteReader<'_>, version: u32) -> Result<Self> {

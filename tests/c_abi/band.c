@@ -135,6 +135,18 @@ int main(void)
     EXPECT("stop", hbvib_band(model, branch, 0, &s, NULL, &hooks, &info, 0, NULL, NULL, NULL, NULL, 0, NULL, NULL, NULL) ==
                        HBVIB_STOPPED_BY_CALLER);
 
+    {
+        const double factors[2] = {1, 0.5};
+        double motion[6], places[8], forces[12];
+        WORKS("history", hbvib_static_history(model, &s, 2, factors, NULL, NULL, motion, 6, places, 8, forces, 12));
+        EXPECT("history", forces[2] < 0 && forces[8] > forces[2] && motion[5] < motion[2] && places[1] == 0);
+        REFUSED("steps", hbvib_static_history(model, &s, 0, factors, NULL, NULL, motion, 6, NULL, 0, NULL, 0), HBVIB_E_DIMENSION, 3,
+                "steps = 0");
+        REFUSED("length", hbvib_static_history(model, &s, 2, factors, NULL, NULL, motion, 5, NULL, 0, NULL, 0), HBVIB_E_DIMENSION, 8,
+                "length = 5");
+        REFUSED("factors", hbvib_static_history(model, &s, 2, NULL, NULL, NULL, motion, 6, NULL, 0, NULL, 0), HBVIB_E_DIMENSION, 3,
+                "neither");
+    }
     WORKS("free", hbvib_branch_free(ends[1]));
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(model));

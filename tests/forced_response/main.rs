@@ -13,6 +13,7 @@ mod duffing;
 mod duffing_folds;
 mod folds;
 mod full_wheel;
+mod load_history;
 mod many_contacts;
 mod mean_friction;
 mod preload;

@@ -102,6 +102,7 @@ pub const SECTIONS: [Section; 13] = [
             "parameter_optima",
             "batch",
             "band",
+            "static_history",
         ],
     },
     Section {

@@ -132,7 +132,7 @@ impl ContactLaw for Friction3dContact {
 
     fn is_preloaded(&self) -> bool {
         let is_pressed = self.constants.kn > 0.0 && self.load >= 0.0;
-        self.role() == Role::Active && (is_pressed || self.constants.slider != [0.0; 2])
+        self.role() == Role::Active && (is_pressed || self.constants.slider.iter().any(|w| *w != 0.0))
     }
 
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
@@ -201,7 +201,7 @@ impl Law for Friction3d {
     }
 
     fn is_odd(&self) -> bool {
-        !self.has_normal && self.slider == [0.0; 2]
+        !self.has_normal && self.slider.iter().all(|w| *w == 0.0)
     }
 
     fn form(&self) -> Form<'_> {

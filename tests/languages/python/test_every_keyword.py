@@ -85,6 +85,8 @@ SETTERS = {
                           dict(contact=(1, "id"), preload=(NAN, "preload"), per_speed2=(NAN, "per_speed2")), jenkins),
     "set_slider": setter(dict(contact=0, place=0.2, direction=0), dict(place=0.3, contact=1, direction=1),
                          dict(contact=(2, "id"), place=(NAN, "place"), direction=(2, "direction")), planes),
+    "set_sliders": setter(dict(places=[[0.1, 0.2], [0.3, 0.4]]), dict(places=[[0.1, 0.2], [0.3, 0.5]]),
+                          dict(places=([[0.1, 0.2]], "places")), planes),
     "set_matrix": setter(dict(which="damping", matrix=0.1 * np.tri(3), part="lower"),
                          dict(which="structural", matrix=0.2 * np.tri(3), part="upper"),
                          dict(which=("stiff", "stiffness"), matrix=(np.eye(2), "damping"), part=("half", "lower"))),
@@ -129,6 +131,13 @@ damper.add_force(2, 1, harmonic=0)
 damper.add_force(0, 0.02)
 damped, free_damped = (damper.forced_response(omega, harmonics=3) for omega in ((1.23, 1.27), (1.235, 1.265)))
 top = int(damped.peaks().point[0])
+
+
+pressed = hbvib.Model(mass=1, stiffness=1)
+pressed.add_contact("jenkins", 0, kt=1, mu=0.5, preload=0.1)
+pressed.set_preload(0, 0.1, per_speed2=0.1)
+pressed.set_speed(1.0)
+pressed.add_force(0, 1.0, harmonic=0)
 
 
 def ends_of(**o):
@@ -212,6 +221,9 @@ ANALYSES = {
     "band_curve": (*analysis(lambda **o: np.array(damper.band_curve(**o)[:3]), branch=damped, points=[0], contacts=[0], starts=1), {
         "branch": [(CHANGES, free_damped), (refused("model"), branch)], "points": [(CHANGES, [1]), (refused("point"), [-1])],
         "contacts": [(CHANGES, [1]), (refused("contacts"), [2])], "starts": [(refused("starts"), 0)]}),
+    "static_history": (*analysis(lambda **o: pressed.static_history(**o).forces, factors=[1.0, 1.0], speeds=[1.0, 0.5]), {
+        "factors": [(CHANGES, [1.0, 0.5]), (refused("factors"), [NAN, 1.0])],
+        "speeds": [(CHANGES, [1.0, 0.7]), (refused("speeds"), [NAN, 1.0])]}),
     "energy": (*analysis(branch.energy, point=3), {"point": [(CHANGES, 4), (refused("point"), -1)]}),
     "slip": (*analysis(branch.slip, point=crest), {"point": [(CHANGES, 0), (refused("point"), -1)]}),
     "leading_response": (*analysis(lambda **o: np.array([sure.leading_response(**o)]), point=0), {
