@@ -101,8 +101,8 @@ class Band:
     def __repr__(self) -> str:
         if not self.sliders:
             return f"<hbvib.Band: no free slider, {self.lower.value:.4g}>"
-        from ._summary import counted
-        return f"<hbvib.Band: {counted(len(self.sliders), 'free slider')}, {self.lower.value:.4g} to {self.upper.value:.4g}>"
+        free = "1 free slider" if len(self.sliders) == 1 else f"{len(self.sliders)} free sliders"
+        return f"<hbvib.Band: {free}, {self.lower.value:.4g} to {self.upper.value:.4g}>"
 
 
 class BandCurve(NamedTuple):

@@ -16,7 +16,7 @@ const SUPPORT: f64 = 0.02;
 const BETA: f64 = 0.9;
 
 /// The cylinder, along the platform, outward and, if `across`, along its axis.
-fn cylinder(kind: ContactKind, across: bool) -> Model {
+fn cylinder(kind: &ContactKind, across: bool) -> Model {
     let n = 2 + usize::from(across);
     let mut model = Model::new(n).unwrap();
     for (which, d) in [
@@ -72,7 +72,7 @@ fn a_cylinder_between_planes_keeps_the_force_of_its_speeds() {
     // Squares of speeds: up, down into stick, down into reversed slip, up again, further up.
     let squares = [2.0, 1.6, 0.7, 0.9, 3.0, 0.1];
     for (kind, across) in [(ContactKind::Friction2d, false), (ContactKind::Friction3d, true)] {
-        let model = cylinder(kind, across);
+        let model = cylinder(&kind, across);
         let history = LoadHistory {
             factors: &squares,
             speeds: &[],
@@ -97,7 +97,7 @@ fn a_cylinder_between_planes_keeps_the_force_of_its_speeds() {
 /// A response with the places that a history has left starts from its residual forces.
 #[test]
 fn a_response_after_a_history_has_its_residual_force() {
-    let mut model = cylinder(ContactKind::Friction2d, false);
+    let mut model = cylinder(&ContactKind::Friction2d, false);
     let history = LoadHistory {
         factors: &[2.0, 1.0],
         speeds: &[],
@@ -140,7 +140,7 @@ fn a_slider_under_a_load_of_the_speed_is_dragged_where_the_load_falls() {
 
 #[test]
 fn histories_that_are_none_are_refused_by_name() {
-    let model = cylinder(ContactKind::Friction2d, false);
+    let model = cylinder(&ContactKind::Friction2d, false);
     let with = |factors: &[f64], speeds: &[f64]| {
         let history = LoadHistory { factors, speeds };
         static_history(&model, &SolverOptions::default(), &history, &Interrupt::none())

@@ -5,6 +5,7 @@
 mod common;
 
 mod backward_waves;
+mod bands_of_many_sliders;
 mod capacity;
 mod continuation;
 mod derivatives;

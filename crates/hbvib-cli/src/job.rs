@@ -1,7 +1,7 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
 use crate::job_motion::{MotionPart, UnitsPart};
-use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
+use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::job_surfaces::SurfacesPart;
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
@@ -30,6 +30,7 @@ pub struct Job {
     pub study: Option<StudyPart>,
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
+    pub band: Option<BandPart>,
     pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
@@ -483,10 +484,11 @@ impl Job {
             self.study.is_some(),
             self.map.is_some(),
             self.tornado.is_some(),
+            self.band.is_some(),
         ];
         if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado] or [band]",
                 path.display()
             ));
         }

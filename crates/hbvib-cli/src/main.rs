@@ -8,6 +8,7 @@
 //! ```
 
 mod arguments;
+mod band_curve;
 mod build;
 mod campbell;
 mod canvas;
