@@ -8,8 +8,11 @@
 //! ```
 
 mod arguments;
+mod at_speeds;
 mod band_curve;
 mod build;
+mod calculix_results;
+mod calculix_run;
 mod campbell;
 mod canvas;
 mod ccx_deck;
@@ -24,6 +27,7 @@ mod craig_bampton;
 mod curve;
 mod end;
 mod events;
+mod face_images;
 mod faces;
 mod figure;
 mod files;
@@ -31,8 +35,11 @@ mod frd;
 mod html_report;
 mod init;
 mod init_job;
+mod inp_cards;
 mod job;
+mod job_faces;
 mod job_motion;
+mod job_static;
 mod job_studies;
 mod job_surfaces;
 mod line_chart;
@@ -55,6 +62,8 @@ mod npz;
 mod output;
 mod plot;
 mod points;
+mod prestress;
+mod prestress_decks;
 mod progress;
 mod reduce;
 mod responses;
@@ -62,6 +71,7 @@ mod restart;
 mod run_job;
 mod solver;
 mod static_contacts;
+mod static_states;
 mod stored_response;
 mod study;
 mod surface_pairs;
@@ -108,6 +118,7 @@ fn done(verb: &Verb) -> Outcome<u8> {
         Verb::Init(of) => init::init(of),
         Verb::Convert(of) => convert::convert(of),
         Verb::Reduce(of) => reduce::reduce(of),
+        Verb::Prestress(of) => prestress::prestress(of),
         Verb::Plot(of) => plot::plot(of),
         Verb::Schema => schema(),
         Verb::Completions { shell } => print(&manual::completions(*shell)).map(|()| 0),
