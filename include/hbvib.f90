@@ -1832,6 +1832,8 @@ module hbvib
       procedure :: clear_forces => model_clear_forces
       procedure :: add_contact => model_add_contact
       procedure :: set_preload => model_set_preload
+      procedure :: set_slider => model_set_slider
+      procedure :: band => model_band
       procedure :: add_jenkins => model_add_jenkins
       procedure :: add_springs => model_add_springs
       procedure :: add_iwan => model_add_iwan
@@ -1912,6 +1914,7 @@ module hbvib
    private :: model_set_aero, model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
    private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings, model_interference, &
       model_signed_diameter
+   private :: model_set_slider, model_band
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -2834,6 +2837,58 @@ contains
       call to_zero(status, 'id', int(id, i64), hbvib_model_contacts(self%handle), zero)
       if (status == HBVIB_OK) status = hbvib_model_set_preload_at_speed(self%handle, zero, preload, growth)
    end function model_set_preload
+
+   !> Place of the slider of a friction contact before any motion, along t1 (direction 1) or t2 (2).
+   function model_set_slider(self, id, direction, place) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: id, direction
+      real(dp), intent(in) :: place
+      integer(i32) :: status
+      integer(i64) :: zero, along
+      status = HBVIB_OK
+      call to_zero(status, 'id', int(id, i64), hbvib_model_contacts(self%handle), zero)
+      call to_zero(status, 'direction', int(direction, i64), 2_i64, along)
+      if (status == HBVIB_OK) status = hbvib_model_set_slider(self%handle, zero, along, place)
+   end function model_set_slider
+
+   !> The least and the largest result at a point of this model over all residual forces of contacts that stick: info, and the
+   !> free sliders, contacts and directions from 1, with their places at both ends, for set_slider.
+   function model_band(self, branch, point, info, contact, direction, lower, upper, options, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      type(hbvib_band_info), intent(out) :: info
+      integer, allocatable, intent(out), optional :: contact(:), direction(:)
+      real(dp), allocatable, intent(out), optional :: lower(:), upper(:)
+      type(hbvib_band_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64), allocatable :: contacts(:), directions(:)
+      real(dp), allocatable :: least(:), largest(:)
+      real(dp) :: none(1)
+      type(c_ptr) :: ends(2)
+      integer(i64) :: p, room
+      integer(i32) :: freed
+      integer :: j, n
+      status = HBVIB_OK
+      call point_to_zero(branch, status, point, p)
+      if (status /= HBVIB_OK) return
+      room = max(2*hbvib_model_contacts(self%handle), 0_i64)
+      allocate (contacts(room), directions(room), least(room), largest(room))
+      ends = c_null_ptr
+      status = hbvib_band(self%handle, branch%handle, p, options=options, hooks=hooks, info=info, capacity=room, contact=contacts, &
+                          direction=directions, lower_place=least, upper_place=largest, states_capacity=0_i64, states=none, &
+                          lower=ends(1), upper=ends(2))
+      if (status /= HBVIB_OK) return
+      do j = 1, 2
+         freed = hbvib_branch_free(ends(j))
+      end do
+      n = int(info%sliders)
+      if (present(contact)) contact = int(contacts(:n)) + 1
+      if (present(direction)) direction = int(directions(:n)) + 1
+      if (present(lower)) lower = least(:n)
+      if (present(upper)) upper = largest(:n)
+   end function model_band
 
    !> Many Jenkins contacts, all arrays of one length. dof_b absent: the ground; sector_offset absent: 0.
    function model_add_jenkins(self, dof_a, kt, mu, preload, dof_b, sector_offset, first_id) result(status)

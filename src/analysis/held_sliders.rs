@@ -63,13 +63,15 @@ pub(super) struct HeldSliders<'a> {
     pub interrupt: &'a Interrupt<'a>,
 }
 
+/// A solution that several hold.
+pub(super) type HeldState = Arc<HeldSolution>;
+
 /// A solution.
-#[derive(Clone)]
-pub(super) struct HeldState {
+pub(super) struct HeldSolution {
     /// Places of the sliders.
     pub places: Vec<f64>,
     pub omega: f64,
-    pub set: Arc<HarmonicSet>,
+    pub set: HarmonicSet,
     /// Packed motions in the caller's unit.
     pub motion: Vec<f64>,
     /// The result that is bounded.
@@ -83,7 +85,7 @@ pub(super) struct HeldState {
     pub margins: Vec<Margin>,
 }
 
-impl HeldState {
+impl HeldSolution {
     /// The least margin over the mean limit of its contact.
     pub fn least_margin(&self) -> f64 {
         let shares = self
@@ -236,10 +238,10 @@ impl<'a> HeldSliders<'a> {
             *x *= length;
         }
         let of_peak_omega = self.of == BandOf::PeakOmega;
-        Ok(HeldState {
+        Ok(Arc::new(HeldSolution {
             places: try_copy(places, CONTEXT)?,
             omega,
-            set: Arc::new(condensed.set().try_clone()?),
+            set: condensed.set().try_clone()?,
             motion: u,
             value: if of_peak_omega { omega } else { adjoint.amplitude },
             gradient: if of_peak_omega {
@@ -251,7 +253,7 @@ impl<'a> HeldSliders<'a> {
             by_place,
             omega_by_place,
             margins,
-        })
+        }))
     }
 
     fn point<'c>(&self, condensed: &'c Condensed, omega: f64) -> Result<ForcedPoint<'c>>

@@ -55,6 +55,7 @@ pub unsafe extern "C" fn hbvib_branch_freedom(
         let kept = read::<KeptBranch>(branch, 2)?;
         let point = index(point, kept.branch.stored(), 3, "point")?;
         let hooks = unsafe { load_hooks(hooks, 10) }?;
+        check_pointer(count, 9, "count")?;
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
                 analysis::freedom_with(&model, &kept.branch, point, interrupt)

@@ -1,5 +1,5 @@
-//! Bands over many free sliders: eight contacts of a face between the blades of a wheel against one of the same stiffness, and friction in
-//! a plane at eight nodes against random residual states.
+//! Bands over many free sliders: eight contacts of a face between the blades of a wheel against one of the same stiffness, whose largest
+//! peak is one of two; friction in a plane at eight nodes against random residual states.
 
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{BandOf, BandOptions, Contact, ContactKind, Frame, Hooks, MatrixKind, MatrixView, Model, band, freedom};
@@ -51,7 +51,6 @@ fn eight_sliders_a_sector_have_the_band_of_one() {
         assert_eq!(freedom(&model, &branch, peak).unwrap().len(), parts);
         let options = BandOptions {
             of: BandOf::PeakAmplitude,
-            starts: 1,
             ..BandOptions::default()
         };
         band(&model, &branch, peak, &solver, &options, &mut Hooks::default()).unwrap()
@@ -115,7 +114,7 @@ fn no_random_residual_state_lies_outside_the_band() {
     );
     assert!(found.is_complete && free.len() >= 6 && upper.value > 1.002 * lower.value);
     let mut most = [f64::INFINITY, 0.0];
-    for trial in 0..60 {
+    for trial in 0..30 {
         let mut other = model.try_clone().unwrap();
         for (i, slider) in free.iter().enumerate() {
             // Anywhere; a place beyond the limit acts as the nearest one within.

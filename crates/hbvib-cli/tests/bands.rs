@@ -69,3 +69,10 @@ fn a_band_that_cannot_be_computed_is_refused_by_its_part() {
     assert!(!output.status.success());
     assert!(common::printed(&output.stderr).contains("[band]: starts = 0"));
 }
+
+#[test]
+fn the_wedge_dampers_of_the_examples_are_checked() {
+    let job = common::root().join("examples/jobs/wedge_damper/job.toml");
+    let output = common::command(&["check", job.to_str().unwrap()], &common::root());
+    assert!(output.status.success(), "{}", common::printed(&output.stderr));
+}
