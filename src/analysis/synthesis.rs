@@ -10,9 +10,11 @@
 //! These are two frequencies at each amplitude; they meet at the resonance, where the root vanishes.
 
 mod computed_peak;
+mod force_extrema;
 mod oscillator;
 mod resonance;
 
+pub(super) use crate::analysis::synthesis::force_extrema::ForceExtremum;
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
@@ -121,6 +123,44 @@ pub fn synthesise_with(
     options: &SynthesisOptions,
     interrupt: &Interrupt<'_>,
 ) -> Result<Synthesis> {
+    with_motions(branch, model, options, None, interrupt)
+}
+
+/// The motion of a mode at a synthesised resonance, with the phase of the response.
+pub(super) struct ModeMotion {
+    /// Angular frequency of the force.
+    pub omega: f64,
+    pub log10_amplitude: f64,
+    /// Complex, (H + 1) × ndof, harmonic after harmonic.
+    pub harmonics: Vec<Complex64>,
+}
+
+/// The motions at the resonances, and the extrema of the force along the mode.
+#[derive(Default)]
+pub(super) struct Motions {
+    pub resonances: Vec<ModeMotion>,
+    pub extrema: Vec<ForceExtremum>,
+}
+
+impl Motions {
+    fn push(&mut self, refinement: &Refinement<'_>, state: &State, omega: f64) -> Result<()> {
+        let motion = ModeMotion {
+            omega,
+            log10_amplitude: state.log10,
+            harmonics: refinement.harmonics(state, state.turn(omega))?,
+        };
+        try_push(&mut self.resonances, motion, CONTEXT)
+    }
+}
+
+/// The same as [`synthesise_with`], with the motions on request.
+pub(super) fn with_motions(
+    branch: &Branch,
+    model: &Model,
+    options: &SynthesisOptions,
+    mut motions: Option<&mut Motions>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Synthesis> {
     options.check()?;
     let Some(data) = branch.mode_data() else {
         return fail!(
@@ -207,7 +247,13 @@ pub fn synthesise_with(
                 },
             };
             try_push(&mut synthesis.peaks, peak, CONTEXT)?;
+            if let Some(motions) = &mut motions {
+                motions.push(&refinement, &state, at.omega)?;
+            }
         }
+    }
+    if let Some(motions) = motions {
+        force_extrema::find(&mut refinement, &states, &mut motions.extrema)?;
     }
     Ok(synthesis)
 }
