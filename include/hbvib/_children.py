@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, cast
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class _BranchChildren(_Owner):
             self._call("hbvib_branch_child", number, handle)
             assert handle.value is not None
             child = type(self)(handle.value, self._kept, "")  # type: ignore[call-arg]
-            child._parent = self
+            child._parent = cast("Branch", self)
             self._living.add(child)
             found.append(child)  # type: ignore[arg-type]
             descent = child.descent
@@ -90,7 +90,8 @@ class _BranchChildren(_Owner):
 
     def _leased(self) -> int:
         """Arrays that look into the memory of the branch or of a child."""
-        return len(self._leases) + sum(child._leased() for child in list(self._living) if child._handle is not None)
+        living: list[Branch] = [child for child in self._living if child._handle is not None]
+        return len(self._leases) + sum(child._leased() for child in living)
 
     def _forget(self) -> None:
         """The library has freed the branch with its children."""

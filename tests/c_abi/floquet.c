@@ -108,7 +108,7 @@ static void limit_cycles(void)
 static void children(void)
 {
     hbvib_solver_options s = solver_options();
-    hbvib_forced_options o = frequencies(2.3, 2.4);
+    hbvib_forced_options o = frequencies(1, 1);
     hbvib_model *model = NULL, *longer = NULL;
     hbvib_branch *branch = NULL, *child = NULL, *same = NULL;
     hbvib_contact c;
@@ -126,12 +126,14 @@ static void children(void)
     WORKS("damping", hbvib_model_set_matrix(model, HBVIB_DAMPING, &m));
     WORKS("contact", hbvib_contact_init(&c, sizeof c));
     c.kind = HBVIB_UNILATERAL;
-    c.dof_a[0] = 0;
+    c.dof_a[2] = 0;
     c.kn = 10;
     WORKS("contact", hbvib_model_add_contact(model, &c, NULL));
     WORKS("force", hbvib_model_add_force(model, 0, 1, 1, 0));
     s.tolerance = 0;
     s.harmonics = 9;
+    o.omega_start = 2.3;
+    o.omega_stop = 2.4;
     EXPECT("defaults", o.branches == 0 && o.branch_depth == 0 && o.most_branches == 0);
     o.branches = 3;
     REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 3");
