@@ -105,6 +105,16 @@ Examples:
   hbvib reduce job.toml --modes 100 --output reduced.pch    # DMIG
   hbvib reduce job.toml --up-to-hz 5000 --keep 12.3 --output reduced.op4")]
     Reduce(ReduceArguments),
+    /// Makes the matrices of a sector that the static step of a CalculiX deck has loaded, as by rotation.
+    ///
+    /// The deck has one *STATIC step with all loads, and may have cyclic symmetry and contacts. Its displacements are prescribed on the
+    /// sector alone, and released in a perturbation that stores the matrices: neither symmetry nor contacts are in them.
+    #[command(after_help = "\
+Examples:
+  hbvib prestress static.inp                              # static_prestressed.sti, .mas and .dof
+  hbvib prestress static.inp --speed 800 --output at_800.sti
+  hbvib prestress static.inp --nodes FACES,CONTACT        # where constraints tie nodes")]
+    Prestress(PrestressArguments),
     /// Draws stored responses (.npz of [output]), several of them in one figure.
     #[command(after_help = "\
 Examples:
@@ -239,6 +249,26 @@ pub struct ReduceArguments {
     /// More degrees of freedom that stay, by number or as 12.3.
     #[arg(long, value_name = "DOF", value_delimiter = ',')]
     pub keep: Vec<String>,
+}
+
+/// A deck with a static step.
+#[derive(Debug, clap::Args)]
+pub struct PrestressArguments {
+    /// Deck of CalculiX with one *STATIC step.
+    #[arg(value_name = "DECK.INP")]
+    pub deck: PathBuf,
+    /// Speed of rotation, in rad per time unit, in place of that of the centrifugal loads of the deck.
+    #[arg(long, value_name = "OMEGA")]
+    pub speed: Option<f64>,
+    /// Sets of nodes whose displacements are prescribed; all nodes of elements unless given.
+    #[arg(long, value_name = "SET", value_delimiter = ',')]
+    pub nodes: Vec<String>,
+    /// File of the stiffness; mass and names of rows are beside it. That of the deck with _prestressed.sti unless given.
+    #[arg(long, short, value_name = "FILE.STI")]
+    pub output: Option<PathBuf>,
+    /// Program of CalculiX.
+    #[arg(long, value_name = "PROGRAM", default_value = "ccx")]
+    pub ccx: String,
 }
 
 /// Stored responses, and what is drawn of them.

@@ -1,9 +1,11 @@
 //! The model of a job.
 
+use crate::at_speeds::at_speeds;
 use crate::check::near;
 use crate::contacts::{Entry, contacts};
 use crate::counted::counted;
 use crate::events;
+use crate::face_images::FaceImages;
 use crate::faces::{self, Sector};
 use crate::job::{Amplitude, Job};
 use crate::mesh::Mesh;
@@ -27,6 +29,19 @@ struct Given {
     /// Node and direction of each degree of freedom, where a file names them.
     dofs: Vec<Dof>,
     report: Report,
+}
+
+impl Given {
+    /// Adds rows of images, and ties nodes on the axis to theirs.
+    fn add(&mut self, images: &FaceImages) {
+        for (kind, a) in self.own.iter_mut().chain(&mut self.next) {
+            images.extend(a);
+            if *kind == MatrixKind::Stiffness {
+                images.tie(a);
+            }
+        }
+        self.dofs.extend(&images.dofs);
+    }
 }
 
 /// Numbers of the model's contacts for each entry of the job: its name, and a range.
@@ -96,31 +111,36 @@ pub fn built(job: &Job) -> Outcome<Built> {
         None => None,
     };
     let mut given = matrices(job, mesh.as_ref())?;
-    let surfaces = SurfacePairs::of(job, mesh.as_ref(), &given.dofs)?;
+    let mut nodes = Nodes::new(&given.dofs, mesh, part.absent);
+    let images = FaceImages::of(job, &nodes, given.own.first().map_or(0, |(_, a)| a.rows))?;
+    if !images.is_empty() {
+        given.add(&images);
+        nodes.add(&images.dofs);
+    }
+    let surfaces = SurfacePairs::of(job, (nodes.mesh.as_ref(), &images), &given.dofs)?;
     if let Some(relative) = &surfaces.relative {
         for (_, a) in given.own.iter_mut().chain(&mut given.next) {
             *a = relative.matrix(a).map_err(|e| format!("[[contact]], surfaces: {e}"))?;
         }
     }
     let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
-    let mut nodes = Nodes::new(&given.dofs, mesh, part.absent);
     nodes.relative.clone_from(&surfaces.relative);
     let mut report = given.report.clone();
     expected(job, &mut report);
     let Sector {
         mut model,
-        images,
+        images: image_rows,
         facts,
         fixed,
         pairs: face_pairs,
         dofs: face_dofs,
     } = match &part.faces {
-        Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
+        Some(faces) => faces::sector(job, faces, (ndof, &images), &nodes)?,
         None => Sector::without_faces(Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?),
     };
     report.facts.extend(facts);
     let fixed = [&part.fixed[..], &fixed].concat();
-    surfaces.check(&fixed, &images, &|row| nodes.name_of(row))?;
+    surfaces.check(&fixed, &image_rows, &|row| nodes.name_of(row))?;
     model.set_wave(part.engine_order);
     if part.faces.is_none() && !part.fixed.is_empty() {
         model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
@@ -142,31 +162,11 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let (names, areas) = add_contacts(job, (&nodes, &images, &surfaces), &mut model, &mut report)?;
+    let (names, areas) = add_contacts(job, (&nodes, &image_rows, &surfaces), &mut model, &mut report)?;
     for one in &job.output.hysteresis {
         one.contact(&names)?;
     }
-    for (i, force) in job.force.iter().enumerate() {
-        let value = match force.value {
-            Amplitude::Real(re) => re.into(),
-            Amplitude::Complex([re, im]) => Complex64::new(re, im),
-        };
-        let said = |e: &dyn Display| format!("[[force]] {}: {e}", i + 1);
-        // A force on a relative motion acts on those that it is relative to as well.
-        for (dof, weight) in nodes.forced(&force.dof).map_err(|e| said(&e))? {
-            model
-                .add_force(dof, force.harmonic, weight * value)
-                .map_err(|e| said(&e))?;
-        }
-    }
-    for (i, one) in job.unbalance.iter().enumerate() {
-        nodes
-            .refuse_relative([one.dof_x, one.dof_y])
-            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
-        model
-            .add_unbalance(one.dof_x, one.dof_y, one.m_e, one.phase)
-            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
-    }
+    add_forces(job, &nodes, &mut model)?;
     let speed = match (part.speed, part.speed_per_omega) {
         (None, None) => None,
         (Some(speed), None) => Some(Speed::Fixed(speed)),
@@ -241,6 +241,7 @@ fn add_contacts(
             contacts,
             areas: of_entry,
             repeated,
+            balance,
         } = contacts((job, part), nodes, images, between).map_err(|e| said(&e))?;
         areas.extend(of_entry);
         if repeated > 0 {
@@ -248,6 +249,9 @@ fn add_contacts(
                 "left out, as images of pairs of the left face: {}",
                 counted(repeated, "pair")
             )));
+        }
+        for (dof, force) in balance {
+            model.add_force(dof, 0, force.into()).map_err(|e| said(&e))?;
         }
         for contact in contacts {
             let id = model.add_contact(&contact).map_err(|e| said(&e))?;
@@ -272,6 +276,32 @@ fn add_contacts(
         names.push((name, first..model.contacts().len()));
     }
     Ok((names, areas))
+}
+
+/// Adds the forces of a job.
+fn add_forces(job: &Job, nodes: &Nodes, model: &mut Model) -> Outcome<()> {
+    for (i, force) in job.force.iter().enumerate() {
+        let value = match force.value {
+            Amplitude::Real(re) => re.into(),
+            Amplitude::Complex([re, im]) => Complex64::new(re, im),
+        };
+        let said = |e: &dyn Display| format!("[[force]] {}: {e}", i + 1);
+        // A force on a relative motion acts on those that it is relative to as well.
+        for (dof, weight) in nodes.forced(&force.dof).map_err(|e| said(&e))? {
+            model
+                .add_force(dof, force.harmonic, weight * value)
+                .map_err(|e| said(&e))?;
+        }
+    }
+    for (i, one) in job.unbalance.iter().enumerate() {
+        nodes
+            .refuse_relative([one.dof_x, one.dof_y])
+            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
+        model
+            .add_unbalance(one.dof_x, one.dof_y, one.m_e, one.phase)
+            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
+    }
+    Ok(())
 }
 
 /// Compares the mass with that which the job expects.
@@ -328,13 +358,23 @@ fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
             )),
         }
     };
-    let found = read_matrices(job)?;
+    let (found, of_speed) = if part.at_speed.is_empty() {
+        (read_matrices(job)?, None)
+    } else {
+        let (found, of_speed) = at_speeds(job).map_err(|e| format!("[[model.at_speed]]: {e}"))?;
+        (found, Some((MatrixKind::StiffnessSpeed2, of_speed)))
+    };
     let position = mesh.map(|mesh| |node: i64| mesh.position(node).ok());
     let positions = position.as_ref().map(|p| p as &dyn Fn(i64) -> Option<[f64; 3]>);
+    let report = if part.prestressed || of_speed.is_some() {
+        hbvib_io::report_stressed(&found)
+    } else {
+        hbvib_io::report_with(&found, positions)
+    };
     let mut given = Given {
         own: Vec::new(),
         next: Vec::new(),
-        report: hbvib_io::report_with(&found, positions),
+        report,
         dofs: found.dofs,
     };
     for (kind, matrix) in [
@@ -363,7 +403,7 @@ fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
             _ => Ok(matrix),
         }
     };
-    let mut rotating = Vec::new();
+    let mut rotating: Vec<(MatrixKind, Matrix)> = of_speed.into_iter().collect();
     for (kind, path) in [
         (MatrixKind::Gyroscopic, &part.gyroscopic),
         (MatrixKind::StiffnessSpeed2, &part.stiffness_speed2),

@@ -2,10 +2,12 @@
 
 use crate::build::Outcome;
 use crate::job::{ContactPart, DofName, Job, KindName, Node, NodeList, NodesPart, SideDof};
+use crate::job_static::{MissingName, StaticPart};
 use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
 use crate::normals;
+use crate::static_states::static_states;
 use hbvib::{Contact, ContactKind, Frame};
 use hbvib_io::SurfaceContact;
 use std::collections::{HashMap, HashSet};
@@ -29,6 +31,8 @@ pub struct Entry {
     pub areas: Vec<Option<f64>>,
     /// Pairs that were left out, because they repeat others.
     pub repeated: usize,
+    /// Constant forces that balance contacts of a static step, whose stresses the matrices do not tell.
+    pub balance: Vec<(usize, f64)>,
 }
 
 /// The contacts of an entry. `images` has the degree of freedom of the left face for each one of the right face.
@@ -62,6 +66,12 @@ pub fn contacts(
         table.refuse_relative(rows)?;
     }
     let repeated = pairs.leave_out_repeated(width, images);
+    let given = part.nodes.as_ref().is_some_and(|nodes| !nodes.areas.is_empty());
+    let has_areas = given || part.surfaces.is_some();
+    let at_rest = match &part.at_rest {
+        Some(file) => Some(loads(job, (part, file), (&mut pairs, width), (table, has_areas))?),
+        None => None,
+    };
     if part.tangent.is_some() && part.normal.is_none() && part.surfaces.is_none() {
         return Err("tangent without normal".into());
     }
@@ -93,6 +103,10 @@ pub fn contacts(
         .zip(&pairs.areas)
         .enumerate()
         .map(|(k, ((a, b), &area))| {
+            // An infinite pressure on no area is no load.
+            let preload = if area == 0.0 { 0.0 } else { part.preload * area };
+            let gap = part.gap + pairs.gaps.get(k).copied().unwrap_or(0.0);
+            let (preload, gap) = at_rest.as_ref().map_or((preload, gap), |all| all[k]);
             Ok(Contact {
                 kind: kind.clone(),
                 dof_a: side(a)?,
@@ -102,25 +116,122 @@ pub fn contacts(
                 kt: part.kt * area,
                 kn: part.kn * area,
                 mu: part.mu,
-                // An infinite pressure on no area is no load.
-                preload: if area == 0.0 { 0.0 } else { part.preload * area },
-                gap: part.gap + pairs.gaps.get(k).copied().unwrap_or(0.0),
+                preload,
+                gap,
                 cubic: part.cubic * area,
                 velocity: part.velocity,
                 dofs: Vec::new(),
             })
         })
         .collect();
-    let given = part.nodes.as_ref().is_some_and(|nodes| !nodes.areas.is_empty());
-    let has_areas = given || part.surfaces.is_some();
+    let contacts = all?;
+    let mut balance = Vec::new();
+    if at_rest.is_some() {
+        for (k, contact) in contacts.iter().enumerate() {
+            balance.extend(balanced(contact, part.normal.or_else(|| pairs.normals.get(k).copied())));
+        }
+    }
     Ok(Entry {
-        contacts: all?,
+        balance,
+        contacts,
         areas: pairs.areas.iter().map(|area| has_areas.then_some(*area)).collect(),
         repeated,
     })
 }
 
+/// Preload and gap of each pair in a static step; pairs without contact in it are refused, or left out.
+fn loads(
+    job: &Job,
+    (part, file): (&ContactPart, &StaticPart),
+    (pairs, width): (&mut Pairs, usize),
+    (table, has_areas): (&Nodes, bool),
+) -> Outcome<Vec<(f64, f64)>> {
+    let mesh_gaps = part.surfaces.as_ref().is_some_and(|surfaces| surfaces.mesh_gaps);
+    if part.preload != 0.0 || part.per_speed2 != 0.0 || part.gap != 0.0 || mesh_gaps {
+        return Err("static takes the place of preload, per_speed2, gap and mesh_gaps".into());
+    }
+    if part.sector_offset != 0 {
+        return Err("static needs pairs of one sector".into());
+    }
+    let path = job.path(&file.file);
+    let states = static_states(&path).map_err(|e| format!("static: {e}"))?;
+    let node = |dofs: &[i64]| {
+        let mut all = dofs.iter().filter_map(|dof| usize::try_from(*dof).ok());
+        all.find_map(|dof| table.node_of(dof))
+    };
+    let (mut kept, mut loads) = (Vec::new(), Vec::new());
+    for (k, (a, b)) in pairs.a.chunks_exact(width).zip(pairs.b.chunks_exact(width)).enumerate() {
+        let nodes = [node(a), node(b)];
+        let known: Vec<i64> = nodes.into_iter().flatten().collect();
+        let Some(state) = known.iter().find_map(|node| states.get(node)) else {
+            if file.missing == MissingName::LeftOut {
+                continue;
+            }
+            return Err(format!(
+                "static: {} has no contact at {}: missing = \"left_out\" leaves such pairs out",
+                path.display(),
+                known
+                    .first()
+                    .map_or("a pair without names of nodes".into(), |node| format!("node {node}"))
+            ));
+        };
+        let of_area = |pressure: f64| {
+            if has_areas {
+                Ok(pressure * pairs.areas[k])
+            } else {
+                Err("static: pressures need areas: those of [contact.nodes], or [contact.surfaces]")
+            }
+        };
+        let preload = match (state.force, state.pressure) {
+            (Some(force), _) => force,
+            (None, Some(pressure)) => of_area(pressure)?,
+            (None, None) => 0.0,
+        };
+        kept.push(k);
+        loads.push((preload, state.gap));
+    }
+    pairs.keep(&kept, width);
+    Ok(loads)
+}
+
+/// Forces on the degrees of freedom of a contact that hold it at rest against its preload. The normal points from side b to side a, as
+/// the normal degree of freedom does.
+fn balanced(contact: &Contact, normal: Option<[f64; 3]>) -> Vec<(usize, f64)> {
+    if contact.normal_direction().is_none() || contact.preload == 0.0 {
+        return Vec::new();
+    }
+    let on_a = match normal {
+        Some(n) => {
+            let length = n[0].hypot(n[1]).hypot(n[2]);
+            n.map(|x| -contact.preload * x / length)
+        }
+        None => [0.0, 0.0, -contact.preload],
+    };
+    let sides = [(&contact.dof_a, 1.0), (&contact.dof_b, -1.0)];
+    let of_side = |(dofs, sign): (&[Option<usize>; 3], f64)| -> Vec<(usize, f64)> {
+        let all = dofs.iter().zip(on_a);
+        all.filter_map(|(dof, force)| Some(((*dof)?, sign * force))).collect()
+    };
+    sides
+        .into_iter()
+        .flat_map(of_side)
+        .filter(|(_, force)| *force != 0.0)
+        .collect()
+}
+
 impl Pairs {
+    /// Keeps some of the pairs.
+    fn keep(&mut self, kept: &[usize], width: usize) {
+        let of = |all: &[i64]| -> Vec<i64> {
+            let dofs = kept.iter().flat_map(|k| &all[k * width..(k + 1) * width]);
+            dofs.copied().collect()
+        };
+        (self.a, self.b) = (of(&self.a), of(&self.b));
+        self.areas = kept.iter().map(|k| self.areas[*k]).collect();
+        self.normals = kept.iter().filter_map(|k| self.normals.get(*k).copied()).collect();
+        self.gaps = kept.iter().filter_map(|k| self.gaps.get(*k).copied()).collect();
+    }
+
     /// Leaves out pairs on the right face whose images on the left face are pairs of the entry, too: both are one pair of the
     /// wheel. Returns their number.
     fn leave_out_repeated(&mut self, width: usize, images: &HashMap<i64, i64>) -> usize {
@@ -139,14 +250,7 @@ impl Pairs {
             moves && both.is_some_and(|(a, b)| known.contains(&(&a[..], &b[..])))
         };
         let kept: Vec<usize> = (0..count).filter(|k| !is_repeated(*k)).collect();
-        let of = |all: &[i64]| -> Vec<i64> {
-            kept.iter()
-                .flat_map(|k| all[k * width..(k + 1) * width].iter().copied())
-                .collect()
-        };
-        let (a, b) = (of(&self.a), of(&self.b));
-        let areas = kept.iter().map(|k| self.areas[*k]).collect();
-        (self.a, self.b, self.areas) = (a, b, areas);
+        self.keep(&kept, width);
         count - kept.len()
     }
 }

@@ -1,7 +1,9 @@
 //! A sector from its faces.
 
 use crate::build::Outcome;
-use crate::job::{FacesPart, FrameName, Job, Node, NodeList};
+use crate::face_images::FaceImages;
+use crate::job::{Job, Node, NodeList};
+use crate::job_faces::{FacesPart, FrameName, MatchingName};
 use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
@@ -10,12 +12,13 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// Largest distance between a node of the right face and the image of a left one, over the largest distance from the
-/// origin.
-const NEAR: f64 = 1e-4;
+/// origin, unless the job has another one.
+pub const NEAR: f64 = 1e-4;
 
 type Points = Vec<[f64; 3]>;
 
 /// Degrees of freedom of both faces, those of one node after another, and the positions of the nodes.
+#[derive(Default)]
 struct Faces {
     left: Vec<Option<usize>>,
     right: Vec<Option<usize>>,
@@ -25,6 +28,29 @@ struct Faces {
     fixed: Vec<usize>,
     facts: Vec<String>,
     pairs: Vec<(i64, i64, f64)>,
+}
+
+impl Faces {
+    /// Adds pairs of which one node is an image.
+    fn add(&mut self, images: &FaceImages) -> Outcome<()> {
+        self.fixed.extend(&images.fixed);
+        self.facts.extend(images.facts.iter().cloned());
+        if images.pairs.is_empty() {
+            return Ok(());
+        }
+        self.components = 3;
+        let coordinates = self.coordinates.get_or_insert_default();
+        for pair in &images.pairs {
+            let [left, right] = pair.rows;
+            for (left, right) in left.into_iter().zip(right) {
+                self.left.push(given(left)?);
+                self.right.push(given(right)?);
+            }
+            coordinates.0.push(pair.at[0]);
+            coordinates.1.push(pair.at[1]);
+        }
+        Ok(())
+    }
 }
 
 /// The model of a sector.
@@ -60,20 +86,26 @@ impl Sector {
 ///
 /// # Errors
 /// A sentence that names the face and its node or degree of freedom.
-pub fn sector(job: &Job, part: &FacesPart, ndof: usize, nodes: &Nodes) -> Outcome<Sector> {
+pub fn sector(job: &Job, part: &FacesPart, (ndof, images): (usize, &FaceImages), nodes: &Nodes) -> Outcome<Sector> {
     let said = |e: String| format!("[model.faces]: {e}");
     if part.direction.abs() != 1 {
         return Err(said(format!("direction = {}, needs 1 or -1", part.direction)));
     }
-    let left = node_list("left", &part.left, nodes.mesh.as_ref()).map_err(said)?;
-    let right = node_list("right", &part.right, nodes.mesh.as_ref()).map_err(said)?;
-    let numbers = left.iter().chain(&right).any(|node| matches!(node, Node::Number(_)));
-    let faces = if numbers {
-        by_position(job, part, (&left, &right), nodes)
-    } else {
-        in_order(part, &left, &right)
+    let of_side = |name, list| -> Outcome<Vec<Node>> {
+        let mut all = node_list(name, list, nodes.mesh.as_ref()).map_err(said)?;
+        all.retain(|node| !matches!(node, Node::Number(number) if images.on_axis.contains(number)));
+        Ok(all)
     };
-    let faces = faces.map_err(said)?;
+    let (left, right) = (of_side("left", &part.left)?, of_side("right", &part.right)?);
+    let numbers = left.iter().chain(&right).any(|node| matches!(node, Node::Number(_)));
+    let mut faces = if part.matching == MatchingName::Projected || left.is_empty() && right.is_empty() {
+        Faces::default()
+    } else if numbers {
+        by_position(job, part, (&left, &right), nodes).map_err(said)?
+    } else {
+        in_order(part, &left, &right).map_err(said)?
+    };
+    faces.add(images).map_err(said)?;
     let fixed: Vec<usize> = job.model.fixed.iter().chain(&faces.fixed).copied().collect();
     let pairs = faces.right.iter().zip(&faces.left);
     let images = pairs
@@ -158,6 +190,12 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
     }
     let at_left = positions("left", left, &[], Some(mesh))?;
     let at_right = positions("right", right, &[], Some(mesh))?;
+    if let Some(tolerance) = part
+        .tolerance
+        .filter(|tolerance| !(tolerance.is_finite() && *tolerance > 0.0))
+    {
+        return Err(format!("tolerance = {tolerance}, needs a finite distance > 0"));
+    }
     let angle = part.direction as f64 * TAU / job.model.sectors as f64;
     let images: Points = at_left.iter().map(|x| turned(*x, part.axis, angle)).collect();
     let size = images.iter().map(norm).fold(0.0, f64::max);
@@ -165,7 +203,11 @@ fn by_position(job: &Job, part: &FacesPart, (left, right): (&[Node], &[Node]), n
         of_sets(&part.left, left.len(), mesh),
         of_sets(&part.right, right.len(), mesh),
     ];
-    let partner = partners((left, &images), (right, &at_right), (NEAR * size, groups, mesh))?;
+    let partner = partners(
+        (left, &images),
+        (right, &at_right),
+        (part.tolerance.unwrap_or(NEAR * size), groups, mesh),
+    )?;
     let mut faces = Faces {
         left: Vec::new(),
         right: Vec::new(),
@@ -282,7 +324,7 @@ fn given(dof: i64) -> Outcome<Option<usize>> {
     }
 }
 
-fn norm(x: &[f64; 3]) -> f64 {
+pub fn norm(x: &[f64; 3]) -> f64 {
     x[0].hypot(x[1]).hypot(x[2])
 }
 

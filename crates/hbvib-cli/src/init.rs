@@ -2,15 +2,14 @@
 
 use crate::arguments::InitArguments;
 use crate::build::Outcome;
+use crate::calculix_run::made;
 use crate::ccx_deck::{Material, deck};
 use crate::init_job::{Choices, Written, text};
 use crate::mesh::Mesh;
 use crate::print;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Writes the job.
 ///
@@ -85,41 +84,9 @@ fn by_calculix(of: &InitArguments, mesh: &Mesh, folder: &Path, told: &mut String
         density: of.density,
     };
     let wanted = deck(mesh, material, &of.fixed)?;
-    if stiffness.is_file() && fs::read_to_string(&input).is_ok_and(|there| there == wanted) {
-        return Ok(stiffness);
+    if made(&of.ccx, (&input, &wanted), &stiffness)? {
+        let _ = writeln!(told, "{} {job} made {}", of.ccx, stiffness.display());
     }
-    let _ = fs::remove_file(&stiffness);
-    fs::write(&input, wanted).map_err(|e| format!("{}: cannot be written: {e}", input.display()))?;
-    let place = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
-    let output = Command::new(&of.ccx).arg(&job).current_dir(place).output();
-    let output = output.map_err(|e| match e.kind() {
-        ErrorKind::NotFound => format!(
-            "{} is not found (CalculiX; Debian: apt-get install calculix-ccx; --ccx names it): wrote {1}; make {2} with another \
-             computer or program and run this command again",
-            of.ccx,
-            input.display(),
-            stiffness.display()
-        ),
-        _ => format!("{}: {e}", of.ccx),
-    })?;
-    if !output.status.success() || !stiffness.is_file() {
-        let said = String::from_utf8_lossy(&output.stdout);
-        let reasons: Vec<&str> = said
-            .lines()
-            .filter(|line| line.to_ascii_uppercase().contains("ERROR"))
-            .collect();
-        return Err(format!(
-            "{} {job} made no {}: {}",
-            of.ccx,
-            stiffness.display(),
-            reasons.join("; ")
-        ));
-    }
-    let _ = writeln!(told, "{} {job} made {}", of.ccx, stiffness.display());
     Ok(stiffness)
 }
 

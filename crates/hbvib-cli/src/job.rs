@@ -1,6 +1,8 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::job_faces::FacesPart;
 use crate::job_motion::{MotionPart, UnitsPart};
+use crate::job_static::StaticPart;
 use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::job_surfaces::SurfacesPart;
 use crate::nearest_name::hint;
@@ -68,6 +70,12 @@ pub struct ModelPart {
     pub gyroscopic: Option<PathBuf>,
     /// K1 of the stiffness K + speed^2 K1.
     pub stiffness_speed2: Option<PathBuf>,
+    /// Matrices at two speeds, which give the stiffness K + speed^2 K1 in place of matrices.
+    #[serde(default)]
+    pub at_speed: Vec<AtSpeedPart>,
+    /// The stiffness holds stresses of a static load, so that rotations as a whole meet forces.
+    #[serde(default)]
+    pub prestressed: bool,
     /// Coupling to the next sector.
     pub coupling_stiffness: Option<PathBuf>,
     pub coupling_mass: Option<PathBuf>,
@@ -99,6 +107,16 @@ pub struct ModelPart {
     pub expected: Option<ExpectedPart>,
 }
 
+/// Stiffness and mass of the structure under the loads of a speed.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AtSpeedPart {
+    /// Speed of rotation, rad per time unit.
+    pub speed: f64,
+    /// File with stiffness and mass.
+    pub matrices: PathBuf,
+}
+
 /// Contacts, forces and faces at degrees of freedom that the matrices do not have: these may be fixed, or follow others by a
 /// constraint (MPC, TIE, rigid body) that the matrices contain.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
@@ -118,34 +136,6 @@ pub struct ExpectedPart {
     pub total_mass: Option<f64>,
     /// Lowest natural frequency without contacts in the nodal diameter of the engine order, for check.
     pub first_hz: Option<f64>,
-}
-
-/// Faces of a sector.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FacesPart {
-    /// Nodes of model.mesh, in any order, or the degrees of freedom of each node, -1 where one is missing, with entry i
-    /// of right the image of entry i of left.
-    pub left: NodeList,
-    pub right: NodeList,
-    #[serde(default)]
-    pub frame: FrameName,
-    #[serde(default = "z")]
-    pub axis: [f64; 3],
-    #[serde(default = "forward")]
-    pub direction: i64,
-    /// Positions where degrees of freedom name the nodes.
-    pub left_coordinates: Option<Vec<[f64; 3]>>,
-    pub right_coordinates: Option<Vec<[f64; 3]>>,
-}
-
-/// Frame of the faces.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum FrameName {
-    #[default]
-    Cartesian,
-    Cylindrical,
 }
 
 /// Law of a contact.
@@ -180,6 +170,9 @@ pub struct ContactPart {
     pub nodes: Option<NodesPart>,
     /// Instead of a and b: faces of the mesh on both sides, which need not match.
     pub surfaces: Option<SurfacesPart>,
+    /// Preload and gap of each pair from a static step.
+    #[serde(rename = "static")]
+    pub at_rest: Option<StaticPart>,
     #[serde(default)]
     pub sector_offset: i64,
     #[serde(default)]
@@ -294,6 +287,9 @@ pub struct ForcedPart {
     pub response_dof: Option<DofName>,
     #[serde(default)]
     pub estimate_error: bool,
+    /// Holds the tolerance for the norm of all responses instead of for each.
+    #[serde(default)]
+    pub together: bool,
     /// Stability of each point: unstable stretches are dashed in figures.
     pub stability: Option<WavesName>,
 }
@@ -420,16 +416,8 @@ fn one() -> usize {
     1
 }
 
-fn z() -> [f64; 3] {
-    [0.0, 0.0, 1.0]
-}
-
 fn samples() -> usize {
     256
-}
-
-fn forward() -> i64 {
-    1
 }
 
 impl Job {
@@ -455,6 +443,9 @@ impl Job {
         }
         if !job.response.is_empty() && job.forced.is_none() {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
+        }
+        if job.response.is_empty() && job.forced.as_ref().is_some_and(|part| part.together) {
+            return Err(format!("{}: [forced]: together needs [[response]]", path.display()));
         }
         Ok(job)
     }

@@ -8,7 +8,10 @@
 //! ```
 
 mod arguments;
+mod at_speeds;
 mod build;
+mod calculix_results;
+mod calculix_run;
 mod campbell;
 mod canvas;
 mod ccx_deck;
@@ -23,6 +26,7 @@ mod craig_bampton;
 mod curve;
 mod end;
 mod events;
+mod face_images;
 mod faces;
 mod figure;
 mod files;
@@ -30,8 +34,11 @@ mod frd;
 mod html_report;
 mod init;
 mod init_job;
+mod inp_cards;
 mod job;
+mod job_faces;
 mod job_motion;
+mod job_static;
 mod job_studies;
 mod job_surfaces;
 mod line_chart;
@@ -54,6 +61,8 @@ mod npz;
 mod output;
 mod plot;
 mod points;
+mod prestress;
+mod prestress_decks;
 mod progress;
 mod reduce;
 mod responses;
@@ -61,6 +70,7 @@ mod restart;
 mod run_job;
 mod solver;
 mod static_contacts;
+mod static_states;
 mod stored_response;
 mod study;
 mod surface_pairs;
@@ -107,6 +117,7 @@ fn done(verb: &Verb) -> Outcome<u8> {
         Verb::Init(of) => init::init(of),
         Verb::Convert(of) => convert::convert(of),
         Verb::Reduce(of) => reduce::reduce(of),
+        Verb::Prestress(of) => prestress::prestress(of),
         Verb::Plot(of) => plot::plot(of),
         Verb::Schema => schema(),
         Verb::Completions { shell } => print(&manual::completions(*shell)).map(|()| 0),

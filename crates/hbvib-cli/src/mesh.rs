@@ -1,6 +1,7 @@
 //! A mesh: positions of its nodes, sets of them, and elements.
 
 use crate::build::Outcome;
+use crate::inp_cards::expanded;
 use crate::mesh_elements::{Element, Shape};
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -33,13 +34,13 @@ enum Section {
 }
 
 impl Mesh {
-    /// Reads a mesh, or lines of number, x, y and z.
+    /// Reads a mesh with the files that it includes, or lines of number, x, y and z.
     ///
     /// # Errors
     /// A sentence that names the file and the line.
     pub fn read(path: &Path) -> Outcome<Self> {
         let said = |e: String| format!("{}: {e}", path.display());
-        let text = std::fs::read_to_string(path).map_err(|e| said(format!("cannot be read: {e}")))?;
+        let text = expanded(path)?;
         let mut mesh = Self::parse(&text).map_err(said)?;
         path.clone_into(&mut mesh.path);
         Ok(mesh)
@@ -234,6 +235,16 @@ impl Mesh {
         let solid = self.elements.iter().any(|element| element.shape.is_solid());
         let shown = |element: &&Element| !solid || element.shape.is_solid();
         self.elements.iter().filter(shown).collect()
+    }
+
+    /// The largest number of a node.
+    pub fn last_number(&self) -> i64 {
+        self.positions.keys().copied().max().unwrap_or(0)
+    }
+
+    /// Whether all elements that are known fill space.
+    pub fn is_solid(&self) -> bool {
+        self.elements.iter().all(|element| element.shape.is_solid())
     }
 
     /// Names of the sets of nodes in capital letters, with the number of nodes, in order.

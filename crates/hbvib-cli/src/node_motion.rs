@@ -2,7 +2,8 @@
 
 use crate::build::{Built, Outcome};
 use crate::faces::turned;
-use crate::job::{FrameName, Job};
+use crate::job::Job;
+use crate::job_faces::FrameName;
 use hbvib::{Branch, Contact, State};
 use hbvib_io::RelativeCoordinates;
 use num_complex::Complex64;

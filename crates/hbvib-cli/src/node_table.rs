@@ -102,6 +102,17 @@ impl Nodes {
         }
     }
 
+    /// Adds nodes whose rows follow all others.
+    pub fn add(&mut self, dofs: &[Dof]) {
+        for &(node, direction) in dofs {
+            if let 1..=3 = direction {
+                let rows = self.rows.entry(node).or_insert([-1; 3]);
+                rows[direction as usize - 1] = self.node_of.len() as i64;
+            }
+            self.node_of.push(node);
+        }
+    }
+
     /// Degrees of freedom of a node along x, y and z, -1 for a direction that is fixed; `None` for a node that is fixed.
     ///
     /// # Errors
@@ -221,7 +232,8 @@ impl Nodes {
         match dofs.into_iter().find(relative) {
             None => Ok(()),
             Some(dof) => Err(format!(
-                "{} is on side a of a contact between surfaces, and moves relative to side b: name a node of side b, or another one",
+                "{} is on side a of a contact between surfaces, and moves relative to side b, or on a face that follows the other one: \
+                 name another node",
                 self.name_of(dof)
             )),
         }

@@ -6,6 +6,7 @@ use crate::convert::format_of;
 use crate::craig_bampton::{Basis, Modes};
 use crate::events;
 use crate::job::{DofName, Job};
+use crate::job_faces::MatchingName;
 use crate::print;
 use hbvib::{ContactState, Interrupt};
 use hbvib_io::{Dof, Format, Matrices};
@@ -109,6 +110,16 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
 /// Refuses models that are not reduced.
 fn refuse(job: &Job) -> Outcome<()> {
     let part = &job.model;
+    if !part.at_speed.is_empty() {
+        return Err("[[model.at_speed]] is not reduced; matrices at one speed are".into());
+    }
+    if part
+        .faces
+        .as_ref()
+        .is_some_and(|faces| faces.matching == MatchingName::Projected)
+    {
+        return Err("[model.faces]: matching = \"projected\" is not reduced".into());
+    }
     for (key, path) in [
         ("gyroscopic", &part.gyroscopic),
         ("stiffness_speed2", &part.stiffness_speed2),

@@ -153,7 +153,7 @@ fn forced(
         at: &at,
         guess: begin.guess,
         responses: &responses,
-        together: false,
+        together: part.together,
         ..ForcedOptions::default()
     };
     let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);

@@ -46,9 +46,38 @@ fn responses_are_columns_and_lines_of_the_summary() {
     );
 }
 
+/// A response that hardly moves needs its own harmonics, unless the norm of all is what counts.
+#[test]
+fn a_tolerance_for_all_together_needs_fewer_harmonics() {
+    let two = "[[response]]\ndofs = [2]\n[[response]]\ndofs = [2]\nmeasure = 'harmonic'\nharmonic = 7";
+    let run = |name: &str, more: &str| {
+        let analysis = format!("[forced]\nfrom_hz = 207.0\nto_hz = 211.0\ntolerance = 1e-3\n{more}");
+        let (output, folder) = hbvib("run", ("response_tables", name), &job(two, &analysis));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let csv = std::fs::read_to_string(folder.join("response.csv")).unwrap();
+        let place = csv
+            .lines()
+            .next()
+            .unwrap()
+            .split(',')
+            .position(|word| word.contains("harmonics"));
+        let place = place.unwrap_or_else(|| panic!("{}", csv.lines().next().unwrap()));
+        let of = |line: &str| line.split(',').nth(place).unwrap().parse::<f64>().unwrap();
+        csv.lines().skip(1).map(of).fold(0.0, f64::max)
+    };
+    let (each, all) = (run("each", ""), run("together", "together = true"));
+    assert!(each > all, "{each} and {all}");
+}
+
 #[test]
 fn mistakes_in_responses_are_told() {
     for (name, responses, analysis, words) in [
+        (
+            "together",
+            "",
+            "[forced]\nfrom_hz = 207.0\nto_hz = 211.0\ntogether = true",
+            "together needs [[response]]",
+        ),
         (
             "measure",
             "[[response]]\ndofs = [0]\nmeasure = 'loudest'",

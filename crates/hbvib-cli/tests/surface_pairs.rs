@@ -1,71 +1,16 @@
 //! Contacts between surfaces of a sector: equal to pairs of nodes where the meshes match, and near where they do not.
 
+#[path = "../../hbvib-io/tests/meshes/brick.rs"]
+mod brick;
 mod common;
 
+use brick::brick;
 use hbvib_io::{Format, Matrices, Matrix, Symmetry, write};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
 const SECTORS: usize = 12;
-
-type Rows = Vec<[[f64; 24]; 24]>;
-
-/// Stiffness and mass of a brick with eight nodes (E = 1000, ν = 0.3, ρ = 1), 2 × 2 × 2 points.
-fn brick(x: &[[f64; 3]]) -> Rows {
-    let (lambda, shear) = (1000.0 * 0.3 / (1.3 * 0.4), 1000.0 / 2.6);
-    let signs: [[f64; 3]; 8] = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
-    let mut both = vec![[[0.0; 24]; 24]; 2];
-    for point in signs {
-        let p = point.map(|s| s / 3.0_f64.sqrt());
-        let factors = signs.map(|s| [0, 1, 2].map(|d| 1.0 + s[d] * p[d]));
-        let shapes = factors.map(|f| f[0] * f[1] * f[2] / 8.0);
-        let slopes: Vec<[f64; 3]> = signs
-            .iter()
-            .zip(&factors)
-            .map(|(s, f)| {
-                [
-                    s[0] * f[1] * f[2] / 8.0,
-                    s[1] * f[0] * f[2] / 8.0,
-                    s[2] * f[0] * f[1] / 8.0,
-                ]
-            })
-            .collect();
-        let j = [0, 1, 2].map(|a| [0, 1, 2].map(|b| slopes.iter().zip(x).map(|(s, x)| s[a] * x[b]).sum::<f64>()));
-        let minor = |a: usize, b: usize| {
-            let (r, s, c, d) = ((a + 1) % 3, (a + 2) % 3, (b + 1) % 3, (b + 2) % 3);
-            j[r][c] * j[s][d] - j[r][d] * j[s][c]
-        };
-        let determinant: f64 = (0..3).map(|b| j[0][b] * minor(0, b)).sum();
-        assert!(determinant > 0.0);
-        let slope = |s: &[f64; 3]| [0, 1, 2].map(|b| (0..3).map(|a| minor(a, b) * s[a]).sum::<f64>() / determinant);
-        let global: Vec<[f64; 3]> = slopes.iter().map(slope).collect();
-        for m in 0..8 {
-            for n in 0..8 {
-                let (g, h) = (global[m], global[n]);
-                let scalar: f64 = (0..3).map(|d| g[d] * h[d]).sum();
-                for a in 0..3 {
-                    for b in 0..3 {
-                        let same = if a == b { shear * scalar } else { 0.0 };
-                        both[0][3 * m + a][3 * n + b] +=
-                            determinant * (lambda * g[a] * h[b] + shear * g[b] * h[a] + same);
-                    }
-                    both[1][3 * m + a][3 * n + a] += determinant * shapes[m] * shapes[n];
-                }
-            }
-        }
-    }
-    both
-}
 
 /// A sector of two rings on each other, divided by so many bricks along the circumference.
 struct Rings {
@@ -167,7 +112,7 @@ impl Rings {
                 .iter()
                 .flat_map(|node| [0, 1, 2].map(|d| place(node, d)))
                 .collect();
-            for (sum, own) in sums.iter_mut().zip(brick(&x)) {
+            for (sum, own) in sums.iter_mut().zip(brick(&x, (1000.0, 0.3))) {
                 for (i, line) in rows.iter().zip(&own) {
                     for (j, value) in rows.iter().zip(line) {
                         if let (Some(i), Some(j)) = (i, j) {
@@ -289,6 +234,11 @@ fn meshes_that_match_give_the_frequencies_of_pairs_and_others_near_ones() {
         .replace("'LEFT'", "['RING_L', 'RIM_L']")
         .replace("'RIGHT'", "['RING_R', 'RIM_R']");
     assert_eq!(same, stuck("sets", &(by_sets + &surfaces(""))));
+    // The right face follows images of the left one, and contacts there are those of the left one.
+    let projected = model.replace("[model.faces]", "[model.faces]\nmatching = 'projected'");
+    for (a, b) in pairs.iter().zip(&stuck("projected", &(projected + &surfaces("")))) {
+        assert!((a - b).abs() <= 1e-8 * a, "{a} and {b}");
+    }
     // Softer contacts show.
     let soft = stuck("soft", &(model + &surfaces("").replace("2000.0", "1000.0")));
     assert!(

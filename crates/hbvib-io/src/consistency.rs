@@ -1,7 +1,7 @@
 //! Consistency of the matrices of a model: totals that a reader compares with those of the finite-element program, and values
 //! that matrices of a structure do not have.
 
-use crate::directions;
+use crate::directions::{self, Positions};
 use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
 use crate::nodes::Nodes;
 use crate::parts::dof_name;
@@ -33,6 +33,16 @@ pub fn report(found: &Matrices) -> Report {
 /// The same, with the position of each node by its number.
 #[must_use]
 pub fn report_with(found: &Matrices, positions: Option<&dyn Fn(i64) -> Option<[f64; 3]>>) -> Report {
+    report_of(found, positions, false)
+}
+
+/// The same for a stiffness with the stresses of a static load, in which motions of the whole meet forces: speed moves with them.
+#[must_use]
+pub fn report_stressed(found: &Matrices) -> Report {
+    report_of(found, None, true)
+}
+
+fn report_of(found: &Matrices, positions: Option<Positions<'_>>, stressed: bool) -> Report {
     let mut report = Report::default();
     for (name, a) in found.named() {
         report.facts.push(format!(
@@ -76,7 +86,7 @@ pub fn report_with(found: &Matrices, positions: Option<&dyn Fn(i64) -> Option<[f
         Some(_) if generalised > 0 => report.facts.push(format!(
             "rows of a superelement without a direction, such as modes: {generalised}; masses along directions are not compared"
         )),
-        Some(nodes) => directions::check(nodes, (check.stiffness, check.mass), positions, &mut report),
+        Some(nodes) => directions::check(nodes, (check.stiffness, check.mass), (positions, stressed), &mut report),
         None => check.pattern(&mut report),
     }
     report

@@ -59,6 +59,25 @@ impl RelativeCoordinates {
         })
     }
 
+    /// Coordinates from the rows and weights of coordinates that are added to the coordinate of each row, of `order` rows; they may be
+    /// relative themselves.
+    ///
+    /// # Errors
+    /// A sentence: a row beyond the order.
+    pub fn composed(order: usize, rows: HashMap<u32, Vec<(u32, f64)>>) -> Result<Self, String> {
+        let others = rows.values().flatten().map(|(other, _)| other);
+        match rows.keys().chain(others).find(|row| **row as usize >= order) {
+            Some(row) => Err(format!("row {row} of {order}")),
+            None => Ok(Self { rows, order }),
+        }
+    }
+
+    /// All rows that are relative motions, with the rows and weights that are added to each.
+    #[must_use]
+    pub fn rows(&self) -> &HashMap<u32, Vec<(u32, f64)>> {
+        &self.rows
+    }
+
     /// Whether a row is a relative motion.
     #[must_use]
     pub fn is_relative(&self, row: usize) -> bool {
@@ -73,19 +92,21 @@ impl RelativeCoordinates {
 
     /// Motions u = T q of all rows from relative ones, in place; real or complex.
     pub fn recover<T: Copy + AddAssign + Mul<f64, Output = T>>(&self, q: &mut [T]) {
-        // Rows that are added are none of the relative ones.
-        for (row, weights) in &self.rows {
-            for (j, w) in weights {
-                let part = q[*j as usize] * *w;
-                q[*row as usize] += part;
-            }
+        // Coordinates that are added may be relative: all sums come before the first change.
+        let parts = self
+            .rows
+            .iter()
+            .flat_map(|(row, weights)| weights.iter().map(move |(j, w)| (*row, *j, *w)));
+        let sums: Vec<(u32, T)> = parts.map(|(row, j, w)| (row, q[j as usize] * w)).collect();
+        for (row, part) in sums {
+            q[row as usize] += part;
         }
     }
 
     /// Forces Tᵀ f on the coordinates from those on rows, in place.
     pub fn project(&self, f: &mut [f64]) {
-        for (row, weights) in &self.rows {
-            let force = f[*row as usize];
+        let forces: Vec<(&Vec<(u32, f64)>, f64)> = self.rows.iter().map(|(row, all)| (all, f[*row as usize])).collect();
+        for (weights, force) in forces {
             for (j, w) in weights {
                 f[*j as usize] += w * force;
             }

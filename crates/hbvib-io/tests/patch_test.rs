@@ -1,7 +1,10 @@
 //! The patch test of two blocks whose meshes do not match.
 
+#[path = "meshes/brick.rs"]
+mod brick;
 mod meshes;
 
+use brick::brick;
 use hbvib_io::{
     Matrices, Matrix, NodalAreas, RelativeCoordinates, Symmetry, faces_of_set, outer_faces, surface_contacts,
 };
@@ -9,67 +12,6 @@ use meshes::{Mesh, block, near, surface};
 
 /// Elastic modulus and Poisson's ratio of the blocks.
 const ELASTIC: (f64, f64) = (1000.0, 0.3);
-
-/// Stiffness of a brick with eight nodes, 2 × 2 × 2 points.
-fn brick(x: &[[f64; 3]]) -> Vec<Vec<f64>> {
-    let (e, nu) = ELASTIC;
-    let (lambda, shear) = (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)));
-    let signs = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
-    let mut k = vec![vec![0.0; 24]; 24];
-    for point in signs {
-        let p = point.map(|s: f64| s / 3.0_f64.sqrt());
-        let slopes: Vec<[f64; 3]> = signs
-            .iter()
-            .map(|s| {
-                let f = [0, 1, 2].map(|d| 1.0 + s[d] * p[d]);
-                [
-                    s[0] * f[1] * f[2] / 8.0,
-                    s[1] * f[0] * f[2] / 8.0,
-                    s[2] * f[0] * f[1] / 8.0,
-                ]
-            })
-            .collect();
-        let mut j = [[0.0; 3]; 3];
-        for (slope, x) in slopes.iter().zip(x) {
-            for a in 0..3 {
-                for b in 0..3 {
-                    j[a][b] += slope[a] * x[b];
-                }
-            }
-        }
-        let minor = |a: usize, b: usize| {
-            let (r, s) = ((a + 1) % 3, (a + 2) % 3);
-            let (c, d) = ((b + 1) % 3, (b + 2) % 3);
-            j[r][c] * j[s][d] - j[r][d] * j[s][c]
-        };
-        let determinant: f64 = (0..3).map(|b| j[0][b] * minor(0, b)).sum();
-        let global: Vec<[f64; 3]> = slopes
-            .iter()
-            .map(|slope| [0, 1, 2].map(|b| (0..3).map(|a| minor(a, b) * slope[a]).sum::<f64>() / determinant))
-            .collect();
-        for (m, g) in global.iter().enumerate() {
-            for (n, h) in global.iter().enumerate() {
-                let scalar: f64 = (0..3).map(|d| g[d] * h[d]).sum();
-                for a in 0..3 {
-                    for b in 0..3 {
-                        let same = if a == b { shear * scalar } else { 0.0 };
-                        k[3 * m + a][3 * n + b] += determinant * (lambda * g[a] * h[b] + shear * g[b] * h[a] + same);
-                    }
-                }
-            }
-        }
-    }
-    k
-}
 
 /// Solves a system by elimination with pivots.
 fn solved(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
@@ -108,7 +50,7 @@ fn assembled(elements: &[Vec<i64>], mesh: &Mesh, nodes: &[i64]) -> Matrices {
             .iter()
             .flat_map(|node| [0, 1, 2].map(|d| row(*node, d)))
             .collect();
-        for (i, line) in rows.iter().zip(brick(&x)) {
+        for (i, line) in rows.iter().zip(&brick(&x, ELASTIC)[0]) {
             for (j, value) in rows.iter().zip(line) {
                 k[*i][*j] += value;
             }
