@@ -27,7 +27,7 @@ const MOST_MODES: usize = 16;
 const FREQUENCIES: (f64, f64) = (0.5, 2.0);
 
 /// Range of the modal amplitude, in log₁₀ about the largest one of the branch in the motion of the mode.
-const AMPLITUDES: (f64, f64) = (2.0, 1.5);
+const AMPLITUDES: (f64, f64) = (2.0, 2.0);
 
 /// Harmonics of the modes, which are starts alone, and most of their points.
 const HARMONICS: usize = 5;

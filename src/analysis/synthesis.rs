@@ -11,10 +11,11 @@
 
 mod computed_peak;
 mod force_extrema;
+mod mode_motions;
 mod oscillator;
 mod resonance;
 
-pub(super) use crate::analysis::synthesis::force_extrema::ForceExtremum;
+pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, ModeMotion, Motions};
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
@@ -126,33 +127,6 @@ pub fn synthesise_with(
     with_motions(branch, model, options, None, interrupt)
 }
 
-/// The motion of a mode at a synthesised resonance, with the phase of the response.
-pub(super) struct ModeMotion {
-    /// Angular frequency of the force.
-    pub omega: f64,
-    pub log10_amplitude: f64,
-    /// Complex, (H + 1) × ndof, harmonic after harmonic.
-    pub harmonics: Vec<Complex64>,
-}
-
-/// The motions at the resonances, and the extrema of the force along the mode.
-#[derive(Default)]
-pub(super) struct Motions {
-    pub resonances: Vec<ModeMotion>,
-    pub extrema: Vec<ForceExtremum>,
-}
-
-impl Motions {
-    fn push(&mut self, refinement: &Refinement<'_>, state: &State, omega: f64) -> Result<()> {
-        let motion = ModeMotion {
-            omega,
-            log10_amplitude: state.log10,
-            harmonics: refinement.harmonics(state, state.turn(omega))?,
-        };
-        try_push(&mut self.resonances, motion, CONTEXT)
-    }
-}
-
 /// The same as [`synthesise_with`], with the motions on request.
 pub(super) fn with_motions(
     branch: &Branch,
@@ -253,7 +227,10 @@ pub(super) fn with_motions(
         }
     }
     if let Some(motions) = motions {
-        force_extrema::find(&mut refinement, &states, &mut motions.extrema)?;
+        force_extrema::find(&mut refinement, &states, motions)?;
+        motions
+            .resonances
+            .sort_by(|a, b| a.log10_amplitude.total_cmp(&b.log10_amplitude));
     }
     Ok(synthesis)
 }

@@ -4,28 +4,23 @@
 //! With F rising along the mode there is one resonance at each force. A minimum of F is the force at which a detached curve is born, and the maximum below it the
 //! one at which it merges with the curve beneath.
 
+use crate::analysis::synthesis::mode_motions::{ForceExtremum, Motions};
 use crate::analysis::synthesis::oscillator::State;
 use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, try_push};
-
-/// A level of the force along a mode: where it is extreme, the resonances of a detached curve meet, or those of two curves do.
-#[derive(Clone, Copy, Debug)]
-pub struct ForceExtremum {
-    pub log10_amplitude: f64,
-    /// Factor of all forces.
-    pub factor: f64,
-    pub is_maximum: bool,
-}
 
 /// Largest number of evaluations for one extremum, and its width in log₁₀ of the amplitude: the force is flat there.
 const MAX_EVALUATIONS: usize = 60;
 const WIDTH: f64 = 1e-7;
 
+/// Width of a resonance, of which a start is made, in log₁₀ of the amplitude.
+const CROSSING: f64 = 1e-10;
+
 /// Ratio of the golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
-/// Appends the extrema between the points of a mode, whose states are given.
-pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mut Vec<ForceExtremum>) -> Result<()> {
+/// Appends the extrema between the points of a mode, whose states are given, and the resonances next to them that no point shows.
+pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mut Motions) -> Result<()> {
     for k in 1..states.len().saturating_sub(1) {
         let at = [k - 1, k, k + 1].map(|i| (states[i].log10, states[i].log_force_factor()));
         let [(p0, Some(f0)), (p1, Some(f1)), (p2, Some(f2))] = at else {
@@ -47,9 +42,49 @@ pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mu
             factor: (sign * f).exp(),
             is_maximum,
         };
-        try_push(found, extremum, "the extrema of the force")?;
+        try_push(&mut found.extrema, extremum, "the extrema of the force")?;
+        let extreme = (p, sign * f);
+        // Points of the mode show no resonance where both lie between neighbours.
+        if [f0, f1, f2].iter().all(|at| at * extreme.1 < 0.0) {
+            let (below, above) = if p < p1 {
+                ((k - 1, (p0, f0)), (k - 1, (p1, f1)))
+            } else {
+                ((k, (p1, f1)), (k, (p2, f2)))
+            };
+            for (side, end) in [below, above] {
+                if let Some(state) = crossing(refinement, side, (extreme, end))?
+                    && let Some(at) = state.at_peak()
+                {
+                    found.push(refinement, &state, at.omega)?;
+                }
+            }
+        }
     }
     Ok(())
+}
+
+/// The state at which the factor of the force is 1, between two amplitudes with logarithms of the factor of opposite sign.
+fn crossing(
+    refinement: &mut Refinement<'_>,
+    k: usize,
+    (mut a, mut b): ((f64, f64), (f64, f64)),
+) -> Result<Option<State>> {
+    let mut found = None;
+    for _ in 0..MAX_EVALUATIONS {
+        let p = 0.5 * (a.0 + b.0);
+        let Some(state) = refinement.state_at(k, p)? else { break };
+        let Some(f) = state.log_force_factor() else { break };
+        found = Some(state);
+        if (f < 0.0) == (a.1 < 0.0) {
+            a = (p, f);
+        } else {
+            b = (p, f);
+        }
+        if (b.0 - a.0).abs() <= CROSSING {
+            break;
+        }
+    }
+    Ok(found)
 }
 
 /// The minimum of sign·ln F in a bracket of three points around point k: parabolas, and golden sections where they do not help.
