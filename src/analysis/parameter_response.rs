@@ -4,7 +4,8 @@
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::damping_maximum;
 use crate::analysis::followed::Followed;
-use crate::analysis::forced_response::{forced_harmonics, forced_response};
+use crate::analysis::forced_curve::forced_harmonics;
+use crate::analysis::forced_response::forced_response;
 use crate::analysis::parameter_curve::CurveRecorder;
 use crate::analysis::parameter_range::{Follow, ParameterRange, settings, wanted};
 use crate::condense::{Condensed, Reference};
