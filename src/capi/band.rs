@@ -4,7 +4,8 @@
 
 use super::arrays::{Column, Entry, Range, check_pointer, count, disjoint, fill_list, input, optional, output};
 use super::boundary::{WithArgument, call};
-use super::handles::{KeptBranch, insert, read};
+use super::branch_tree::insert_tree;
+use super::handles::{KeptBranch, read};
 use super::indices::{index, indices};
 use super::model::hbvib_model;
 use super::solve::hbvib_branch;
@@ -352,7 +353,7 @@ unsafe fn give(end: &mut BandEnd, to: *mut *mut hbvib_branch) -> Result<()> {
         return Ok(());
     }
     let handle = match end.branch.take() {
-        Some(branch) => insert(KeptBranch { branch, requested: 0 })?,
+        Some(branch) => insert_tree(branch, 0, false)?,
         None => ptr::null_mut(),
     };
     unsafe { to.write(handle) };
