@@ -26,6 +26,8 @@ mod face_shapes;
 mod harwell_boeing;
 mod lines;
 mod matlab;
+#[cfg(feature = "hdf5")]
+mod matlab_hdf5;
 mod matrix;
 mod matrix_market;
 mod named_matrices;
