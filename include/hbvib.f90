@@ -242,7 +242,7 @@ module hbvib
 
    !> Options of hbvib_forced_response.
    type, bind(c) :: hbvib_forced_options
-      integer(c_int32_t) :: struct_size = 72, together = 0
+      integer(c_int32_t) :: struct_size = 88, together = 0
       real(c_double) :: omega_start = 0, omega_stop = 0
       type(c_ptr) :: at = c_null_ptr
       integer(c_int64_t) :: at_len = 0
@@ -250,7 +250,26 @@ module hbvib
       integer(c_int64_t) :: guess_len = 0
       type(c_ptr) :: responses = c_null_ptr
       integer(c_int64_t) :: responses_len = 0
+      integer(c_int32_t) :: branches = 0, branch_depth = 0
+      integer(c_int64_t) :: most_branches = 0
    end type hbvib_forced_options
+
+   !> Origin of a child.
+   type, bind(c) :: hbvib_descent
+      integer(c_int32_t) :: struct_size = 56, kind = -1
+      integer(c_int64_t) :: bifurcation = -1, periods = 1
+      real(c_double) :: merges_at = 0
+      integer(c_int64_t) :: mode = -1
+      real(c_double) :: born_at_force = 0, merges_at_force = 0
+   end type hbvib_descent
+
+   !> Solutions beside a response that were sought.
+   type, bind(c) :: hbvib_searched
+      integer(c_int32_t) :: struct_size = 80, reserved = 0
+      integer(c_int64_t) :: bifurcations = 0, lost = 0, left = 0, modes = 0, incomplete_modes = 0, resonances = 0, &
+         lost_resonances = 0
+      real(c_double) :: amplitude_min = 0, amplitude_max = 0
+   end type hbvib_searched
 
    !> A borrowed array of results, valid until hbvib_branch_free.
    type, bind(c) :: hbvib_view
@@ -942,6 +961,56 @@ module hbvib
          type(c_ptr), intent(inout) :: out
          integer(c_int32_t) :: status
       end function hbvib_forced_response
+
+      function hbvib_branch_children(branch) bind(c) result(answer)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t) :: answer
+      end function hbvib_branch_children
+
+      function hbvib_branch_child(branch, number, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: number
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_branch_child
+
+      function hbvib_descent_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_descent), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_descent_init
+
+      function hbvib_branch_descent(branch, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         type(hbvib_descent), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_branch_descent
+
+      function hbvib_searched_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_searched), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_searched_init
+
+      function hbvib_branch_searched(branch, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         type(hbvib_searched), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_branch_searched
+
+      function hbvib_model_longer_period(model, periods, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: periods
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_model_longer_period
 
       function hbvib_branch_free(branch) bind(c) result(status)
          import

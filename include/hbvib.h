@@ -1692,6 +1692,15 @@ typedef struct {
   const hbvib_response *responses;
   /// Number of these responses.
   int64_t responses_len;
+  /// Further solutions that are sought, for hbvib_branch_children: 0 (default) none; 1 branches
+  /// that branch off where the period doubles, a symmetry breaks or at simple branch points; 2
+  /// detached curves, too, near the resonances that nonlinear modes predict. Stability is then
+  /// computed along all of them, as by HBVIB_STABILITY_WAVE where the solver option is none.
+  int32_t branches;
+  /// Largest number of generations of branches that branch off, up to 8; 0 (default): 3.
+  int32_t branch_depth;
+  /// Largest number of branches beside the response; 0 (default): 32.
+  int64_t most_branches;
 } hbvib_forced_options;
 
 /// Fills the options of a forced response with zeros: the frequencies must be set.
@@ -1727,13 +1736,129 @@ hbvib_status hbvib_forced_response(const hbvib_model *model,
                                    const hbvib_hooks *hooks,
                                    hbvib_branch **out);
 
+/// Number of the children of a branch: the branches that branch off from it, and the detached
+/// curves beside it, as far as `branches` of hbvib_forced_options sought them; or a negative
+/// status.
+///
+/// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
+int64_t hbvib_branch_children(const hbvib_branch *branch);
+
+/// A child of a branch. It is a branch as any other, with children of its own; it belongs to its
+/// parent, and hbvib_branch_free of the parent frees it. Where the period doubles its frequencies
+/// are those of its parent over 2, and its harmonic 2 is that of the fundamental of its parent:
+/// results that need the model take that of hbvib_model_longer_period.
+///
+/// number  of the child, 0 .. hbvib_branch_children - 1.
+/// out     receives the child, the same handle each time; untouched on error.
+/// Errors: HBVIB_E_INDEX, HBVIB_E_NULL, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_child(const hbvib_branch *branch, int64_t number, hbvib_branch **out);
+
+/// Origin of a child. Fill it by hbvib_descent_init, then by hbvib_branch_descent.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// Kind of the bifurcation of its parent from which it branches off, a value of enum
+  /// hbvib_bifurcation; -1 for a detached curve.
+  int32_t kind;
+  /// Place of that bifurcation in hbvib_branch_bifurcations of the parent; -1 for a detached
+  /// curve.
+  int64_t bifurcation;
+  /// Periods of the parent in one of its own; its frequencies are those of the parent over that.
+  int64_t periods;
+  /// Frequency, its own, at which it comes back to its parent; 0 where it does not.
+  double merges_at;
+  /// Number of the linear mode along whose nonlinear mode a detached curve was found; -1
+  /// otherwise.
+  int64_t mode;
+  /// Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it; 0
+  /// where it is not known.
+  double born_at_force;
+  /// The same at which it merges with the curve beneath.
+  double merges_at_force;
+} hbvib_descent;
+
+/// Fills a descent with that of a branch that was asked for.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_descent_init(hbvib_descent *o, size_t size_of_o);
+
+/// Origin of a branch: where a child comes from. A branch that was asked for has the values of
+/// hbvib_descent_init.
+///
+/// out  receives it; untouched on error.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_descent(const hbvib_branch *branch, hbvib_descent *out);
+
+/// Solutions beside a response that were sought. The list of children is not complete: a solution
+/// that none of these searches leads to is not found. Fill it by hbvib_searched_init, then by
+/// hbvib_branch_searched.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Bifurcations of all generations from which a branch was sought.
+  int64_t bifurcations;
+  /// Those from which none was found.
+  int64_t lost;
+  /// Bifurcations from which none was sought, beyond branch_depth or most_branches.
+  int64_t left;
+  /// Nonlinear modes along which detached curves were sought.
+  int64_t modes;
+  /// Those that could not be followed through the range of amplitude.
+  int64_t incomplete_modes;
+  /// Resonances within the range of frequency that these modes predict.
+  int64_t resonances;
+  /// Those near which no solution was found.
+  int64_t lost_resonances;
+  /// Smallest modal amplitude to which modes were followed; 0 without modes.
+  double amplitude_min;
+  /// Largest one.
+  double amplitude_max;
+} hbvib_searched;
+
+/// Fills a search with zeros.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_searched_init(hbvib_searched *o, size_t size_of_o);
+
+/// The solutions that were sought beside a forced response; zeros where none were.
+///
+/// out  receives them; untouched on error.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_searched(const hbvib_branch *branch, hbvib_searched *out);
+
+/// Copies a model for motions with a multiple of the period of its forces: forces in harmonic h act
+/// in harmonic `periods` * h of the copy, whose frequencies are those of the model over `periods`.
+/// A speed that is tied to the frequency and unbalances remain what they are.
+///
+/// periods  at least 1; 2 for the children of a period doubling.
+/// out      receives the copy; untouched on error. Free it by hbvib_model_free.
+/// Errors: HBVIB_E_ARGUMENT, HBVIB_E_UNSUPPORTED (no wave of the sectors has that period),
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed), HBVIB_E_NULL, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number may copy and solve one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_model_longer_period(const hbvib_model *model,
+                                       int64_t periods,
+                                       hbvib_model **out);
+
 /* ==============================================================================================
  * Results: curve, fields, harmonics, special points, energies, contacts of a branch
  * ============================================================================================== */
 
-/// Frees a branch; its views become invalid. NULL is accepted and does nothing.
+/// Frees a branch with its children; their views become invalid. NULL is accepted and does nothing.
 ///
-/// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
+/// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_ARGUMENT (a child, which its parent
+/// frees), HBVIB_E_BUSY. Threads: any, once.
 hbvib_status hbvib_branch_free(hbvib_branch *branch);
 
 /// Number of points on the curve, or a negative status. Peaks, folds and the solutions requested at

@@ -152,8 +152,8 @@ pub use error_estimate::{Corrected, Estimate};
 pub use fourier::Reading;
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
-    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, Floquet, HigherPeak, LimitCycle,
-    Multiplier, MultiplierClass, Optimum, ResponseSeries, Special, Stretch,
+    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,
+    LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch,
 };
 pub use time_integration::TimeResponse;
 

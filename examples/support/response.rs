@@ -108,6 +108,7 @@ impl Response {
             guess: None,
             responses: &[],
             together: false,
+            ..ForcedOptions::default()
         };
         let begin = Instant::now();
         let mut first = None;

@@ -64,7 +64,8 @@ class _Analyses(_Matrices):
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def forced_response(self, omega: ArrayLike, *, at: Optional[ArrayLike] = None, guess: Optional[ArrayLike] = None,
-                        responses: Optional[Responses] = None, together: bool = False,
+                        responses: Optional[Responses] = None, together: bool = False, branches: int = 0,
+                        branch_depth: int = 0, most_branches: int = 0,
                         progress: Union[bool, Callable[[Progress], Any], None] = None,
                         log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                         cancel: Optional[CancelFlag] = None,
@@ -78,6 +79,9 @@ class _Analyses(_Matrices):
         responses what is watched, a list of Response or of degrees of freedom: Branch.responses. The first one leads
                   amplitude and peaks of the branch, and a tolerance holds for each.
         together  the tolerance holds for all responses in one norm, instead of for each.
+        branches  1: seek branches of the double period, of broken symmetry and at simple branch points, 2: detached curves,
+                  too, with stability along all of them: Branch.children. branch_depth: most generations, 0: 3.
+                  most_branches: 0: 32.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points. True
                   shows a bar of tqdm, or a line on stderr where that is not installed.
         log       log(LogLevel, text), lines up to log_level.
@@ -100,7 +104,7 @@ class _Analyses(_Matrices):
         """
         start, stop = _range("omega", omega, "forced_response((0.8, 1.6), at=omega)", single=True)
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, together=int(bool(together)),
-                       **_counted_array("at", at),
+                       branches=branches, branch_depth=branch_depth, most_branches=most_branches, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
         watched = listed(responses)
         described(options, watched)

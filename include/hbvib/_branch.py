@@ -9,6 +9,7 @@ from ._branch_points import _BranchPoints
 from ._branch_responses import _BranchResponses
 from ._c import Field, Status
 from ._calls import _call
+from ._children import _BranchChildren
 from ._errors import ArgumentError, BusyError
 from ._library import lib
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from ._responses import Response
 
 
-class Branch(_BranchFields, _BranchPoints, _BranchResponses):
+class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren):
     """Solutions along a curve, from a forced response or a nonlinear mode; made by the solves.
 
     Fields (`omega`, `amplitude`, ...) are read-only arrays over the points of the curve without a copy: each keeps the
@@ -40,12 +41,13 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses):
     def __init__(self, handle: int, kept: tuple[Any, ...], message: str) -> None:
         self._handle, self._kept, self.message = handle, kept, message
         self._leases: Any = weakref.WeakSet()
+        self._living: Any = weakref.WeakSet()  # children that the caller has
         self._origin: Optional[Origin] = None
         self._responses: tuple[Response, ...] = ()
 
     def free(self) -> None:
-        """Frees the branch. BufferError while arrays look into its memory, BusyError while a call uses it, FreedError
-        if it was freed.
+        """Frees the branch and its children. BufferError while arrays look into its memory, BusyError while a call uses it,
+        FreedError if it was freed, ArgumentError for a child, which its parent frees.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
@@ -58,14 +60,19 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses):
         """
         handle, self._handle = self.handle, None  # first, so that no thread borrows an array from here on
         try:
-            if len(self._leases):
+            if self._leased():
                 raise BufferError(
-                    f"{len(self._leases)} arrays look into the memory of this branch: delete or copy them")
+                    f"{self._leased()} arrays look into the memory of this branch: delete or copy them")
             _call("hbvib_branch_free", handle)
-        except (BufferError, BusyError):
+        except (ArgumentError, BufferError, BusyError):
             self._handle = handle
             raise
+        self._forget()
         self._kept, self._origin = (), None
+
+    def __del__(self) -> None:
+        if self._parent is None:
+            super().__del__()
 
     def __len__(self) -> int:
         """Number of points on the curve."""

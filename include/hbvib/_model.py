@@ -171,6 +171,22 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         copy._handle, copy._kept = handle.value, list(kept)
         return copy
 
+    def longer_period(self, periods: int) -> Model:
+        """A copy for motions with so many times the period of the forces: a force in harmonic h acts in harmonic periods * h
+        of it, and its frequencies are those of the model over periods.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1)
+        >>> model.add_force(0, 0.2)
+        >>> model.longer_period(2).forces.harmonic.tolist()
+        [2]
+        """
+        handle, kept = ctypes.c_void_p(), self._kept
+        self._call("hbvib_model_longer_period", _whole(periods, 64, "periods"), handle)
+        copy = type(self).__new__(type(self))
+        copy._handle, copy._kept = handle.value, list(kept)
+        return copy
+
     __copy__ = clone
 
     def __deepcopy__(self, _: dict[str, Any]) -> Model:

@@ -10,7 +10,8 @@ import numpy as np
 from ._c import FlexibilityWay, ModeMultiple, Part, Storage, Tangent
 from ._convert import _array, _member, _numbers, _pointer, _real, _whole
 from ._library import lib, structs
-from ._types import (ContactSummary, Energy, JacobianGap, ModeInfo, ModePoint, Reduction, TimeInfo, VerificationInfo)
+from ._types import (ContactSummary, Descent, Energy, JacobianGap, ModeInfo, ModePoint, Reduction, Searched, TimeInfo,
+                     VerificationInfo)
 
 
 def _new(name: str, **values: Any) -> Any:
@@ -110,6 +111,8 @@ _RECORDS: dict[type, tuple[str, dict[str, Callable[..., Any]]]] = {
     ModeInfo: ("hbvib_mode_info", dict(multiple=ModeMultiple)),
     Reduction: ("hbvib_reduction", dict(mean_carried=bool, even_removed=bool, flexibility_way=FlexibilityWay)),
     JacobianGap: ("hbvib_jacobian_gap", dict(tangent=Tangent)),
+    Descent: ("hbvib_descent", {}),
+    Searched: ("hbvib_searched", {}),
     TimeInfo: ("hbvib_time_info", {}),
     VerificationInfo: ("hbvib_verification", dict(same_solution=bool, marched=bool,
                                                   response=lambda pair: complex(*pair))),

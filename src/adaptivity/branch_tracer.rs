@@ -3,6 +3,7 @@
 
 use crate::adaptivity::controller::{AdaptivityController, Refined};
 use crate::adaptivity::discretised::Traceable;
+use crate::adaptivity::inner_ends::{InnerEnd, InnerEnds};
 use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::adaptivity::retracing::RecentPoints;
@@ -41,6 +42,8 @@ pub(crate) struct Course<'a> {
     pub starts_again: Option<usize>,
     /// Bounds of the steps where the branch is followed for its special points alone.
     pub bands: Option<ResonanceBands>,
+    /// Ends of a curve that was entered inside its range.
+    pub ends: Option<InnerEnds>,
 }
 
 /// Traces one branch.
@@ -53,6 +56,8 @@ pub(crate) struct BranchTracer<'a> {
     pub(super) grid_requested: bool,
     /// The last solutions of the arc before, each with its resolution, where peaks of responses were sought on it.
     pub(super) before_arc: Vec<(Point, usize)>,
+    /// Parameter value at which the curve came back to the one that it branches off from.
+    merged_at: f64,
 }
 
 /// The end of a linear stretch.
@@ -96,12 +101,18 @@ impl<'a> BranchTracer<'a> {
             linear_grid: None,
             grid_requested: false,
             before_arc: Vec::new(),
+            merged_at: f64::NAN,
         }
     }
 
     /// The course.
     pub fn course(&self) -> &Course<'a> {
         &self.course
+    }
+
+    /// Parameter value at which the curve came back to the one that it branches off from; NaN where it did not.
+    pub fn merged_at(&self) -> f64 {
+        self.merged_at
     }
 
     /// Error estimates made.
@@ -201,6 +212,11 @@ impl<'a> BranchTracer<'a> {
             }
             backtracks = 0;
 
+            // End where a curve that was entered inside its range closes, or comes back to its parent.
+            let Some((point, end)) = self.inner_end(analysis, recent.last(), (point, end))? else {
+                return Ok(Status::Ok);
+            };
+
             // Record the point, and the special points before it.
             if some_unless_lost(analysis.record(&point))?.is_none() {
                 return Ok(Status::StoppedStepTooSmall);
@@ -219,13 +235,8 @@ impl<'a> BranchTracer<'a> {
             match end {
                 None => {
                     let current = self.controller.adjust(analysis, point, self.interrupt)?;
-                    if resolution != before || analysis.resolution() != before {
-                        let previous = continuation.previous();
-                        let previous = previous.map(|p| analysis.transfer(p, before)).transpose()?;
-                        continuation.go_on_from(previous, current)?;
-                    } else {
-                        continuation.recycle(current);
-                    }
+                    let changes = resolution != before || analysis.resolution() != before;
+                    go_on(analysis, &mut continuation, current, changes.then_some(before))?;
                 }
                 Some(Status::StoppedLeftRange) => match self.come_back(analysis, point, (&begin, began), hooks)? {
                     Return::Ended(status) => return Ok(status),
@@ -295,6 +306,29 @@ impl<'a> BranchTracer<'a> {
         ((parameter - start) / range).clamp(0.0, 1.0)
     }
 
+    /// The next point, of the current resolution, with the status that ends the curve there: the first one where a curve that was
+    /// entered inside its range closes, none where it passed the branch that it branches off from.
+    fn inner_end(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        last: PointAt<'_>,
+        (point, end): (Point, Option<Status>),
+    ) -> Result<Option<(Point, Option<Status>)>> {
+        let Some(ends) = &self.course.ends else {
+            return Ok(Some((point, end)));
+        };
+        Ok(
+            match ends.between(analysis, last, &point, (&self.course.settings, self.interrupt))? {
+                None => Some((point, end)),
+                Some(InnerEnd::Closed(first)) => Some((first, Some(Status::StoppedClosed))),
+                Some(InnerEnd::Merged(at)) => {
+                    self.merged_at = at;
+                    None
+                }
+            },
+        )
+    }
+
     /// Whether a point found with other harmonics lies behind the one recorded last, or outside the range.
     fn is_reversed_or_outside(
         &self,
@@ -357,6 +391,22 @@ impl<'a> BranchTracer<'a> {
         }
         Ok(Outside::Gone)
     }
+}
+
+/// Continues from a point, which has other harmonics than the one before if that is of a resolution `before`.
+fn go_on(
+    analysis: &dyn Traceable,
+    continuation: &mut Continuation,
+    current: Point,
+    before: Option<usize>,
+) -> Result<()> {
+    let Some(before) = before else {
+        continuation.recycle(current);
+        return Ok(());
+    };
+    let previous = continuation.previous();
+    let previous = previous.map(|p| analysis.transfer(p, before)).transpose()?;
+    continuation.go_on_from(previous, current)
 }
 
 /// An outcome; `None` if Newton's last correction, which is not evaluated, led to a motion that a law cannot

@@ -6,7 +6,7 @@
 //! harmonics of the next step. Where every contact is linear, [`linear_stretch`] takes the place of the continuation, at the
 //! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. A
 //! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
-//! points is found and turned round by [`retracing`].
+//! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`].
 //! An analysis implements the two traits of [`discretised`]. [`resolutions`] stores the
 //! equations at the resolutions of a run, [`transfer`] converts points from one resolution to another, and
 //! [`branch_recorder`] stores points.
@@ -20,6 +20,7 @@ pub(crate) mod controller;
 pub(crate) mod discretised;
 pub(crate) mod estimate_spacing;
 pub(crate) mod harmonic_levels;
+pub(crate) mod inner_ends;
 mod linear_stretch;
 pub(crate) mod resolutions;
 pub(crate) mod resonance_bands;

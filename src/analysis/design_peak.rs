@@ -1,6 +1,7 @@
 //! The highest peak of one design.
 
-use crate::analysis::forced_response::{forced_response, special_points};
+use crate::analysis::forced_curve::special_points;
+use crate::analysis::forced_response::forced_response;
 use crate::error::{Error, Result, Status, try_push};
 use crate::hooks::Hooks;
 use crate::model::Model;

@@ -14,11 +14,12 @@ use crate::condense::FlexibilityWay;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reduction, Reference, reduced_resonances};
 use crate::continuation::resolve::resolve;
-use crate::continuation::{Point, PointAt, Settings};
+use crate::continuation::{Metric, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_extend, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
+use crate::linalg::norm;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::resonances::Resonance;
@@ -167,6 +168,14 @@ impl<'a> ForcedDiscretised<'a> {
     /// Notes whether the first point was found from the given guess, if there was one.
     pub fn note_guess(&mut self, used: Option<bool>) {
         self.guess_used = used;
+    }
+
+    /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start.
+    pub fn null_direction(&mut self, at: &Point, start: &[f64], interrupt: &Interrupt<'_>) -> Result<Option<Vec<f64>>> {
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
+        let metric = Metric::along(norm(at.unknowns()), &self.settings);
+        self.stale = true;
+        corrector.null_direction(problem, &at.v, start, metric, interrupt)
     }
 
     /// How the flexibility is made along the branch, and why so.

@@ -1,22 +1,27 @@
 //! The crate's public face: each analysis puts the layers together.
 
+mod all_solutions;
 pub mod batch;
 mod branch_stability;
+mod branch_switching;
 pub mod campbell;
 pub mod check_jacobian;
 mod coarse_start;
 pub mod damped_modes;
 mod damping_maximum;
 pub mod design_peak;
+mod detached_curves;
 mod evaluation_need;
 pub mod floquet;
 mod floquet_on_modes;
 mod followed;
+mod forced_curve;
 mod forced_discretised;
 mod forced_equations;
 pub mod forced_response;
 pub mod further_threads;
 pub mod harmonic_residual;
+mod inside_start;
 pub mod interference;
 pub mod linear_contacts;
 mod mode_discretised;

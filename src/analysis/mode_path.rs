@@ -2,7 +2,7 @@
 
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
-use crate::analysis::forced_response::told_way;
+use crate::analysis::forced_curve::told_way;
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::sampling::may_refine;
 use crate::continuation::initial_point::{self, First, Way};
@@ -54,6 +54,7 @@ pub(super) fn course<'a>(
         ..settings
     };
     let course = Course {
+        ends: None,
         settings: Settings {
             // The branch may come back to amplitudes below the onset, with slip.
             start: if from < end { start } else { from },

@@ -4,7 +4,8 @@
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::damping_maximum;
 use crate::analysis::followed::Followed;
-use crate::analysis::forced_response::{forced_harmonics, forced_response};
+use crate::analysis::forced_curve::forced_harmonics;
+use crate::analysis::forced_response::forced_response;
 use crate::analysis::parameter_curve::CurveRecorder;
 use crate::analysis::parameter_range::{Follow, ParameterRange, settings, wanted};
 use crate::condense::{Condensed, Reference};
@@ -18,6 +19,15 @@ use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
 /// Share of a frequency within which its peak or fold is sought.
 const NEAR: f64 = 0.1;
+
+/// Ends of the sweeps in which it is sought, over the frequency, until one meets it: where several motions exist, the one that has it
+/// may be reached from one side only, and from afar.
+const WAYS: [(f64, f64); 4] = [
+    (1.0 - NEAR, 1.0 + NEAR),
+    (1.0 + NEAR, 1.0 - NEAR),
+    (0.5, 1.2),
+    (1.5, 0.8),
+];
 
 /// Share of the rest of the range by which the response is examined beyond the value at which a peak vanished, and share of its
 /// frequency within which another peak is sought there.
@@ -121,31 +131,38 @@ fn follow(
         ..*solver
     };
     let watched = range.response.as_slice();
-    let branch = forced_response(first, &seek, &sweep((omega, kind), watched), hooks)?;
-    if branch.status() == Status::StoppedByCaller {
-        return Branch::stopped(first, solver);
-    }
-    if branch.points() == 0 {
-        return fail!(NoConvergence, "the response at the start of the range was not found");
-    }
-    let nearest = |list: &[Special]| {
-        let distance = |s: &&Special| (s.omega - omega).abs();
-        list.iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            .map(|s| s.point)
+    let mut found = None;
+    let ways = if kind == ResponsePoint::Fixed {
+        &[(1.0, 1.0)]
+    } else {
+        &WAYS[..]
     };
-    let (point, name) = match kind {
-        ResponsePoint::Fixed => (Some(0), "solution"),
-        ResponsePoint::Peak => (nearest(branch.peaks()), "peak"),
-        ResponsePoint::Fold => (nearest(branch.folds()), "fold"),
-    };
-    let Some(point) = point else {
-        let sweep = sweep((omega, kind), &[]);
+    for &ends in ways {
+        let branch = match forced_response(first, &seek, &sweep((ends, omega), watched), hooks) {
+            Err(e) if e.status == Status::NoConvergence && kind != ResponsePoint::Fixed => continue,
+            solved => solved?,
+        };
+        if branch.status() == Status::StoppedByCaller {
+            return Branch::stopped(first, solver);
+        }
+        if let Some(point) = nearest((&branch, kind), omega) {
+            found = Some((branch, point));
+            break;
+        }
+    }
+    let Some((branch, point)) = found else {
+        let name = match kind {
+            ResponsePoint::Fixed => {
+                return fail!(NoConvergence, "the response at the start of the range was not found");
+            }
+            ResponsePoint::Peak => "peak",
+            ResponsePoint::Fold => "fold",
+        };
         return fail!(
             NoConvergence,
             "at the start of the range the response has no {name} within {} .. {}",
-            sweep.omega_start,
-            sweep.omega_stop
+            (1.0 - NEAR) * omega,
+            (1.0 + NEAR) * omega
         );
     };
     let Some(omega) = branch.omega_at(point) else {
@@ -190,15 +207,26 @@ fn follow(
     Ok(found)
 }
 
-/// The sweep in which a point of a response is sought.
-fn sweep<'a>((omega, kind): (f64, ResponsePoint), responses: &'a [Response<'a>]) -> ForcedOptions<'a> {
-    let width = if kind == ResponsePoint::Fixed { 0.0 } else { NEAR };
+/// A sweep between shares of a frequency.
+fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response<'a>]) -> ForcedOptions<'a> {
     ForcedOptions {
-        omega_start: (1.0 - width) * omega,
-        omega_stop: (1.0 + width) * omega,
+        omega_start: start * omega,
+        omega_stop: stop * omega,
         responses,
         ..ForcedOptions::default()
     }
+}
+
+/// The point of a kind that is nearest to a frequency; `None` where none is within [`NEAR`] of it.
+fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize> {
+    let list = match kind {
+        ResponsePoint::Fixed => return (branch.points() > 0).then_some(0),
+        ResponsePoint::Peak => branch.peaks(),
+        ResponsePoint::Fold => branch.folds(),
+    };
+    let distance = |s: &&Special| (s.omega - omega).abs();
+    let near = list.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    (distance(&near) <= NEAR * omega.abs()).then_some(near.point)
 }
 
 /// Reason of a peak that vanished: the highest peak that the response shows a little beyond the last value, if it has one.
@@ -279,7 +307,7 @@ fn find_higher_peaks(
             response_dof: Some(found.response_dof()),
             ..*solver
         };
-        let range = sweep((omega, ResponsePoint::Peak), response.as_slice());
+        let range = sweep((WAYS[0], omega), response.as_slice());
         let mut quiet = Hooks {
             cancelled: hooks.cancelled,
             ..Hooks::default()

@@ -10,9 +10,12 @@
 //! These are two frequencies at each amplitude; they meet at the resonance, where the root vanishes.
 
 mod computed_peak;
+mod force_extrema;
+mod mode_motions;
 mod oscillator;
 mod resonance;
 
+pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, ModeMotion, Motions};
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
@@ -121,6 +124,17 @@ pub fn synthesise_with(
     options: &SynthesisOptions,
     interrupt: &Interrupt<'_>,
 ) -> Result<Synthesis> {
+    with_motions(branch, model, options, None, interrupt)
+}
+
+/// The same as [`synthesise_with`], with the motions on request.
+pub(super) fn with_motions(
+    branch: &Branch,
+    model: &Model,
+    options: &SynthesisOptions,
+    mut motions: Option<&mut Motions>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Synthesis> {
     options.check()?;
     let Some(data) = branch.mode_data() else {
         return fail!(
@@ -207,7 +221,16 @@ pub fn synthesise_with(
                 },
             };
             try_push(&mut synthesis.peaks, peak, CONTEXT)?;
+            if let Some(motions) = &mut motions {
+                motions.push(&refinement, &state, at.omega)?;
+            }
         }
+    }
+    if let Some(motions) = motions {
+        force_extrema::find(&mut refinement, &states, motions)?;
+        motions
+            .resonances
+            .sort_by(|a, b| a.log10_amplitude.total_cmp(&b.log10_amplitude));
     }
     Ok(synthesis)
 }

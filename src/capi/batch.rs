@@ -4,7 +4,8 @@
 
 use super::arrays::{Range, check_pointer, count, disjoint, input, output};
 use super::boundary::{WithArgument, call, call_count, call_to_free, within};
-use super::handles::{Kept, KeptBranch, Object, free, insert, read, write};
+use super::branch_tree::insert_tree;
+use super::handles::{Kept, Object, free, insert, read, write};
 use super::indices::index;
 use super::model::hbvib_model;
 use super::outcome::Outcome;
@@ -360,7 +361,7 @@ pub unsafe extern "C" fn hbvib_batch_branch(
             .with_argument(2);
         };
         let outcome = Outcome::from(&branch);
-        unsafe { out.write(insert(KeptBranch { branch, requested: 0 })?) };
+        unsafe { out.write(insert_tree(branch, 0, false)?) };
         Ok(outcome)
     })
 }

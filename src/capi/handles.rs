@@ -35,6 +35,10 @@ pub(super) struct KeptBranch {
     pub branch: Branch,
     /// Number of exact frequencies, or amplitudes of a mode, that were requested.
     pub requested: usize,
+    /// Handles of its children, which are freed with it.
+    pub children: Vec<usize>,
+    /// Whether it is a child itself.
+    pub is_child: bool,
 }
 
 /// Content of a slot. The one-element vectors are boxes whose memory can be reserved fallibly.
@@ -278,6 +282,30 @@ impl<T> Drop for Writing<T> {
             slot.users = 0;
         }
     }
+}
+
+/// Frees objects at once; none where one of them is in use.
+pub(super) fn free_all<T: Kept>(handles: &[usize], argument: i32) -> Result<()> {
+    let mut objects = Vec::new();
+    reserved(&objects.try_reserve_exact(handles.len()), T::NAME)?;
+    let mut guard = table();
+    for handle in handles {
+        if guard.find::<T>(core::ptr::without_provenance(*handle), argument)?.users != 0 {
+            return busy::<T, _>(argument);
+        }
+    }
+    for handle in handles {
+        let free = guard.free;
+        let slot = guard.find::<T>(core::ptr::without_provenance(*handle), argument)?;
+        objects.push(core::mem::replace(&mut slot.object, Object::Free { next: free }));
+        slot.generation += 1;
+        if slot.generation < MAX_GENERATION {
+            guard.free = (handle & (MAX_SLOTS - 1)) as u32;
+        }
+    }
+    drop(guard);
+    drop(objects);
+    Ok(())
 }
 
 /// Frees an object; NULL is accepted and does nothing.

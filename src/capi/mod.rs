@@ -18,6 +18,7 @@
 
 mod arrays;
 mod boundary;
+mod branch_tree;
 mod float_environment;
 mod handles;
 mod indices;
@@ -63,6 +64,7 @@ mod results_reduction;
 mod results_responses;
 mod results_special_points;
 mod sensitivities;
+mod solutions;
 mod solve;
 mod solve_hooks;
 mod solve_options;
@@ -106,6 +108,7 @@ pub use results_reduction::*;
 pub use results_responses::*;
 pub use results_special_points::*;
 pub use sensitivities::*;
+pub use solutions::*;
 pub use solve::*;
 pub use solve_hooks::*;
 pub use solve_options::*;

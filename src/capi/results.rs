@@ -4,6 +4,7 @@
 
 use super::arrays::{check_pointer, exact_len};
 use super::boundary::{WithArgument, call, call_count, call_to_free};
+use super::branch_tree::free_tree;
 use super::handles::{KeptBranch, free, read};
 use super::indices::{index, times};
 use super::matrices::hbvib_scalar;
@@ -18,12 +19,31 @@ use crate::results::{Branch, PointField};
 use core::ptr;
 use num_complex::Complex64;
 
-/// Frees a branch; its views become invalid. NULL is accepted and does nothing.
+/// Frees a branch with its children; their views become invalid. NULL is accepted and does nothing.
 ///
-/// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
+/// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_ARGUMENT (a child, which its parent
+/// frees), HBVIB_E_BUSY. Threads: any, once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_free(branch: *mut hbvib_branch) -> hbvib_status {
-    call_to_free(|| free::<KeptBranch>(branch, 1).map(|()| Status::Ok))
+    call_to_free(|| {
+        if branch.is_null() {
+            return Ok(Status::Ok);
+        }
+        let kept = read::<KeptBranch>(branch, 1)?;
+        if kept.is_child {
+            return fail!(
+                Argument,
+                "the branch is a child: hbvib_branch_free of its parent frees it"
+            )
+            .with_argument(1);
+        }
+        if kept.children.is_empty() {
+            drop(kept);
+            return free::<KeptBranch>(branch, 1).map(|()| Status::Ok);
+        }
+        drop(kept);
+        free_tree(branch).map(|()| Status::Ok)
+    })
 }
 
 /// Number of points on the curve, or a negative status. Peaks, folds and the solutions requested at

@@ -4,7 +4,9 @@
 
 use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call};
-use super::handles::{Kept, KeptBranch, Object, insert, read};
+use super::branch_tree::insert_tree;
+use super::handles::{Kept, KeptBranch, Object, read};
+use super::indices::number;
 use super::model::hbvib_model;
 use super::outcome::Outcome;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
@@ -77,6 +79,15 @@ pub struct hbvib_forced_options {
     pub responses: *const hbvib_response,
     /// Number of these responses.
     pub responses_len: i64,
+    /// Further solutions that are sought, for hbvib_branch_children: 0 (default) none; 1 branches
+    /// that branch off where the period doubles, a symmetry breaks or at simple branch points; 2
+    /// detached curves, too, near the resonances that nonlinear modes predict. Stability is then
+    /// computed along all of them, as by HBVIB_STABILITY_WAVE where the solver option is none.
+    pub branches: i32,
+    /// Largest number of generations of branches that branch off, up to 8; 0 (default): 3.
+    pub branch_depth: i32,
+    /// Largest number of branches beside the response; 0 (default): 32.
+    pub most_branches: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_forced_options {
@@ -95,6 +106,9 @@ unsafe impl VersionedStruct for hbvib_forced_options {
             guess_len: 0,
             responses: ptr::null(),
             responses_len: 0,
+            branches: 0,
+            branch_depth: 0,
+            most_branches: 0,
         }
     }
 }
@@ -178,6 +192,9 @@ unsafe fn forced_options<'a>(
         guess,
         responses,
         together: o.together == 1,
+        branches: number(i64::from(o.branches), "branches")?,
+        branch_depth: number(i64::from(o.branch_depth), "branch_depth")?,
+        most_branches: number(o.most_branches, "most_branches")?,
     };
     options.check()?;
     options.check_guess(ndof)?;
@@ -199,6 +216,6 @@ pub(super) unsafe fn follow(
     check_pointer(out, 5, "out")?;
     let branch = unsafe { with_hooks(&hooks, analysis) }?;
     let outcome = Outcome::from(&branch);
-    unsafe { out.write(insert(KeptBranch { branch, requested })?) };
+    unsafe { out.write(insert_tree(branch, requested, false)?) };
     Ok(outcome)
 }

@@ -80,7 +80,7 @@ pub unsafe extern "C" fn hbvib_branch_bifurcations(
     })
 }
 
-fn kind_number(kind: BifurcationKind) -> i64 {
+pub(super) fn kind_number(kind: BifurcationKind) -> i64 {
     use hbvib_bifurcation as b;
     let kind = match kind {
         BifurcationKind::Fold => b::HBVIB_BIFURCATION_FOLD,

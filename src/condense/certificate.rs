@@ -54,7 +54,8 @@ impl Certificate {
     };
 }
 
-/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it.
+/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it; that at the upper
+/// end alone where it exceeds `enough`.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -62,7 +63,7 @@ pub(super) fn certificate(
     (block, view): (&HarmonicBlock, &ReducedView),
     loss_factor: f64,
     inputs: &[SparseVector],
-    sweep: Sweep,
+    (sweep, enough): (Sweep, f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
     let order = view.pencil().order();
@@ -76,20 +77,20 @@ pub(super) fn certificate(
         to[..order].swap_with_slice(&mut dense[..order]);
     }
     let mut frequencies = Vec::new();
-    for frequency in sweep.of_harmonic(block.number) {
+    for frequency in sweep.of_harmonic(block.number).into_iter().rev() {
         if !frequencies.contains(&frequency) {
             try_push(&mut frequencies, frequency, CONTEXT)?;
         }
     }
-    if sweep.start.to_bits() != sweep.stop.to_bits() && block.number > 0 {
-        resonances(block, view, sweep, &mut frequencies, interrupt)?;
-    }
+    let mut lacks_resonances = sweep.is_range() && block.number > 0;
     let mut lu = Lu::new(n, inputs.len().max(1))?;
     let mut worst = Certificate::default();
     let remainder = &view.pencil().remainder;
     let (solutions, products) = (remainder.solutions, remainder.products);
     let mut q = try_copy(&forces, CONTEXT)?;
-    for nu in frequencies {
+    let mut next = 0;
+    while let Some(&nu) = frequencies.get(next) {
+        next += 1;
         let i_nu = Complex64::new(0.0, nu);
         let matrix = lu.matrix();
         for (at, z) in matrix.iter_mut().enumerate() {
@@ -113,6 +114,12 @@ pub(super) fn certificate(
             let whole = share + solutions * images(view, (nu, loss_factor), &q[..order])? / size;
             let total = whole + inverse * whole * whole + (1.0 + inverse) * products;
             worst = worst.max(Certificate { basis, total });
+        }
+        if worst.basis > enough {
+            break;
+        }
+        if core::mem::take(&mut lacks_resonances) {
+            resonances(block, view, sweep, &mut frequencies, interrupt)?;
         }
     }
     Ok(worst)

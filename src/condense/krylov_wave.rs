@@ -37,8 +37,8 @@ const RAISED: f64 = 100.0;
 const ATTEMPTS: usize = 5;
 
 /// Most columns of a basis, and most blocks where one block has many.
-const MOST_COLUMNS: usize = 600;
-const MOST_BLOCKS: usize = 12;
+pub(super) const MOST_COLUMNS: usize = 600;
+pub(super) const MOST_BLOCKS: usize = 12;
 
 /// Columns of a basis over those that are added before its next certificate, which costs as much as some of its factorisations.
 const GROWTH_OF_BASIS: usize = 5;
@@ -46,13 +46,13 @@ const GROWTH_OF_BASIS: usize = 5;
 /// Blocks that memory is counted and reserved for.
 const USUAL_BLOCKS: usize = 7;
 
-/// Prepares a wave for `inputs` until its certificate, which `error` computes, is below `limit` or the basis may not grow;
+/// Prepares a wave for `inputs` until its certificate, which `error` computes as far as it is at most some number, is below `limit` or the basis has `most` columns;
 /// `None` where it has no definite matrix.
 pub(super) fn prepare(
     matrices: &WaveMatrices<'_>,
     inputs: Vec<SparseVector>,
-    limit: f64,
-    error: impl Fn(&Arc<ReducedWave>) -> Result<Certificate>,
+    (limit, most): (f64, usize),
+    error: impl Fn(&Arc<ReducedWave>, f64) -> Result<Certificate>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
     let Some(assembled) = matrices.assembled(interrupt)? else {
@@ -68,7 +68,7 @@ pub(super) fn prepare(
             matrices,
             assembled,
             inputs,
-            limit,
+            (limit, most),
             error,
             (Basis::Real, Basis::into_real),
             interrupt,
@@ -78,7 +78,7 @@ pub(super) fn prepare(
             matrices,
             assembled,
             inputs,
-            limit,
+            (limit, most),
             error,
             (Basis::Complex, Basis::into_complex),
             interrupt,
@@ -93,8 +93,8 @@ fn build<T: Entry>(
     matrices: &WaveMatrices<'_>,
     assembled: Assembled<'_>,
     inputs: Vec<SparseVector>,
-    limit: f64,
-    error: impl Fn(&Arc<ReducedWave>) -> Result<Certificate>,
+    (limit, most): (f64, usize),
+    error: impl Fn(&Arc<ReducedWave>, f64) -> Result<Certificate>,
     (basis, back): Wrapping<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
@@ -102,20 +102,19 @@ fn build<T: Entry>(
         return Ok(None);
     };
     krylov.start(&inputs, USUAL_BLOCKS, interrupt)?;
-    let most = MOST_COLUMNS.max(MOST_BLOCKS * inputs.len());
     let mut wave = ReducedWave {
         key: matrices.key,
         inputs,
         pencil: pencil(&krylov, &prepared, interrupt)?,
         basis: basis(krylov.take_basis()),
         n: prepared.n,
-        exhausted: false,
+        refused_up_to: 0,
     };
     loop {
         interrupt.part(Phase::Condensation, wave.pencil.order(), most)?;
         // The certificate uses the basis for the rows of the contacts.
         let shared = Arc::new(wave);
-        let found = error(&shared)?;
+        let found = error(&shared, limit)?;
         wave = match Arc::try_unwrap(shared) {
             Ok(wave) => wave,
             Err(_) => return fail!(Internal, "a basis in preparation is shared"),
@@ -127,13 +126,13 @@ fn build<T: Entry>(
         let complete = found.basis <= limit || full;
         // Where images and basis are the same space there is nothing to add.
         if complete || !grown(&mut krylov, most, interrupt)? {
-            wave.exhausted = found.basis > limit;
+            wave.refused_up_to = if found.basis > limit { most } else { 0 };
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
             let mut columns = krylov.take_basis();
             columns.shrink_to_fit();
             wave.basis = basis(columns);
             let shared = Arc::new(wave);
-            let found = error(&shared)?;
+            let found = error(&shared, f64::INFINITY)?;
             return Ok(Some((shared, found)));
         }
         wave.pencil = pencil(&krylov, &prepared, interrupt)?;

@@ -7,34 +7,42 @@
 use crate::condense::HarmonicBlock;
 use crate::condense::certificate::{Certificate, certificate};
 use crate::condense::contact_classes::ContactClasses;
-use crate::condense::krylov_wave::prepare;
+use crate::condense::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
 use crate::condense::reduced_block::reduced_block;
 use crate::condense::sweep::Sweep;
+use crate::condense::wave_cache::ALL_UP_TO;
 use crate::condense::wave_matrices::WaveMatrices;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
-use crate::linalg::cholesky::entries_by_degrees;
-use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::{ReducedView, ReducedWave, WaveKey};
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
-use crate::model::structure::MatrixKind;
 use crate::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
 
 const CONTEXT: &str = "the reduced structure";
 
-/// Degrees of freedom from which a basis is quicker than all modes, or factors at each frequency.
-const FROM: usize = 600;
+/// Degrees of freedom up to which results have all digits: a basis errs by its certificate.
+const EXACT_UP_TO: usize = 100;
 
-/// Entries of a factor over degrees of freedom of a chain.
-const CHAIN: usize = 6;
+/// Certificate of a basis in place of all modes: the error that is allowed to a sum over these.
+const OF_ALL_MODES: f64 = 1e-11;
 
 /// Degrees of freedom over columns of the first block, below which a basis is no reduction.
 const SHARE: usize = 20;
+
+/// The same over all columns: a sweep past more resonances than that is left to all modes, or to factors.
+const SHARE_OF_BASIS: usize = 4;
+
+/// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed.
+const OF_MODES: f64 = 20.0;
+const OF_BASIS: f64 = 480.0;
+
+/// Usual columns per input, and besides.
+const USUAL_COLUMNS: (usize, usize) = (5, 10);
 
 /// Degrees of freedom up to which a structure whose basis does not hold is treated directly.
 const DIRECT_UP_TO: usize = 20_000;
@@ -71,7 +79,8 @@ pub(super) fn reduced_blocks(
 ) -> Result<Option<(Vec<HarmonicBlock>, f64)>> {
     let (model, options) = (request.model, request.options);
     let n = model.structure().ndof();
-    if options.flexibility == Flexibility::Direct || (options.flexibility == Flexibility::Automatic && n < FROM) {
+    if options.flexibility == Flexibility::Direct || (options.flexibility == Flexibility::Automatic && n <= EXACT_UP_TO)
+    {
         return Ok(None);
     }
     let forced = options.flexibility == Flexibility::Krylov;
@@ -85,14 +94,11 @@ pub(super) fn reduced_blocks(
     {
         return declined(forced);
     }
-    if !forced && is_chain(request)? {
-        return Ok(None);
-    }
     let most = if forced { usize::MAX } else { n / SHARE };
     let Some(groups) = groups(request, most, interrupt)? else {
         return Ok(None);
     };
-    if groups.iter().any(|group| group.inputs.is_empty()) {
+    if groups.iter().any(|group| group.inputs.is_empty()) || !(forced || pays(request, &groups)) {
         return Ok(None);
     }
     let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
@@ -102,7 +108,7 @@ pub(super) fn reduced_blocks(
             return declined(forced);
         };
         worst = worst.max(error);
-        if !forced && error.basis > options.certificate && n <= DIRECT_UP_TO {
+        if !forced && error.basis > limit(request) && n <= DIRECT_UP_TO {
             return Ok(None);
         }
         for &(i, conjugated) in &group.members {
@@ -124,28 +130,31 @@ pub(super) fn reduced_blocks(
     Ok(Some((blocks, worst.total)))
 }
 
-/// Whether the factors of the first wave with mass are those of a chain: a factorisation at each frequency then takes no longer than
-/// a sum over the modes of a basis, of which a chain needs as many as it has in the range.
-fn is_chain(request: &Request<'_>) -> Result<bool> {
-    let Some(&number) = request.numbers.iter().find(|&&h| h > 0) else {
-        return Ok(false);
-    };
-    let structure = request.model.structure();
-    // Seen without a copy of a large matrix.
-    if structure.stored(MatrixKind::Stiffness) > CHAIN * structure.ndof() {
-        return Ok(false);
+/// Largest error by motions that a basis lacks. Where all modes are an alternative, it is as exact as they are.
+fn limit(request: &Request<'_>) -> f64 {
+    let asked = request.options.certificate;
+    let has_alternative =
+        request.options.flexibility == Flexibility::Automatic && request.model.structure().ndof() <= ALL_UP_TO;
+    if has_alternative {
+        asked.min(OF_ALL_MODES)
+    } else {
+        asked
     }
-    let stiffness = structure.wave_matrix(MatrixKind::Stiffness, number)?;
-    let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
-    let one = Complex64::ONE;
-    let pattern = Csc::sum(
-        stiffness.rows,
-        &[(one, &stiffness, Form::Plain), (one, &mass, Form::Plain)],
-    )?;
-    if pattern.values.len() > CHAIN * pattern.rows {
-        return Ok(false);
+}
+
+/// Whether a basis takes less time than all modes, where these are an alternative. Estimates of errors need so many harmonics that
+/// they take the modes.
+fn pays(request: &Request<'_>, groups: &[Group]) -> bool {
+    let n = request.model.structure().ndof();
+    if n > ALL_UP_TO {
+        return true;
     }
-    Ok(entries_by_degrees(&pattern)? <= CHAIN * pattern.rows)
+    let (per_input, besides) = USUAL_COLUMNS;
+    let columns = |group: &Group| (per_input * group.inputs.len() + besides) as f64;
+    let of_group = |group: &Group| group.members.len() as f64 * columns(group).powi(3);
+    let of_basis = OF_BASIS * groups.iter().map(of_group).sum::<f64>();
+    let of_modes = OF_MODES * groups.len() as f64 * (n as f64).powi(3);
+    request.options.tolerance == 0.0 && request.sweep.is_range() && of_basis < of_modes
 }
 
 fn declined<T>(forced: bool) -> Result<Option<T>> {
@@ -166,8 +175,12 @@ fn wave_of(
     kappa: &impl Fn(usize, usize) -> Complex64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
-    let limit = request.options.certificate;
-    let error = |wave: &Arc<ReducedWave>| certificate_of(request, group, wave, kappa, interrupt);
+    let limit = limit(request);
+    let is_forced = request.options.flexibility == Flexibility::Krylov;
+    let share = request.model.structure().ndof() / SHARE_OF_BASIS;
+    let most = MOST_COLUMNS.max(MOST_BLOCKS * group.inputs.len());
+    let most = if is_forced { most } else { most.min(share) };
+    let error = |wave: &Arc<ReducedWave>, enough: f64| certificate_of(request, group, (wave, enough), kappa, interrupt);
     let mut inputs = Vec::new();
     for input in &group.inputs {
         interrupt.check_before(100)?;
@@ -184,8 +197,8 @@ fn wave_of(
             }
         }
         if holds_all {
-            let error = error(wave)?;
-            if error.basis <= limit || wave.exhausted {
+            let error = error(wave, f64::INFINITY)?;
+            if error.basis <= limit || wave.refused_up_to >= most {
                 return Ok(Some((Arc::clone(wave), error)));
             }
         }
@@ -207,7 +220,7 @@ fn wave_of(
         frequency: reference_frequency(request, group),
         memory_limit: request.options.memory_limit,
     };
-    let Some((wave, error)) = prepare(&matrices, inputs, limit, error, interrupt)? else {
+    let Some((wave, error)) = prepare(&matrices, inputs, (limit, most), error, interrupt)? else {
         return Ok(None);
     };
     request.model.kept().keep(&wave)?;
@@ -225,16 +238,20 @@ fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
     request.sweep.of_harmonic(lowest)[1]
 }
 
-/// The largest certificate of the harmonics of a group.
+/// The largest certificate of the harmonics of a group; a lower bound of it where that exceeds `enough`.
 fn certificate_of(
     request: &Request<'_>,
     group: &Group,
-    wave: &Arc<ReducedWave>,
+    (wave, enough): (&Arc<ReducedWave>, f64),
     kappa: &impl Fn(usize, usize) -> Complex64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
     let mut worst = Certificate::default();
-    for &(i, conjugated) in &group.members {
+    // The highest harmonic needs the largest basis.
+    for &(i, conjugated) in group.members.iter().rev() {
+        if worst.basis > enough {
+            break;
+        }
         let view = ReducedView {
             wave: Arc::clone(wave),
             conjugated,
@@ -246,7 +263,7 @@ fn certificate_of(
             (&block, &view),
             loss_factor(request, number),
             &group.inputs,
-            request.sweep,
+            (request.sweep, enough),
             interrupt,
         )?);
     }

@@ -5,6 +5,7 @@ mod contraction;
 mod damped_step;
 mod last_evaluation;
 mod moved_tangent;
+mod null_direction;
 
 use crate::continuation::Metric;
 use crate::continuation::corrector::contraction::{Contraction, Sizes};

@@ -86,6 +86,27 @@ impl Excitation {
         }
     }
 
+    /// Moves forces to `periods` times their harmonic, of a frequency that is smaller by that factor.
+    pub(super) fn stretch(&mut self, periods: usize) -> Result<()> {
+        for force in &self.forces {
+            if force.harmonic.saturating_mul(periods) > MAX_HARMONIC {
+                return fail!(
+                    Argument,
+                    "periods = {periods}, but a force acts in harmonic {}, and {MAX_HARMONIC} is the highest",
+                    force.harmonic
+                );
+            }
+        }
+        let square = (periods * periods) as f64;
+        for force in &mut self.forces {
+            force.harmonic *= periods;
+            if force.per_omega2 {
+                force.value *= square;
+            }
+        }
+        Ok(())
+    }
+
     /// Turns unbalances into the forces of one frequency.
     pub(super) fn fix_unbalance(&mut self, omega: f64) {
         for force in &mut self.forces {

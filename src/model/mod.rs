@@ -13,6 +13,7 @@ pub(crate) mod fingerprint;
 pub mod full_wheel;
 pub mod influence;
 pub mod linear_modes;
+mod longer_period;
 mod mechanical_model;
 mod modal_damping;
 pub mod mode_selection;

@@ -150,8 +150,8 @@ pub struct ReducedWave {
     pub basis: Basis,
     /// Independent degrees of freedom of the structure.
     pub n: usize,
-    /// Whether the basis may not grow any more, though its certificate was not met.
-    pub exhausted: bool,
+    /// Columns up to which the basis was allowed to grow where its certificate was not met all the same, else 0.
+    pub refused_up_to: usize,
 }
 
 /// A wave: matrices that are equal have equal keys.

@@ -155,11 +155,6 @@ impl Structure {
         self.parts(kind).next().is_some()
     }
 
-    /// Entries that are kept of a matrix, of which a symmetric one has half.
-    pub(crate) fn stored(&self, kind: MatrixKind) -> usize {
-        self.parts(kind).map(|part| part.lengths().sum::<usize>()).sum()
-    }
-
     /// The blocks of a matrix that were given.
     pub(super) fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &KeptMatrix> {
         let b = &self.blocks[kind as usize];

@@ -23,9 +23,31 @@ pub struct ForcedOptions<'a> {
     pub responses: &'a [Response<'a>],
     /// Whether the tolerance holds for the responses in one norm, (Σ|error|²/Σ|response|²)^½, instead of for each by itself.
     pub together: bool,
+    /// Further solutions that are sought: 0 none; 1 branches that branch off where the period doubles, a symmetry breaks, or at
+    /// simple branch points; 2 detached curves, too. With 1 and 2 stability is computed along all of them.
+    pub branches: usize,
+    /// Largest number of generations of branches that branch off; 0: 3.
+    pub branch_depth: usize,
+    /// Largest number of branches beside the response; 0: 32.
+    pub most_branches: usize,
 }
 
+/// Values of [`ForcedOptions::branch_depth`] and [`ForcedOptions::most_branches`] where they are 0, and their largest ones.
+const DEPTH: usize = 3;
+const MOST_BRANCHES: usize = 32;
+const LARGEST: (usize, usize) = (8, 10_000);
+
 impl ForcedOptions<'_> {
+    /// Largest numbers of generations and of branches beside the response.
+    #[must_use]
+    pub(crate) fn size_of_tree(&self) -> (usize, usize) {
+        let value = |given: usize, default| if given == 0 { default } else { given };
+        (
+            value(self.branch_depth, DEPTH),
+            value(self.most_branches, MOST_BRANCHES),
+        )
+    }
+
     /// Checks range and requested frequencies.
     ///
     /// # Errors
@@ -37,6 +59,17 @@ impl ForcedOptions<'_> {
             }
             if value <= 0.0 {
                 return fail!(Argument, "{name} = {value}, needs an angular frequency > 0");
+            }
+        }
+        if self.branches > 2 {
+            return fail!(Argument, "branches = {}, needs 0, 1 or 2", self.branches);
+        }
+        for (name, value, most) in [
+            ("branch_depth", self.branch_depth, LARGEST.0),
+            ("most_branches", self.most_branches, LARGEST.1),
+        ] {
+            if value > most {
+                return fail!(Argument, "{name} = {value}, needs 0 (automatic) .. {most}");
             }
         }
         let (low, high) = (

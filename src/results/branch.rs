@@ -4,6 +4,7 @@
 use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
+use crate::results::descent::{Descent, Searched};
 use crate::results::mode_branch::ModeData;
 use crate::results::origin::Origin;
 use crate::results::parameter_branch::ParameterData;
@@ -55,6 +56,9 @@ pub struct Branch {
     pub(super) mode: Option<ModeData>,
     pub(super) parameter: Option<ParameterData>,
     pub(super) origin: Option<Origin>,
+    pub(super) children: Vec<Self>,
+    pub(super) descent: Option<Descent>,
+    pub(super) searched: Option<Searched>,
 }
 
 /// Place of a stored point: the number of its resolution, and the offsets of its motion and of its response.
@@ -227,6 +231,11 @@ impl Branch {
     /// Number of the resolution of a stored point; that of the first where there is no such point.
     pub(crate) fn resolution_index(&self, point: usize) -> usize {
         self.places.get(point).map_or(0, |p| p.resolution)
+    }
+
+    /// The resolution of a number.
+    pub(crate) fn numbered_resolution(&self, index: usize) -> &Resolution {
+        &self.resolutions[index]
     }
 
     /// The resolution of a stored point.

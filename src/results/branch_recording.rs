@@ -119,6 +119,9 @@ impl Branch {
             mode: None,
             parameter: None,
             origin: None,
+            children: Vec::new(),
+            descent: None,
+            searched: None,
         })
     }
 

@@ -2,7 +2,9 @@
 
 mod branch;
 mod branch_recording;
+mod children;
 pub mod contact_loops;
+mod descent;
 pub mod energy;
 mod floquet_multiplier;
 mod floquet_stability;
@@ -31,6 +33,7 @@ pub use crate::condense::Resolution;
 pub use branch::Branch;
 pub use branch_recording::Record;
 pub(crate) use branch_recording::SpecialKind;
+pub use descent::{Descent, Searched};
 pub use floquet_multiplier::{Multiplier, MultiplierClass};
 pub use floquet_stability::Floquet;
 pub use limit_cycles::LimitCycle;

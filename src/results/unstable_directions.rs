@@ -42,6 +42,12 @@ impl Branch {
         Ok(found)
     }
 
+    /// Leaves the bifurcations at these points out of the list.
+    pub(crate) fn leave_bifurcations(&mut self, points: &[usize]) {
+        self.bifurcations
+            .retain(|located| !points.contains(&located.bifurcation.point));
+    }
+
     /// A bifurcation of a kind at most one point of the curve away.
     fn beside(&self, from: &Located, kind: BifurcationKind) -> Option<Beside> {
         let near = |other: &&Located| other.bifurcation.kind == kind && other.after.abs_diff(from.after) <= 1;

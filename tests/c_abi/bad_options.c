@@ -122,7 +122,7 @@ static void struct_sizes(void)
     }
     REFUSED("66", hbvib_matrix_init((hbvib_matrix *)&larger, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
     REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 168");
-    REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
+    REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 48");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
     REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 136");

@@ -104,6 +104,72 @@ static void limit_cycles(void)
     WORKS("free", hbvib_model_free(model));
 }
 
+/* A mass against a stop that it touches at rest doubles its period. */
+static void children(void)
+{
+    hbvib_solver_options s = solver_options();
+    hbvib_forced_options o = frequencies(1, 1);
+    hbvib_model *model = NULL, *longer = NULL;
+    hbvib_branch *branch = NULL, *child = NULL, *same = NULL;
+    hbvib_contact c;
+    hbvib_descent d;
+    hbvib_searched searched;
+    hbvib_matrix m;
+    double mass = 1, stiffness = 1, damping = 0.05;
+
+    WORKS("model", hbvib_model_new(1, &model));
+    m = matrix(1, &mass);
+    WORKS("mass", hbvib_model_set_matrix(model, HBVIB_MASS, &m));
+    m = matrix(1, &stiffness);
+    WORKS("stiffness", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &m));
+    m = matrix(1, &damping);
+    WORKS("damping", hbvib_model_set_matrix(model, HBVIB_DAMPING, &m));
+    WORKS("contact", hbvib_contact_init(&c, sizeof c));
+    c.kind = HBVIB_UNILATERAL;
+    c.dof_a[2] = 0;
+    c.kn = 10;
+    WORKS("contact", hbvib_model_add_contact(model, &c, NULL));
+    WORKS("force", hbvib_model_add_force(model, 0, 1, 1, 0));
+    s.tolerance = 0;
+    s.harmonics = 9;
+    o.omega_start = 2.3;
+    o.omega_stop = 2.4;
+    EXPECT("defaults", o.branches == 0 && o.branch_depth == 0 && o.most_branches == 0);
+    o.branches = 3;
+    REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 3");
+    o.branches = 1;
+    o.branch_depth = 9;
+    REFUSED("depth", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branch_depth = 9");
+    o.branch_depth = 1;
+    o.most_branches = -1;
+    REFUSED("most", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "most_branches = -1");
+    o.most_branches = 4;
+    WORKS("solve", hbvib_forced_response(model, &s, &o, NULL, &branch));
+    EXPECT("count", hbvib_branch_children(branch) == 1);
+    WORKS("child", hbvib_branch_child(branch, 0, &child));
+    WORKS("child", hbvib_branch_child(branch, 0, &same));
+    EXPECT("same", child == same && child != branch && hbvib_branch_points(child) > 3 && hbvib_branch_children(child) == 0);
+    REFUSED("number", hbvib_branch_child(branch, 1, &same), HBVIB_E_INDEX, 2, "number = 1");
+    EXPECT("null", hbvib_branch_child(branch, 0, NULL) == HBVIB_E_NULL);
+    WORKS("descent", hbvib_descent_init(&d, sizeof d));
+    EXPECT("defaults", d.kind == -1 && d.bifurcation == -1 && d.periods == 1 && d.mode == -1);
+    WORKS("descent", hbvib_branch_descent(child, &d));
+    EXPECT("descent", d.kind == HBVIB_BIFURCATION_PERIOD_DOUBLING && d.bifurcation == 0 && d.periods == 2 && d.merges_at == 0);
+    WORKS("descent", hbvib_branch_descent(branch, &d));
+    EXPECT("descent", d.bifurcation == -1 && d.periods == 1);
+    WORKS("searched", hbvib_searched_init(&searched, sizeof searched));
+    WORKS("searched", hbvib_branch_searched(branch, &searched));
+    EXPECT("searched", searched.bifurcations == 1 && searched.lost == 0 && searched.modes == 0);
+    WORKS("longer", hbvib_model_longer_period(model, 2, &longer));
+    WORKS("stability", hbvib_floquet(longer, child, 3, NULL, NULL, NULL, 0, NULL, 0, NULL));
+    REFUSED("periods", hbvib_model_longer_period(model, 0, &longer), HBVIB_E_ARGUMENT, 2, "periods = 0");
+    REFUSED("free", hbvib_branch_free(child), HBVIB_E_ARGUMENT, 1, "child");
+    WORKS("free", hbvib_branch_free(branch));
+    EXPECT("freed", hbvib_branch_points(child) == HBVIB_E_HANDLE);
+    WORKS("free", hbvib_model_free(longer));
+    WORKS("free", hbvib_model_free(model));
+}
+
 /* A Duffing oscillator is unstable between its folds. */
 static void along_a_branch(void)
 {
@@ -167,6 +233,7 @@ int main(void)
     are_those_of_the_reference(branch);
     refuse(branch);
     limit_cycles();
+    children();
     along_a_branch();
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(the_model));

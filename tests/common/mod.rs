@@ -308,6 +308,7 @@ pub fn sweep(model: &Model, solver: &SolverOptions, from: f64, to: f64, at: &[f6
         guess: None,
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }

@@ -26,6 +26,7 @@ fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: 
         guess: Some(&guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let truth = forced_response(model, truth, &range, &mut Hooks::default()).unwrap();
     let fundamental = |b: &hbvib::results::Branch| {

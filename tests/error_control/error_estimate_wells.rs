@@ -53,6 +53,7 @@ fn solve(model: &Model, options: &SolverOptions, side: f64, until: f64) -> Branc
         guess: Some(&guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     forced_response(model, options, &range, &mut Hooks::default()).unwrap()
 }

@@ -37,6 +37,7 @@ fn truth_of(model: &Model, branch: &Branch, point: usize, highest: usize) -> Bra
         guess: Some(&guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let solver = SolverOptions {
         response_dof: Some(branch.response_dof()),
@@ -404,6 +405,7 @@ fn a_guess_starts_a_response_with_a_tolerance() {
         guess: Some(&guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let solver = SolverOptions {
         harmonics: first.harmonics(),

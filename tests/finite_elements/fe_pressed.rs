@@ -247,6 +247,7 @@ fn balanced(model: &Model, solver: &SolverOptions, branch: &Branch, (omega, poin
         guess: Some(&guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let answer = forced_response(&forced, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);

@@ -263,6 +263,7 @@ fn compare(case: &Case) {
         guess: None,
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let named = format!(
         "{} {:?} {:?}, {} contacts, H = {}, {start} .. {end}",
@@ -360,6 +361,7 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                 guess: None,
                 responses: &[],
                 together: false,
+                ..ForcedOptions::default()
             };
             let options = case.options();
             let named = format!("{n} {shape:?} {damping:?}");
@@ -379,6 +381,7 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                     guess: Some(&motion),
                     responses: &[],
                     together: false,
+                    ..ForcedOptions::default()
                 };
                 let one = forced_response(&model, &options, &single, &mut Hooks::default())
                     .unwrap_or_else(|e| panic!("{named}: {omega} alone: {e}"));

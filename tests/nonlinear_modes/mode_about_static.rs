@@ -55,6 +55,7 @@ pub fn answer(
         guess: Some(guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);

@@ -73,6 +73,7 @@ fn compare(
             guess: Some(&guess),
             responses: &[],
             together: false,
+            ..ForcedOptions::default()
         };
         let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
         assert_eq!(answer.status(), Status::Ok, "point {point}");

@@ -190,6 +190,70 @@ fn the_peak_of_a_response_is_followed_over_a_parameter() {
 }
 
 #[test]
+fn a_fold_followed_over_a_parameter_has_the_response_there() {
+    let model = |force: f64| duffing(0.06, 0.3, 0.6 * force);
+    for (measure, component) in [
+        (Measure::Harmonic(3), Component::Displacement),
+        (Measure::Peak, Component::Velocity),
+        (Measure::Rms, Component::Acceleration),
+    ] {
+        let response = Response {
+            dofs: &[0],
+            weights: &[],
+            ..of(measure, component)
+        };
+        let folds_at = |value: f64| {
+            let branch = sweep(&model(value), (0.8, 3.0), &[response], &exactly(5));
+            assert!(branch.folds().len() >= 2, "{:?}", branch.folds());
+            branch
+                .folds()
+                .iter()
+                .map(|fold| (fold.omega, fold.amplitude))
+                .collect::<Vec<_>>()
+        };
+        for near in folds_at(1.0).into_iter().take(2) {
+            let range = ParameterRange {
+                start: 1.0,
+                stop: 1.4,
+                at: &[1.25],
+                follow: Follow::Fold(near.0),
+                response: Some(response),
+            };
+            let found = parameter_response(
+                &model(1.0),
+                &exactly(5),
+                Parameter::Force,
+                &range,
+                &mut Hooks::default(),
+            );
+            let found = found.unwrap();
+            assert_eq!(found.status(), Status::Ok, "{measure:?}");
+            let first = (found.omega()[0] / near.0 - 1.0)
+                .abs()
+                .max((found.amplitude()[0] / near.1 - 1.0).abs());
+            assert!(
+                first < 1e-6,
+                "{measure:?}: {near:?} {} {}",
+                found.omega()[0],
+                found.amplitude()[0]
+            );
+            let [one] = found.at(0) else {
+                panic!("{measure:?}: {:?}", found.at(0))
+            };
+            let off = |fold: &(f64, f64)| (fold.0 / one.omega - 1.0).abs();
+            let folds = folds_at(1.25);
+            let nearest = folds.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+            assert!(off(nearest) < 1e-8, "{measure:?}: {} {nearest:?}", one.omega);
+            assert!(
+                (one.amplitude / nearest.1 - 1.0).abs() < 1e-6,
+                "{measure:?}: {} {nearest:?}",
+                one.amplitude
+            );
+        }
+    }
+}
+
+#[test]
 fn a_response_over_a_parameter_meets_the_tolerance() {
     let response = of(Measure::Peak, Component::Acceleration);
     let range = ParameterRange {

@@ -238,6 +238,7 @@ fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
             guess: None,
             responses: &[],
             together: false,
+            ..ForcedOptions::default()
         };
         let cancelled = || stop_after == 0;
         let mut progress = |p: &Progress| p.point >= stop_after;

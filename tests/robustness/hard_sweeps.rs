@@ -268,6 +268,7 @@ fn a_sweep_starts_again_from_any_of_its_points() {
             guess: Some(&x),
             responses: &[],
             together: false,
+            ..ForcedOptions::default()
         };
         let again = forced_response(&model, &harmonics(9), &range, &mut Hooks::default()).unwrap();
         assert_eq!((again.status(), again.points()), (Status::Ok, 1), "point {point}");

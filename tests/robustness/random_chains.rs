@@ -98,6 +98,7 @@ fn truth(case: &Case, branch: &Branch, point: usize) -> Option<Complex64> {
         guess: Some(&guess),
         responses: &[],
         together: false,
+        ..ForcedOptions::default()
     };
     let solver = SolverOptions {
         response_dof: Some(case.response),

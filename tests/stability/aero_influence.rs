@@ -451,6 +451,7 @@ fn bad_influence_is_refused() {
         guess: None,
         responses: &[],
         together: false,
+        ..hbvib::ForcedOptions::default()
     };
     let solved = hbvib::forced_response(&sector(1), &krylov, &range, &mut Hooks::default());
     refused(solved, Status::Unsupported, &["aerodynamic"]);

@@ -6,6 +6,8 @@ mod common;
 mod aero_influence;
 mod along_branch;
 mod bifurcations;
+mod branch_switching;
+mod detached_curves;
 mod floquet_classes;
 mod floquet_references;
 mod floquet_wheel;

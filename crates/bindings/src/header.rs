@@ -57,7 +57,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Solve",
         about: "options, progress and cancellation, forced responses",
-        files: &["solve_options", "solve_hooks", "solve_responses", "solve"],
+        files: &["solve_options", "solve_hooks", "solve_responses", "solve", "solutions"],
     },
     Section {
         title: "Results",

@@ -19,7 +19,7 @@ const PEAK: &str = ">>> peak = branch.peaks().point[0]\n";
 const MODE: &str = ">>> mode = model.nonlinear_mode((-2, 1))\n";
 
 /// Classes, the parts that come before, and the lines of the example itself.
-const EXAMPLES: [(&str, &[&str], &str); 14] = [
+const EXAMPLES: [(&str, &[&str], &str); 16] = [
     (
         "SolverOptions",
         &[MODEL, CONTACT],
@@ -101,6 +101,20 @@ True
         &[MODEL, CONTACT, BRANCH],
         ">>> branch.reduction.contacts
 1
+",
+    ),
+    (
+        "Descent",
+        &[MODEL, CONTACT, BRANCH],
+        ">>> branch.descent.bifurcation, branch.descent.periods  # asked for
+(-1, 1)
+",
+    ),
+    (
+        "Searched",
+        &[MODEL, CONTACT],
+        ">>> model.forced_response((0.8, 1.6), harmonics=3, branches=1).searched.bifurcations
+0
 ",
     ),
     (

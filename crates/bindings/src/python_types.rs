@@ -20,12 +20,14 @@ const OPTIONS: [(&str, &[&str]); 6] = [
 ];
 
 /// Structs of results, and the names of their classes where those are not their own.
-const RESULTS: [(&str, &str); 8] = [
+const RESULTS: [(&str, &str); 10] = [
     ("hbvib_energy", "Energy"),
     ("hbvib_contact_summary", "ContactSummary"),
     ("hbvib_mode_point", "ModePoint"),
     ("hbvib_mode_info", "ModeInfo"),
     ("hbvib_reduction", "Reduction"),
+    ("hbvib_descent", "Descent"),
+    ("hbvib_searched", "Searched"),
     ("hbvib_jacobian_gap", "JacobianGap"),
     ("hbvib_time_info", "TimeInfo"),
     ("hbvib_verification", "VerificationInfo"),

@@ -216,6 +216,7 @@ mod tests {
             guess: None,
             responses: &[],
             together: false,
+            ..ForcedOptions::default()
         };
         (
             forced_response(&model, &options, &range, &mut Hooks::default()).unwrap(),

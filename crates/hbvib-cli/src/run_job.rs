@@ -154,6 +154,7 @@ fn forced(
         guess: begin.guess,
         responses: &responses,
         together: part.together,
+        ..ForcedOptions::default()
     };
     let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
     let solver = SolverOptions {

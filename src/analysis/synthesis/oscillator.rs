@@ -88,6 +88,14 @@ impl State {
         2.0 * d * (1.0 - d * d).max(0.0).sqrt() * self.omega * self.omega * self.square - self.work.norm()
     }
 
+    /// Factor of the force that has the motion of the mode at this amplitude, in phase with its velocity, as a logarithm; `None`
+    /// where there is none.
+    pub fn log_force_factor(&self) -> Option<f64> {
+        let needed = 2.0 * self.damping * self.omega * self.omega * self.square;
+        let factor = needed / self.work.norm();
+        (factor > 0.0 && factor.is_finite()).then(|| factor.ln())
+    }
+
     /// Half the distance of the two Ω²; `None` if the force cannot maintain the amplitude.
     pub fn spread(&self) -> Option<f64> {
         let (d, w2) = (self.damping, self.omega * self.omega);

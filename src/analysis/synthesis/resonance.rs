@@ -13,9 +13,9 @@ use crate::linalg::inner;
 use crate::linalg::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
 use crate::problem::{Problem, Residual};
-use crate::results::Branch;
 use crate::results::energy::balance;
 use crate::results::mode_branch::{ModeData, ModePoint};
+use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the synthesised response";
@@ -93,11 +93,7 @@ impl<'a> Refinement<'a> {
     /// The state of zero excess between points k and k + 1, whose excesses are given, by the Illinois variant of
     /// regula falsi in log₁₀ a.
     pub fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
-        let carried = |point: usize| self.branch.condensed_at(point).set().numbers().len();
-        let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
-        if self.branch.resolution_index(richer) != self.solver.resolution {
-            self.solver = Solver::new(self.branch, self.data, richer, self.interrupt)?;
-        }
+        self.select_richer(k)?;
         let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
             return Ok(None);
         };
@@ -128,6 +124,41 @@ impl<'a> Refinement<'a> {
             }
         }
         Ok(found)
+    }
+
+    /// The state at the amplitude between two neighbouring points whose log₁₀ is p; `None` where the mode is not found there.
+    pub fn state_at(&mut self, k: usize, p: f64) -> Result<Option<State>> {
+        self.select_richer(k)?;
+        match (self.point(k)?, self.point(k + 1)?) {
+            (Some(a), Some(b)) => self.solve(&a, &b, p),
+            _ => Ok(None),
+        }
+    }
+
+    /// The motion of all degrees of freedom in the state solved last, turned in phase.
+    pub fn harmonics(&self, state: &State, turn: Complex64) -> Result<Vec<Complex64>> {
+        let resolution = self.branch.numbered_resolution(self.solver.resolution);
+        let solution = (&self.motion[..], state.omega, state.damping);
+        let highest = self.solver.condensed.set().numbers().last().copied().unwrap_or(0);
+        let mut x = Recovery::of(resolution, solution, self.interrupt)?.all(highest)?;
+        let ndof = self.branch.ndof().max(1);
+        let phase = turn.arg();
+        for (h, row) in x.chunks_exact_mut(ndof).enumerate() {
+            for x in row {
+                *x *= Complex64::cis(h as f64 * phase);
+            }
+        }
+        Ok(x)
+    }
+
+    /// Solves with the harmonics of the richer one of points k and k + 1.
+    fn select_richer(&mut self, k: usize) -> Result<()> {
+        let carried = |point: usize| self.branch.condensed_at(point).set().numbers().len();
+        let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
+        if self.branch.resolution_index(richer) != self.solver.resolution {
+            self.solver = Solver::new(self.branch, self.data, richer, self.interrupt)?;
+        }
+        Ok(())
     }
 
     /// The state solved last, at the frequency `omega` of the force.

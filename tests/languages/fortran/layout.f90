@@ -18,6 +18,8 @@ program layout
    call hooks()
    call response()
    call forced_options()
+   call descent()
+   call searched()
    call view()
    call reduction()
    call energy()
@@ -248,7 +250,39 @@ contains
       call field('guess_len', c_loc(s), c_loc(s%guess_len), c_sizeof(s%guess_len))
       call field('responses', c_loc(s), c_loc(s%responses), c_sizeof(s%responses))
       call field('responses_len', c_loc(s), c_loc(s%responses_len), c_sizeof(s%responses_len))
+      call field('branches', c_loc(s), c_loc(s%branches), c_sizeof(s%branches))
+      call field('branch_depth', c_loc(s), c_loc(s%branch_depth), c_sizeof(s%branch_depth))
+      call field('most_branches', c_loc(s), c_loc(s%most_branches), c_sizeof(s%most_branches))
    end subroutine forced_options
+
+   subroutine descent()
+      type(hbvib_descent), target :: s
+      call whole('hbvib_descent', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('kind', c_loc(s), c_loc(s%kind), c_sizeof(s%kind))
+      call field('bifurcation', c_loc(s), c_loc(s%bifurcation), c_sizeof(s%bifurcation))
+      call field('periods', c_loc(s), c_loc(s%periods), c_sizeof(s%periods))
+      call field('merges_at', c_loc(s), c_loc(s%merges_at), c_sizeof(s%merges_at))
+      call field('mode', c_loc(s), c_loc(s%mode), c_sizeof(s%mode))
+      call field('born_at_force', c_loc(s), c_loc(s%born_at_force), c_sizeof(s%born_at_force))
+      call field('merges_at_force', c_loc(s), c_loc(s%merges_at_force), c_sizeof(s%merges_at_force))
+   end subroutine descent
+
+   subroutine searched()
+      type(hbvib_searched), target :: s
+      call whole('hbvib_searched', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('bifurcations', c_loc(s), c_loc(s%bifurcations), c_sizeof(s%bifurcations))
+      call field('lost', c_loc(s), c_loc(s%lost), c_sizeof(s%lost))
+      call field('left', c_loc(s), c_loc(s%left), c_sizeof(s%left))
+      call field('modes', c_loc(s), c_loc(s%modes), c_sizeof(s%modes))
+      call field('incomplete_modes', c_loc(s), c_loc(s%incomplete_modes), c_sizeof(s%incomplete_modes))
+      call field('resonances', c_loc(s), c_loc(s%resonances), c_sizeof(s%resonances))
+      call field('lost_resonances', c_loc(s), c_loc(s%lost_resonances), c_sizeof(s%lost_resonances))
+      call field('amplitude_min', c_loc(s), c_loc(s%amplitude_min), c_sizeof(s%amplitude_min))
+      call field('amplitude_max', c_loc(s), c_loc(s%amplitude_max), c_sizeof(s%amplitude_max))
+   end subroutine searched
 
    subroutine view()
       type(hbvib_view), target :: s

@@ -262,6 +262,9 @@ TABLE = {
         "guess_len": [(refused("guess_len"), guessed, -1), (refused("guess_len"), guessed, 3), (CHANGES, guessed, 4)],
         "responses": [(CHANGES, watched, gauges(4, 3)), (refused("responses"), watched, NONE)],
         "responses_len": [(CHANGES, watched, 1), (refused("responses_len"), watched, -1)],
+        "branches": [(refused("branches"), forced, 3), (refused("branches"), forced, -1)],
+        "branch_depth": [(refused("branch_depth"), forced, 9), (refused("branch_depth"), forced, -1)],
+        "most_branches": [(refused("most_branches"), forced, 10001), (refused("most_branches"), forced, -1)],
     },
     "hbvib_response": {
         "struct_size": [(refused("struct_size"), read, 8)],
@@ -451,6 +454,7 @@ ELSEWHERE = {"hbvib_solver_options", "hbvib_contact", "hbvib_matrix", "hbvib_use
 FILLED = {
     "hbvib_force_call", "hbvib_jacobian_gap", "hbvib_progress", "hbvib_phase_report", "hbvib_view", "hbvib_reduction", "hbvib_energy",
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
+    "hbvib_descent", "hbvib_searched",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED
 check("every struct is in a table or filled by the library", listed == set(hbvib.structs), listed ^ set(hbvib.structs))

@@ -220,7 +220,7 @@ for name, (structs, others) in OF_STRUCTS.items():
 
 # Calls that need no claim: without arguments that could be dropped, drawings, files, and those of test_every_constant.py.
 PLAIN = {
-    "add_contact", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "contact", "cyclic", "free", "from_bytes", "load",
+    "add_contact", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic", "free", "from_bytes", "load",
     "matrix", "save", "to_bytes",
     "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "higher_peaks", "limit_cycles",
     "mode_point", "point",

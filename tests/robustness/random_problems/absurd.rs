@@ -158,6 +158,7 @@ fn absurd_options_end_within_their_bounds() {
             guess: None,
             responses: &[],
             together: false,
+            ..ForcedOptions::default()
         };
         let found = model(&spring, &driven).and_then(|m| forced_response(&m, &solver, &range, &mut Hooks::default()));
         let asked = spring.0.load(Ordering::Relaxed);

@@ -165,7 +165,7 @@ fn misled(at: usize, found_then: usize, (from, to): (f64, f64)) -> (Branch, bool
     let branch = follow(
         &model(),
         &solver,
-        (&range, Detail::Curve),
+        (&range, Detail::Curve, None),
         &mut hooks,
         &interrupt,
         |tracer, response, first, hooks| {

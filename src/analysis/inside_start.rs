@@ -1,0 +1,251 @@
+//! The first point of a curve that is entered inside its range: at a known motion, or beside a bifurcation.
+//!
+//! At a bifurcation the motions u* + ε φ along the null vector φ of the Jacobian are solutions to first order. The point beside
+//! it has a given ε, and the frequency is unknown: [J r; φᵀ 0] is regular where the branch itself is singular. From there the
+//! arc length leads on, away from the bifurcation (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
+//! §8, doi:10.1137/1.9780898719154).
+
+use crate::adaptivity::discretised::Discretised;
+use crate::adaptivity::inner_ends::Dropped;
+use crate::adaptivity::transfer::transferred;
+use crate::analysis::forced_discretised::ForcedDiscretised;
+use crate::continuation::{Metric, Point, Settings};
+use crate::error::{Result, fail, try_copy, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
+use crate::linalg::norm;
+use crate::options::Content;
+use crate::results::Branch;
+use core::cell::Cell;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the start of a branch";
+
+/// Distances from the bifurcation, as shares of the motion, in the order in which they are tried.
+const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
+
+/// Distance of two solutions that are one, over their size.
+const ONE: f64 = 1e-6;
+
+/// Share of the motion in harmonics that it does not have.
+const ABSENT: f64 = 1e-8;
+
+/// Entry of a curve inside its range, near the guess of its options.
+pub(super) struct Inside<'k> {
+    /// Frequency of the guess.
+    pub omega: f64,
+    /// The harmonics that are carried beside those of forces and laws.
+    pub content: Content,
+    /// Sense along the null vector in which the curve leaves a bifurcation; `None`: the guess lies on the curve.
+    pub leaves: Option<f64>,
+    /// Branches of the same period on which the curve may lie already.
+    pub known: &'k [&'k Branch],
+    /// Outcome of the entry.
+    pub entry: Cell<Entry>,
+}
+
+/// The first point, oriented along the curve, and the harmonics that the branch does not have which it leaves.
+pub(super) struct Entered {
+    pub point: Point,
+    pub dropped: Option<Dropped>,
+}
+
+/// Outcome of an entry.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum Entry {
+    /// No point was found.
+    #[default]
+    Nothing,
+    /// The point lies on a curve that is known.
+    Known,
+    /// The curve is followed; the harmonics that the branch does not have which it leaves.
+    Followed(Option<Dropped>),
+}
+
+impl Inside<'_> {
+    /// The first point of a curve that is not known.
+    ///
+    /// # Errors
+    /// `NoConvergence` where none is found, or it is known; those of the problem.
+    pub fn enter(
+        &self,
+        response: &mut ForcedDiscretised<'_>,
+        guess: &[f64],
+        settings: &Settings,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Entered> {
+        let Some(entered) = self.first_point(response, guess, settings, interrupt)? else {
+            return fail!(
+                NoConvergence,
+                "no point was found on the curve that branches off, or near the given motion, at {}",
+                self.omega
+            );
+        };
+        for known in self.known {
+            if lies_on(response, known, &entered, interrupt)? {
+                self.entry.set(Entry::Known);
+                return fail!(NoConvergence, "the curve at {} is known", self.omega);
+            }
+        }
+        self.entry.set(Entry::Followed(entered.dropped));
+        Ok(entered)
+    }
+
+    fn first_point(
+        &self,
+        response: &mut ForcedDiscretised<'_>,
+        guess: &[f64],
+        settings: &Settings,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Entered>> {
+        let n = guess.len();
+        let mut start = Point {
+            v: try_vec(n + 1, self.omega, CONTEXT)?,
+            tangent: try_vec(n + 1, 0.0, CONTEXT)?,
+            amplitude: Complex64::ZERO,
+            slope: Complex64::ZERO,
+            residual: f64::INFINITY,
+            iterations: 0,
+            step: 0.0,
+            stalled: false,
+            positive: true,
+        };
+        start.v[..n].copy_from_slice(guess);
+        start.tangent[n] = 1.0;
+        let Some(sense) = self.leaves else {
+            let point = response.resolve(&start, true, interrupt)?;
+            return Ok(point.map(|point| Entered { point, dropped: None }));
+        };
+        let level = response.resolution();
+        let dropped = dropped(response.levels().at(level)?.condensed.set(), guess);
+        let set = response.levels().at(level)?.condensed.set();
+        let first = start_vector(set, n, dropped)?;
+        let Some(null) = response.null_direction(&start, &first, interrupt)? else {
+            return Ok(None);
+        };
+        start.tangent = null;
+        for t in &mut start.tangent {
+            *t *= sense;
+        }
+        let size = norm(guess);
+        let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
+        for distance in DISTANCES {
+            let mut near = start.try_clone()?;
+            for (v, t) in near.v[..n].iter_mut().zip(&start.tangent) {
+                *v += distance * size * t;
+            }
+            let Some(mut point) = response.resolve(&near, false, interrupt)? else {
+                continue;
+            };
+            if point.parameter() < low || point.parameter() > high {
+                continue;
+            }
+            let metric = Metric::along(norm(point.unknowns()), settings);
+            if metric.dot(&point.tangent, &start.tangent) < 0.0 {
+                point.reverse();
+            }
+            return Ok(Some(Entered { point, dropped }));
+        }
+        Ok(None)
+    }
+}
+
+/// Whether a point lies on a branch, or its mirror image does: the solutions at its frequency between neighbours of the branch
+/// decide.
+fn lies_on(
+    response: &mut ForcedDiscretised<'_>,
+    known: &Branch,
+    entered: &Entered,
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let point = &entered.point;
+    let n = point.unknowns().len();
+    let level = response.resolution();
+    for (i, pair) in known.omega().windows(2).enumerate() {
+        let (a, b) = (pair[0], pair[1]);
+        let omega = point.parameter();
+        if omega < a.min(b) || omega > a.max(b) {
+            continue;
+        }
+        interrupt.check()?;
+        let to = Arc::clone(&response.levels().at(level)?.condensed);
+        let moved = |i: usize| {
+            let from = known.condensed_at(i);
+            let motion = known.motion_at(i).unwrap_or(&[]);
+            transferred(from, &to, motion, 0, from.length() / to.length())
+        };
+        let (first, second) = (moved(i)?, moved(i + 1)?);
+        let share = if (b - a).abs() > 0.0 {
+            (omega - a) / (b - a)
+        } else {
+            0.5
+        };
+        let mut near = point.try_clone()?;
+        for ((v, a), b) in near.v[..n].iter_mut().zip(&first).zip(&second) {
+            *v = a + share * (b - a);
+        }
+        let Some(found) = response.resolve(&near, true, interrupt)? else {
+            continue;
+        };
+        if is_one(&found, point, to.set(), entered.dropped) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Whether two solutions at one frequency are one, or mirror images of each other.
+fn is_one(a: &Point, b: &Point, set: &HarmonicSet, dropped: Option<Dropped>) -> bool {
+    let (a, b) = (a.unknowns(), b.unknowns());
+    let size = norm(b);
+    let gap = a.iter().zip(b).fold(0.0_f64, |sum, (a, b)| sum.hypot(a - b));
+    // |a − b'|² with the mirror image b' = b − 2 b_dropped.
+    let mirrored = dropped.map_or(f64::INFINITY, |dropped| gap * gap + 4.0 * dropped.dot(set, a, b));
+    gap <= ONE * size || mirrored <= (ONE * size).powi(2)
+}
+
+/// The settings in the sense of a point.
+pub(super) fn in_sense_of(point: &Point, settings: Settings) -> Settings {
+    let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
+    let rises = point.tangent[point.tangent.len() - 1] >= 0.0;
+    let (start, end) = if rises { (low, high) } else { (high, low) };
+    Settings { start, end, ..settings }
+}
+
+/// The harmonics that a motion of this set does not have: the odd or the even multiples of its lowest one.
+fn dropped(set: &HarmonicSet, motion: &[f64]) -> Option<Dropped> {
+    let all = norm(motion);
+    [1, 0].into_iter().find_map(|remainder| {
+        let dropped = Dropped {
+            base: set.base(),
+            remainder,
+        };
+        let has_some = set.numbers().iter().any(|h| dropped.has(*h));
+        let part = dropped.dot(set, motion, motion).sqrt();
+        (has_some && part <= ABSENT * all).then_some(dropped)
+    })
+}
+
+/// A start of the search for the null vector, in the harmonics that the motion does not have, if there are such.
+fn start_vector(set: &HarmonicSet, n: usize, dropped: Option<Dropped>) -> Result<Vec<f64>> {
+    let mut start = try_vec(n, 0.0, CONTEXT)?;
+    // Multiples of the golden section modulo 1: without a pattern that a model may have.
+    for (i, x) in start.iter_mut().enumerate() {
+        *x = ((i + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5;
+    }
+    let Some(dropped) = dropped else {
+        return Ok(start);
+    };
+    let all = try_copy(&start, CONTEXT)?;
+    start.fill(0.0);
+    let m = set.packed_len().max(1);
+    for (to, from) in start.chunks_exact_mut(m).zip(all.chunks_exact(m)) {
+        for (i, h) in set.numbers().iter().enumerate() {
+            if dropped.has(*h) {
+                set.set(to, i, set.get(from, i));
+            }
+        }
+    }
+    Ok(start)
+}

@@ -1,0 +1,47 @@
+//! Branches that branch off from a branch, and curves without connection to it.
+
+use crate::error::{Result, try_push};
+use crate::results::{Branch, Descent, Searched};
+
+impl Branch {
+    /// The solutions that were sought beside this response; `None` where none were asked for.
+    #[must_use]
+    pub fn searched(&self) -> Option<Searched> {
+        self.searched
+    }
+
+    pub(crate) fn set_searched(&mut self, searched: Searched) {
+        self.searched = Some(searched);
+    }
+
+    /// The branches that branch off from this one, and the detached curves beside it, as far as the option `branches` of
+    /// [`crate::options::ForcedOptions`] sought them.
+    #[must_use]
+    pub fn children(&self) -> &[Self] {
+        &self.children
+    }
+
+    /// The children, taken out of the branch.
+    pub(crate) fn take_children(&mut self) -> Vec<Self> {
+        core::mem::take(&mut self.children)
+    }
+
+    /// Where the branch comes from; `None` for one that was asked for.
+    #[must_use]
+    pub fn descent(&self) -> Option<Descent> {
+        self.descent
+    }
+
+    /// Periods of the parent in one of this branch.
+    pub(crate) fn periods(&self) -> usize {
+        self.descent.map_or(1, |descent| descent.periods)
+    }
+
+    pub(crate) fn set_descent(&mut self, descent: Descent) {
+        self.descent = Some(descent);
+    }
+
+    pub(crate) fn push_child(&mut self, child: Self) -> Result<()> {
+        try_push(&mut self.children, child, "the branches that branch off")
+    }
+}

@@ -1,0 +1,149 @@
+//! Branches of the double period and of broken symmetry, found without a guess: against motions that shooting found in time.
+
+use crate::common::{data, harmonics, one_mass};
+use hbvib::contact::{Contact, ContactKind};
+use hbvib::hooks::Hooks;
+use hbvib::model::Model;
+use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};
+use hbvib::results::Branch;
+use hbvib::{BifurcationKind, Polynomial, forced_response, verify};
+use num_complex::Complex64;
+
+/// A response with the branches that branch off from it.
+fn tree(model: &Model, solver: &SolverOptions, (from, to): (f64, f64), at: &[f64]) -> Branch {
+    let range = ForcedOptions {
+        omega_start: from,
+        omega_stop: to,
+        at,
+        branches: 1,
+        ..ForcedOptions::default()
+    };
+    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
+}
+
+/// Harmonics of the only degree of freedom at the only solution at a requested frequency.
+fn at(branch: &Branch, i: usize) -> (usize, Vec<Complex64>) {
+    let found = branch.at(i);
+    assert_eq!(found.len(), 1);
+    let mut x = vec![Complex64::ZERO; branch.harmonics() + 1];
+    branch.harmonics_at(found[0].point, &mut x).unwrap();
+    (found[0].point, x)
+}
+
+/// Whether the motion of a point solves the equations of motion in time.
+fn holds_in_time(model: &Model, branch: &Branch, point: usize) -> bool {
+    let found = verify(model, branch, point, &VerifyOptions::default(), &mut Hooks::default()).unwrap();
+    println!("{:?} {:?}", found.response_error, found.same);
+    found.same && found.response_error < 1e-6
+}
+
+/// Beyond the doubling the only stable motion has the double period.
+#[test]
+fn a_mass_against_a_stop_moves_with_the_double_period() {
+    let model = one_mass(0.05, &Contact::unilateral(Some(0), None, 10.0, 0.0), 1.0);
+    let reference = data("period_doubled_stop.json");
+    let found = tree(&model, &harmonics(50), (2.3, 2.5), &[2.38, 2.43]);
+    assert_eq!(found.children().len(), 1);
+    let child = &found.children()[0];
+    let descent = child.descent().unwrap();
+    assert_eq!((descent.periods, descent.bifurcation), (2, Some(0)));
+    assert!(child.unstable_directions().iter().all(|n| *n == 0.0));
+    for (i, omega) in ["2.38", "2.43"].into_iter().enumerate() {
+        let (point, x) = at(child, i);
+        for h in [1, 2] {
+            let right = &reference[omega]["2"]["X"][h];
+            let right = right[0].as_f64().unwrap().hypot(right[1].as_f64().unwrap());
+            println!("{omega} {h} {} {right}", x[h].norm());
+            assert!((x[h].norm() - right).abs() < 1e-6);
+        }
+        let longer = model.with_longer_period(2).unwrap();
+        assert!(holds_in_time(&longer, child, point));
+    }
+}
+
+/// x″ + 0.1 x′ + x − x² = 0.11 cos ωt doubles its period three times and on (Thompson 1989, doi:10.1098/rspa.1989.0009).
+#[test]
+fn a_cascade_of_doublings_is_followed_down_to_its_depth() {
+    let spring = Polynomial::scalar(&[0.0, -1.0], &[]).unwrap();
+    let model = one_mass(0.1, &Contact::between(0, None, ContactKind::Polynomial(spring)), 0.11);
+    let found = tree(&model, &harmonics(10), (0.95, 0.84), &[]);
+    let mut doublings = Vec::new();
+    let (mut branch, mut periods) = (&found, 1);
+    loop {
+        let bifurcations = branch.bifurcations().unwrap();
+        let first = bifurcations[0];
+        assert_eq!(first.kind, BifurcationKind::PeriodDoubling);
+        doublings.push(first.omega * f64::from(periods));
+        let Some(child) = branch.children().first() else { break };
+        assert_eq!(child.descent().unwrap().bifurcation, Some(0));
+        // The motion does not have the period of its parent, nor a shorter one.
+        let mut x = vec![Complex64::ZERO; child.harmonics() + 1];
+        child.harmonics_at(child.points() / 2, &mut x).unwrap();
+        let odd = x.iter().skip(1).step_by(2).fold(0.0_f64, |most, x| most.max(x.norm()));
+        assert!(odd > 1e-3);
+        (branch, periods) = (child, 2 * periods);
+    }
+    println!("{doublings:?} {:?}", found.searched());
+    assert_eq!(doublings.len(), 4);
+    assert_eq!(
+        found.searched().map(|searched| (searched.bifurcations, searched.left)),
+        Some((3, 1))
+    );
+    let steps: Vec<f64> = doublings.windows(2).map(|pair| pair[0] - pair[1]).collect();
+    // Feigenbaum's ratio is 4.669; the first steps of a cascade are near it.
+    for pair in steps.windows(2) {
+        assert!((3.5..8.0).contains(&(pair[0] / pair[1])), "{steps:?}");
+    }
+    // Before its own doubling the motion of four periods is stable in time.
+    let four = &found.children()[0].children()[0];
+    assert_eq!(four.unstable_directions()[0], 0.0);
+    let longer = model.with_longer_period(4).unwrap();
+    assert!(holds_in_time(&longer, four, 2));
+}
+
+/// Between two branch points the stable motions of a hard spring have even harmonics and a mean.
+#[test]
+fn a_broken_symmetry_is_followed_from_one_branch_point_to_the_other() {
+    let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 1.0), 10.0);
+    let found = tree(&model, &harmonics(21), (0.9, 2.0), &[1.2]);
+    let all = found.bifurcations().unwrap();
+    let points: Vec<_> = all.iter().filter(|b| b.kind == BifurcationKind::BranchPoint).collect();
+    assert_eq!((points.len(), found.children().len()), (2, 1));
+    let child = &found.children()[0];
+    assert!((child.descent().unwrap().merges_at - points[1].omega).abs() < 1e-6);
+    assert!((child.omega()[0] - points[0].omega).abs() < 1e-3);
+    // Folds alone: those at its ends are the branch points of the parent.
+    let own = child.bifurcations().unwrap();
+    assert!(own.iter().all(|b| b.kind == BifurcationKind::Fold), "{own:?}");
+    let (point, x) = at(child, 0);
+    assert!(x[0].norm() > 0.1 && x[2].norm() > 0.1);
+    assert!(holds_in_time(&model, child, point));
+}
+
+/// A second frequency is no branch of motions with one frequency.
+#[test]
+fn a_second_frequency_has_no_child() {
+    let damper = Polynomial::scalar(&[], &[-0.2, 0.0, 0.2]).unwrap();
+    let model = one_mass(0.0, &Contact::between(0, None, ContactKind::Polynomial(damper)), 0.2);
+    let found = tree(&model, &harmonics(9), (1.1, 1.3), &[]);
+    assert!(found.children().is_empty());
+    assert_eq!(found.bifurcations().unwrap()[0].kind, BifurcationKind::NeimarkSacker);
+}
+
+/// An unbalance and a speed that is tied to the frequency are the same over the longer period.
+#[test]
+fn the_model_of_a_longer_period_has_the_same_response() {
+    let mut model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 0.1), 0.2);
+    model.add_force(0, 3, 0.1.into()).unwrap();
+    let longer = model.with_longer_period(3).unwrap();
+    let plain = crate::common::solve_at(&model, &harmonics(7), 0.6);
+    let other = crate::common::solve_at(&longer, &harmonics(21), 0.2);
+    let (x, y) = (
+        crate::common::all_harmonics(&plain, 0),
+        crate::common::all_harmonics(&other, 0),
+    );
+    for h in 0..8 {
+        assert!((x[h] - y[3 * h]).norm() < 1e-9, "{h}");
+    }
+    assert!(model.with_longer_period(0).is_err());
+}
