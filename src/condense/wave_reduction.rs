@@ -35,7 +35,7 @@ const OF_ALL_MODES: f64 = 1e-11;
 const SHARE: usize = 20;
 
 /// The same over all columns: a sweep past more resonances than that is left to all modes, or to factors.
-const SHARE_OF_BASIS: usize = 4;
+const SHARE_OF_BASIS: usize = 3;
 
 /// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed.
 const OF_MODES: f64 = 20.0;
