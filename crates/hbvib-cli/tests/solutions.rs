@@ -44,7 +44,7 @@ fn the_motion_of_the_double_period_is_in_every_output() {
         .collect();
     assert!(child.len() > 3);
     for row in &child {
-        assert!(row[2] == 2.0 && row[6] == 0.0, "{row:?}");
+        assert!((row[2] - 2.0).abs() < 0.5 && row[6] < 0.5, "{row:?}");
         // From the doubling at 2.3594 on, in frequencies of the force.
         assert!(row[3] * TAU > 2.358 && row[3] * TAU < 2.45 + 1e-9, "{row:?}");
     }
