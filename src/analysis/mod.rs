@@ -43,6 +43,7 @@ pub mod response_of_motion;
 mod sampling;
 pub mod sensitivity_analysis;
 mod static_solution;
+mod subharmonic_net;
 pub mod synthesis;
 pub mod time_response;
 mod tracked_damping;
