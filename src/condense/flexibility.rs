@@ -50,6 +50,15 @@ impl Table {
     }
 }
 
+/// Which derivatives of a table are made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Slopes {
+    None,
+    /// Those of the response degree of freedom: the others are as many as contacts, for each contact.
+    OfResponse,
+    All,
+}
+
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct Workspace {
     /// Made, as the columns, when a factorisation first needs it: where all tables are from modes none does.
@@ -66,6 +75,8 @@ pub struct Workspace {
     /// Entries of Z′, made when slopes are first wanted.
     slope: Vec<Complex64>,
     load: Vec<Complex64>,
+    /// A motion and its change, made when they are first wanted.
+    motion: Vec<Complex64>,
     table: Table,
 }
 
@@ -90,6 +101,7 @@ impl Workspace {
             products: Vec::new(),
             slope: Vec::new(),
             load: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            motion: Vec::new(),
             table: Table::new(condensed.coordinates())?,
         })
     }
@@ -139,6 +151,21 @@ impl Workspace {
         slopes: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<&Table> {
+        let slopes = if slopes { Slopes::All } else { Slopes::None };
+        self.tabulate(condensed, (i, omega), slopes, interrupt)
+    }
+
+    /// The same with those slopes that are wanted.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn tabulate(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        slopes: Slopes,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<&Table> {
         made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         self.solve_columns(condensed, i, omega, interrupt)?;
         let block = &condensed.blocks()[i];
@@ -149,8 +176,11 @@ impl Workspace {
         for (column, table) in self.columns.chunks_exact(n).zip(tables) {
             read(rows.clone(), column, table);
         }
-        if !slopes {
+        if slopes != Slopes::All {
             self.table.slope.fill(Complex64::ZERO);
+            if slopes == Slopes::OfResponse {
+                self.fill_slopes_of_response(condensed, (i, omega), interrupt)?;
+            }
             return Ok(&self.table);
         }
         if self.rows.is_empty() {
@@ -190,6 +220,68 @@ impl Workspace {
             }
         }
         Ok(&self.table)
+    }
+
+    /// The last row of ∂H/∂ω = −rᵀ Z′ Z⁻¹ B with r = Z⁻ᵀ Rᵀ of the response, with the current factors and columns.
+    fn fill_slopes_of_response(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = condensed.ndof();
+        let outputs = condensed.coordinates() + 1;
+        self.load.fill(Complex64::ZERO);
+        for &(p, a) in self.responses[i].terms() {
+            self.load[p] += a;
+        }
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.load, true, interrupt)?;
+        if self.products.len() < n {
+            self.products = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        }
+        let at = (omega.into(), self.damping);
+        let moved = &mut self.products[..n];
+        moved.fill(Complex64::ZERO);
+        add_slope_product(condensed, i, at, Variable::Omega, true, &self.load, moved);
+        let product = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<Complex64>();
+        let slopes = self.table.slope.chunks_exact_mut(outputs);
+        for (column, slopes) in self.columns.chunks_exact(n).zip(slopes) {
+            slopes[outputs - 1] = -product(moved, column);
+        }
+        if let (Some(unbalance), Some(last)) = (&condensed.blocks()[i].unbalance, self.table.slope.last_mut()) {
+            *last += 2.0 * omega * product(&self.load, unbalance);
+        }
+        Ok(())
+    }
+
+    /// The change R ∂x/∂ω of the motion x under the excitation and contact forces that do not change, `contact_force` being that of
+    /// [`Self::recover`], in the i-th carried harmonic at `omega`.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn slope_along(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        contact_force: &[Complex64],
+        change: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = condensed.ndof();
+        if self.motion.is_empty() {
+            self.motion = try_vec(2 * n, Complex64::ZERO, CONTEXT)?;
+        }
+        let mut motion = core::mem::take(&mut self.motion);
+        let (x, dx) = motion.split_at_mut(n);
+        let recovered = self.recover(condensed, i, omega, contact_force, x, interrupt);
+        let found = recovered.and_then(|()| self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt));
+        read(
+            condensed.blocks()[i].rows.iter().chain([&self.responses[i]]),
+            dx,
+            change,
+        );
+        self.motion = motion;
+        found
     }
 
     /// The k-th column of H and of its slope after [`Self::evaluate`], improved until only the rounding of the matrices is left; the

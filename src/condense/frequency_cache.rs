@@ -1,12 +1,12 @@
 //! The flexibility tables of all carried harmonics at a frequency: sums over modes or poles where a sweep has them, by
 //! factorisation elsewhere.
 
-use crate::condense::flexibility::{Table, Workspace};
+use crate::condense::flexibility::{Slopes, Table, Workspace};
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::single_contact_lanes::SingleContactLanes;
 use crate::condense::{Condensed, FlexibilityWay};
-use crate::error::{Result, try_copy, try_push};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -19,6 +19,10 @@ const TOLERANCE: f64 = 1e-11;
 const OF_SLOPES: f64 = 1e-9;
 
 const CONTEXT: &str = "the contact flexibility";
+
+/// Coordinates up to which all slopes are made by factorisation. The residual needs them along one motion only, which takes a further
+/// factorisation, and they take three quarters of the work where contacts are many.
+const ALL_SLOPES_UP_TO: usize = 64;
 
 /// Deviation of a sum from a refined solution over the error of a factorisation.
 const BEYOND_FACTORS: f64 = 10.0;
@@ -42,6 +46,8 @@ pub struct FrequencyCache {
     is_stiff: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
     constant: Vec<bool>,
+    /// Per harmonic, whether its table has the slopes of the response degree of freedom only.
+    lacks_slopes: Vec<bool>,
     /// Frequency of the current tables, and how they were made.
     tabulated: Option<(f64, Way)>,
     way: Way,
@@ -108,6 +114,7 @@ impl FrequencyCache {
             is_quicker,
             told: told.unwrap_or_default(),
             is_stiff,
+            lacks_slopes: try_vec(constant.len(), false, CONTEXT)?,
             constant,
             tabulated: None,
             // Without a sweep no slope is used.
@@ -160,6 +167,32 @@ impl FrequencyCache {
         &self.current
     }
 
+    /// Whether the table of some harmonic has the slopes of the response degree of freedom only.
+    #[must_use]
+    pub fn lacks_slopes(&self) -> bool {
+        self.lacks_slopes.contains(&true)
+    }
+
+    /// The derivative by the frequency of the motions of the i-th harmonic under contact forces that do not change, where its table
+    /// lacks slopes; the forces are those of [`Workspace::recover`].
+    ///
+    /// # Errors
+    /// Those of [`Workspace::evaluate`].
+    pub fn slope_along(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        contact_force: &[Complex64],
+        change: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let Some((omega, _)) = self.tabulated.filter(|_| self.lacks_slopes[i]) else {
+            return Ok(());
+        };
+        self.workspace
+            .slope_along(condensed, (i, omega), contact_force, change, interrupt)
+    }
+
     /// Their frequency; `None` before the first ones.
     #[must_use]
     pub fn frequency(&self) -> Option<f64> {
@@ -199,13 +232,20 @@ impl FrequencyCache {
             if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
                 && modal.evaluate((omega, self.modal_slopes), work, table, interrupt)?
             {
+                self.lacks_slopes[i] = false;
                 condensed.exchange(i, table);
                 continue;
             }
             interrupt.check()?;
             // A derived clone_from would allocate at each frequency.
             let slopes = self.way != Way::Pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
-            let found = workspace.evaluate(condensed, i, omega, slopes, interrupt)?;
+            let slopes = match slopes {
+                false => Slopes::None,
+                true if condensed.coordinates() > ALL_SLOPES_UP_TO && !condensed.has_exchanges() => Slopes::OfResponse,
+                true => Slopes::All,
+            };
+            self.lacks_slopes[i] = slopes == Slopes::OfResponse;
+            let found = workspace.tabulate(condensed, (i, omega), slopes, interrupt)?;
             table.value.copy_from_slice(&found.value);
             table.slope.copy_from_slice(&found.slope);
             condensed.exchange(i, table);

@@ -28,11 +28,14 @@ const CONTEXT: &str = "the reduced structure";
 /// Degrees of freedom up to which results have all digits: a basis errs by its certificate.
 const EXACT_UP_TO: usize = 100;
 
+/// Certificate of a basis in place of all modes: the error that is allowed to a sum over these.
+const OF_ALL_MODES: f64 = 1e-11;
+
 /// Degrees of freedom over columns of the first block, below which a basis is no reduction.
 const SHARE: usize = 20;
 
 /// The same over all columns: a sweep past more resonances than that is left to all modes, or to factors.
-const SHARE_OF_BASIS: usize = 4;
+const SHARE_OF_BASIS: usize = 3;
 
 /// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed.
 const OF_MODES: f64 = 20.0;
@@ -105,7 +108,7 @@ pub(super) fn reduced_blocks(
             return declined(forced);
         };
         worst = worst.max(error);
-        if !forced && error.basis > options.certificate && n <= DIRECT_UP_TO {
+        if !forced && error.basis > limit(request) && n <= DIRECT_UP_TO {
             return Ok(None);
         }
         for &(i, conjugated) in &group.members {
@@ -125,6 +128,18 @@ pub(super) fn reduced_blocks(
         try_push(&mut blocks, block, CONTEXT)?;
     }
     Ok(Some((blocks, worst.total)))
+}
+
+/// Largest error by motions that a basis lacks. Where all modes are an alternative, it is as exact as they are.
+fn limit(request: &Request<'_>) -> f64 {
+    let asked = request.options.certificate;
+    let has_alternative =
+        request.options.flexibility == Flexibility::Automatic && request.model.structure().ndof() <= ALL_UP_TO;
+    if has_alternative {
+        asked.min(OF_ALL_MODES)
+    } else {
+        asked
+    }
 }
 
 /// Whether a basis takes less time than all modes, where these are an alternative. Estimates of errors need so many harmonics that
@@ -160,7 +175,7 @@ fn wave_of(
     kappa: &impl Fn(usize, usize) -> Complex64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
-    let limit = request.options.certificate;
+    let limit = limit(request);
     let is_forced = request.options.flexibility == Flexibility::Krylov;
     let share = request.model.structure().ndof() / SHARE_OF_BASIS;
     let most = MOST_COLUMNS.max(MOST_BLOCKS * group.inputs.len());

@@ -41,6 +41,8 @@ pub struct HarmonicBalance<'a> {
     pub(super) sum: Vec<Complex64>,
     /// G in the layout of [`ContactForces::couple_all`].
     flexibility: Vec<Complex64>,
+    /// Per harmonic the derivatives of motions by the frequency under forces that do not change, where tables lack slopes.
+    along: Vec<Complex64>,
     /// One packed signal.
     pub(super) change: Vec<f64>,
     pub(super) products: ProductMemory,
@@ -92,6 +94,7 @@ impl<'a> HarmonicBalance<'a> {
             loaded_at_rest,
             sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             flexibility: try_vec(flexibility, Complex64::ZERO, CONTEXT)?,
+            along: Vec::new(),
             change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
             products: ProductMemory {
                 change: try_vec(condensed.unknowns(), 0.0, CONTEXT)?,
@@ -197,7 +200,11 @@ impl<'a> HarmonicBalance<'a> {
     }
 
     /// The residual with the forces at `u`.
-    pub(super) fn balance(&self, u: &[f64], path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
+    pub(super) fn balance(&mut self, u: &[f64], path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
+        let lacks_slopes = path.is_none() && self.tables.lacks_slopes();
+        if lacks_slopes {
+            self.find_slopes_along(u)?;
+        }
         let interrupt = self.forces.interrupt();
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -223,7 +230,13 @@ impl<'a> HarmonicBalance<'a> {
                     None => {
                         put(&mut out.values, r, mean, -y_lin);
                         if has_slopes {
-                            put(&mut out.d_parameter, r, mean, -table.slope[coordinates * outputs + row]);
+                            let own = table.slope[coordinates * outputs + row];
+                            let along = if lacks_slopes {
+                                self.along[i * outputs + row]
+                            } else {
+                                Complex64::ZERO
+                            };
+                            put(&mut out.d_parameter, r, mean, -(own + along));
                         }
                     }
                     Some((Path::GrowingLoad, p)) if !mean => {
@@ -264,6 +277,30 @@ impl<'a> HarmonicBalance<'a> {
         }
         out.scale = Squares::of(set, u).size(linear);
         out.rounding = rounding.sqrt();
+        Ok(())
+    }
+
+    /// Fills `along` for the harmonics whose tables lack slopes, with the forces at `u`; 0 for the others.
+    fn find_slopes_along(&mut self, u: &[f64]) -> Result<()> {
+        let (coordinates, harmonics) = (self.condensed.coordinates(), self.condensed.set().numbers().len());
+        let outputs = coordinates + 1;
+        if self.along.is_empty() {
+            self.along = try_vec(outputs * harmonics, Complex64::ZERO, "the forced response")?;
+        }
+        self.along.fill(Complex64::ZERO);
+        let interrupt = self.forces.interrupt();
+        for (i, along) in self.along.chunks_exact_mut(outputs).enumerate() {
+            for (c, w) in self.sum.iter_mut().enumerate() {
+                let is_active = !self.forces.is_inactive(c);
+                *w = if is_active {
+                    self.forces.minus_reference(u, c, i)
+                } else {
+                    Complex64::ZERO
+                };
+            }
+            self.tables
+                .slope_along(self.condensed, i, &self.sum, along, interrupt)?;
+        }
         Ok(())
     }
 
