@@ -133,7 +133,7 @@ impl Inside<'_> {
         start.v[..n].copy_from_slice(guess);
         start.tangent[n] = 1.0;
         if let Some(net) = self.net {
-            return self.from_net(net, response, &start, interrupt);
+            return self.first_of_net(net, response, &start, interrupt);
         }
         let Some(sense) = self.leaves else {
             let point = response.resolve(&start, true, interrupt)?;
@@ -175,7 +175,7 @@ impl Inside<'_> {
 
 impl Inside<'_> {
     /// The first solution of a net at the frequency of the guess that is subharmonic, and not known.
-    fn from_net(
+    fn first_of_net(
         &self,
         net: &Net<'_>,
         response: &mut ForcedDiscretised<'_>,
