@@ -57,13 +57,20 @@ fn main() -> Result<()> {
                 signal(&set, closing, 2.6),
             );
             let (kt, kn, mu, load) = (1.0, 1.0, 0.5, 1.0);
-            let one = Friction2d { kt, kn, mu, load };
+            let one = Friction2d {
+                kt,
+                kn,
+                mu,
+                load,
+                slider: 0.0,
+            };
             let plane = Friction3d {
                 kt,
                 kn,
                 mu,
                 load,
                 has_normal: true,
+                slider: [0.0; 2],
             };
             let a = cost(&one, &set, &[&x1[..], &y].concat())?;
             let b = cost(&plane, &set, &[&x1[..], &x2, &y].concat())?;

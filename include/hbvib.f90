@@ -124,7 +124,8 @@ module hbvib
    ! hbvib_parameter_kind
    integer(c_int32_t), parameter, public :: HBVIB_PARAMETER_FORCE = 0, HBVIB_PARAMETER_PRELOAD = 1, HBVIB_PARAMETER_MU = 2, &
       HBVIB_PARAMETER_KT = 3, HBVIB_PARAMETER_KN = 4, HBVIB_PARAMETER_GAP = 5, HBVIB_PARAMETER_MASS = 6, &
-      HBVIB_PARAMETER_DAMPING = 7, HBVIB_PARAMETER_STIFFNESS = 8, HBVIB_PARAMETER_SPEED = 9
+      HBVIB_PARAMETER_DAMPING = 7, HBVIB_PARAMETER_STIFFNESS = 8, HBVIB_PARAMETER_SPEED = 9, HBVIB_PARAMETER_SLIDER_T1 = 10, &
+      HBVIB_PARAMETER_SLIDER_T2 = 11
    ! hbvib_scaling
    integer(c_int32_t), parameter, public :: HBVIB_SCALING_ADDITIVE = 0, HBVIB_SCALING_FACTOR = 1
    ! hbvib_quantity
@@ -136,6 +137,8 @@ module hbvib
    ! hbvib_follow
    integer(c_int32_t), parameter, public :: HBVIB_FOLLOW_OMEGA = 0, HBVIB_FOLLOW_PEAK = 1, HBVIB_FOLLOW_FOLD = 2, &
       HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
+   ! hbvib_band_of
+   integer(c_int32_t), parameter, public :: HBVIB_BAND_AMPLITUDE = 0, HBVIB_BAND_PEAK_AMPLITUDE = 1, HBVIB_BAND_PEAK_OMEGA = 2
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -423,6 +426,21 @@ module hbvib
       type(c_ptr) :: responses = c_null_ptr
       integer(c_int64_t) :: responses_len = 0
    end type hbvib_batch_options
+
+   !> Options of hbvib_band.
+   type, bind(c) :: hbvib_band_options
+      integer(c_int32_t) :: struct_size = 32, of = 0
+      type(c_ptr) :: contacts = c_null_ptr
+      integer(c_int64_t) :: contacts_len = 0, starts = 3
+   end type hbvib_band_options
+
+   !> Numbers of a band.
+   type, bind(c) :: hbvib_band_info
+      integer(c_int32_t) :: struct_size = 96, complete = 0
+      integer(c_int64_t) :: sliders = 0, states = 0, solved = 0
+      real(c_double) :: lower = 0, upper = 0, lower_omega = 0, upper_omega = 0, lower_gain = 0, upper_gain = 0
+      integer(c_int64_t) :: lower_at_limit = 0, upper_at_limit = 0
+   end type hbvib_band_info
 
    abstract interface
       !> A force of the caller.
@@ -793,6 +811,14 @@ module hbvib
          real(c_double), value :: preload
          integer(c_int32_t) :: status
       end function hbvib_model_set_preload
+
+      function hbvib_model_set_slider(model, id, direction, place) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: id, direction
+         real(c_double), value :: place
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_slider
 
       function hbvib_model_add_jenkins(model, n, dof_a, dof_b, sector_offset, kt, mu, preload, first_id) bind(c) result(status)
          import
@@ -1708,6 +1734,67 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_batch_branch
 
+      function hbvib_branch_freedom(model, branch, point, capacity, contact, direction, place, derivative, count, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point, capacity
+         integer(c_int64_t), intent(inout), optional :: contact(*), direction(*)
+         real(c_double), intent(inout), optional :: place(*), derivative(*)
+         integer(c_int64_t), intent(inout) :: count
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_freedom
+
+      function hbvib_band_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_band_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_band_options_init
+
+      function hbvib_band_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_band_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_band_info_init
+
+      function hbvib_band(model, branch, point, solver, options, hooks, info, capacity, contact, direction, lower_place, &
+         upper_place, states_capacity, states, lower, upper) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_band_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_band_info), intent(inout) :: info
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: contact(*), direction(*)
+         real(c_double), intent(inout), optional :: lower_place(*), upper_place(*)
+         integer(c_int64_t), value :: states_capacity
+         real(c_double), intent(inout), optional :: states(*)
+         type(c_ptr), intent(inout) :: lower, upper
+         integer(c_int32_t) :: status
+      end function hbvib_band
+
+      function hbvib_static_history(model, solver, steps, factors, speeds, hooks, motion, motion_len, places, places_len, &
+         forces, forces_len) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         integer(c_int64_t), value :: steps
+         real(c_double), intent(in), optional :: factors(*), speeds(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         real(c_double), intent(inout), optional :: motion(*)
+         integer(c_int64_t), value :: motion_len
+         real(c_double), intent(inout), optional :: places(*)
+         integer(c_int64_t), value :: places_len
+         real(c_double), intent(inout), optional :: forces(*)
+         integer(c_int64_t), value :: forces_len
+         integer(c_int32_t) :: status
+      end function hbvib_static_history
+
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)
          import
@@ -1815,6 +1902,8 @@ module hbvib
       procedure :: clear_forces => model_clear_forces
       procedure :: add_contact => model_add_contact
       procedure :: set_preload => model_set_preload
+      procedure :: set_slider => model_set_slider
+      procedure :: band => model_band
       procedure :: add_jenkins => model_add_jenkins
       procedure :: add_springs => model_add_springs
       procedure :: add_iwan => model_add_iwan
@@ -1895,6 +1984,7 @@ module hbvib
    private :: model_set_aero, model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
    private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings, model_interference, &
       model_signed_diameter
+   private :: model_set_slider, model_band
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -2817,6 +2907,58 @@ contains
       call to_zero(status, 'id', int(id, i64), hbvib_model_contacts(self%handle), zero)
       if (status == HBVIB_OK) status = hbvib_model_set_preload_at_speed(self%handle, zero, preload, growth)
    end function model_set_preload
+
+   !> Place of the slider of a friction contact before any motion, along t1 (direction 1) or t2 (2).
+   function model_set_slider(self, id, direction, place) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: id, direction
+      real(dp), intent(in) :: place
+      integer(i32) :: status
+      integer(i64) :: zero, along
+      status = HBVIB_OK
+      call to_zero(status, 'id', int(id, i64), hbvib_model_contacts(self%handle), zero)
+      call to_zero(status, 'direction', int(direction, i64), 2_i64, along)
+      if (status == HBVIB_OK) status = hbvib_model_set_slider(self%handle, zero, along, place)
+   end function model_set_slider
+
+   !> The least and the largest result at a point of this model over all residual forces of contacts that stick: info, and the
+   !> free sliders, contacts and directions from 1, with their places at both ends, for set_slider.
+   function model_band(self, branch, point, info, contact, direction, lower, upper, options, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      type(hbvib_band_info), intent(out) :: info
+      integer, allocatable, intent(out), optional :: contact(:), direction(:)
+      real(dp), allocatable, intent(out), optional :: lower(:), upper(:)
+      type(hbvib_band_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64), allocatable :: contacts(:), directions(:)
+      real(dp), allocatable :: least(:), largest(:)
+      real(dp) :: none(1)
+      type(c_ptr) :: ends(2)
+      integer(i64) :: p, room
+      integer(i32) :: freed
+      integer :: j, n
+      status = HBVIB_OK
+      call point_to_zero(branch, status, point, p)
+      if (status /= HBVIB_OK) return
+      room = max(2*hbvib_model_contacts(self%handle), 0_i64)
+      allocate (contacts(room), directions(room), least(room), largest(room))
+      ends = c_null_ptr
+      status = hbvib_band(self%handle, branch%handle, p, options=options, hooks=hooks, info=info, capacity=room, contact=contacts, &
+                          direction=directions, lower_place=least, upper_place=largest, states_capacity=0_i64, states=none, &
+                          lower=ends(1), upper=ends(2))
+      if (status /= HBVIB_OK) return
+      do j = 1, 2
+         freed = hbvib_branch_free(ends(j))
+      end do
+      n = int(info%sliders)
+      if (present(contact)) contact = int(contacts(:n)) + 1
+      if (present(direction)) direction = int(directions(:n)) + 1
+      if (present(lower)) lower = least(:n)
+      if (present(upper)) upper = largest(:n)
+   end function model_band
 
    !> Many Jenkins contacts, all arrays of one length. dof_b absent: the ground; sector_offset absent: 0.
    function model_add_jenkins(self, dof_a, kt, mu, preload, dof_b, sector_offset, first_id) result(status)

@@ -985,6 +985,23 @@ hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c,
 HBVIB_NODISCARD
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);
 
+/// Places the slider of a friction contact before any motion: the residual state that an assembly
+/// or an earlier load has left. A contact that sticks through the period has the tangential force
+/// kt (x - place); a place from which its limit would drag the slider acts as the nearest one
+/// within. A contact that slips or opens in every period forgets it.
+///
+/// id         number from hbvib_model_add_contact or another function that adds contacts.
+/// direction  0 for t1; 1 for t2, of HBVIB_FRICTION_3D alone.
+/// place      length, finite; 0 at first.
+/// Errors: HBVIB_E_INDEX (id, direction), HBVIB_E_UNSUPPORTED (the contact has no slider there, or
+/// an infinite preload), HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time
+/// per model.
+HBVIB_NODISCARD
+hbvib_status hbvib_model_set_slider(hbvib_model *model,
+                                    int64_t id,
+                                    int64_t direction,
+                                    double place);
+
 /// Adds many Jenkins contacts from arrays; entry i of each array describes contact i. All contacts
 /// are checked before one is added.
 ///
@@ -3582,6 +3599,10 @@ typedef enum {
   HBVIB_PARAMETER_STIFFNESS = 8,
   /// The fixed speed of rotation Omega.
   HBVIB_PARAMETER_SPEED = 9,
+  /// Place of the slider of a contact before any motion, along t1.
+  HBVIB_PARAMETER_SLIDER_T1 = 10,
+  /// The same along t2, of friction in a plane.
+  HBVIB_PARAMETER_SLIDER_T2 = 11,
 } hbvib_parameter_kind;
 
 /// How a parameter changes a matrix.
@@ -3942,6 +3963,196 @@ hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 /// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per batch.
 HBVIB_NODISCARD
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
+
+/// The sliders of a stored point of a forced response that stick through the period and change its
+/// vibration: each may lie anywhere within the limit of its friction, and every such state is a
+/// solution. None where no contact sticks all the time, or none of the others slips or opens.
+///
+/// model       the model of which the branch is a result, unchanged since.
+/// point       number of a point of the curve, or of a peak, fold or requested solution.
+/// capacity    numbers that fit into each array.
+/// contact     receives the numbers of their contacts, numbers, or NULL.
+/// direction   receives their directions, numbers, 0 for t1 and 1 for t2, or NULL.
+/// place       receives their places in the solution, or NULL.
+/// derivative  receives the derivatives of the amplitude by the places at a fixed frequency, while
+///             the contacts stick; or NULL.
+/// count       receives how many there are, also when `capacity` is too small.
+/// hooks       phase, log and cancellation; progress is not called. NULL: none.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_ARGUMENT (another model), HBVIB_E_UNSUPPORTED (a
+/// nonlinear mode), HBVIB_E_DIMENSION (capacity too small: the arrays are untouched),
+/// HBVIB_E_CALLBACK, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads:
+/// any number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_freedom(const hbvib_model *model,
+                                  const hbvib_branch *branch,
+                                  int64_t point,
+                                  int64_t capacity,
+                                  int64_t *contact,
+                                  int64_t *direction,
+                                  double *place,
+                                  double *derivative,
+                                  int64_t *count,
+                                  const hbvib_hooks *hooks);
+
+/// Results that a band bounds.
+typedef enum {
+  /// The amplitude at the frequency of the point.
+  HBVIB_BAND_AMPLITUDE = 0,
+  /// The amplitude of a peak, which moves with the places of the sliders.
+  HBVIB_BAND_PEAK_AMPLITUDE = 1,
+  /// The angular frequency of a peak.
+  HBVIB_BAND_PEAK_OMEGA = 2,
+} hbvib_band_of;
+
+/// Options of hbvib_band. Fill it by hbvib_band_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// A value of enum hbvib_band_of; default HBVIB_BAND_AMPLITUDE.
+  int32_t of;
+  /// Contacts whose sliders are free, or NULL: all of hbvib_branch_freedom.
+  const int64_t *contacts;
+  /// Number of these contacts.
+  int64_t contacts_len;
+  /// Starts of the search with several free sliders, 1 .. 1000; default 3. With one it has no
+  /// effect.
+  int64_t starts;
+} hbvib_band_options;
+
+/// Fills the options of a band: the amplitude, all free sliders.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_band_options_init(hbvib_band_options *o, size_t size_of_o);
+
+/// Numbers of a band. Fill it by hbvib_band_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1 if one slider was followed to both of its limits, or each search of several ended at an
+  /// extremum; else 0.
+  int32_t complete;
+  /// Number of free sliders; 0: the response has no band, and both ends are the point itself.
+  int64_t sliders;
+  /// Number of states that were followed with one free slider; else 0.
+  int64_t states;
+  /// Number of solutions that were computed.
+  int64_t solved;
+  /// The least result found.
+  double lower;
+  /// The largest result found.
+  double upper;
+  /// Angular frequency of the least result.
+  double lower_omega;
+  /// Angular frequency of the largest one.
+  double upper_omega;
+  /// Relative change of the least result that the linearised problem still foretells within a
+  /// tenth of the distances over which the sliders can be dragged; 0 with one slider.
+  double lower_gain;
+  /// The same of the largest one.
+  double upper_gain;
+  /// Contacts that are at the limit of their friction in the least result.
+  int64_t lower_at_limit;
+  /// The same in the largest one.
+  int64_t upper_at_limit;
+} hbvib_band_info;
+
+/// Fills the numbers of a band with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);
+
+/// The band of a stored point of a forced response: the least and the largest result over all
+/// places of the sliders that stick through the period, and the states that attain them. The
+/// harmonics are those of the point. With one free slider all states from one limit of its friction
+/// to the other are followed, with every extremum between. With several, a search from each start
+/// goes to an extremum; the bounds are attained ones, beyond which others may lie.
+///
+/// model            the model of which the branch is a result, unchanged since.
+/// point            number of a stored point; of a peak where the band is one of a peak.
+/// solver           options; NULL: the defaults. Harmonics and tolerance have no effect.
+/// options          the result and what is free; NULL: the defaults.
+/// hooks            log, phase and cancellation; NULL: none.
+/// info             receives the numbers of the band.
+/// capacity         numbers that fit into each array of sliders: at least twice as many as the
+///                  model has contacts, unless all four are NULL.
+/// contact          receives the contacts of the free sliders, numbers, or NULL.
+/// direction        receives their directions, numbers, or NULL.
+/// lower_place      receives their places in the least result, for hbvib_model_set_slider; or NULL.
+/// upper_place      receives those in the largest result; or NULL.
+/// states_capacity  states that fit into the next array.
+/// states           receives place, result, its derivative by the place and angular frequency of
+///                  each state of one free slider, four numbers a state, as many states as fit;
+///                  or NULL.
+/// lower            receives the least state, a branch of one point on the model with its places;
+///                  a null handle where there is no band; or NULL. Free it by hbvib_branch_free.
+/// upper            receives the largest one in the same way; or NULL.
+/// Errors: HBVIB_E_INDEX (point, contacts), HBVIB_E_ARGUMENT (another model, options out of their
+/// range, a point that is no peak, overlapping arrays), HBVIB_E_UNSUPPORTED (a nonlinear mode),
+/// HBVIB_E_DIMENSION (capacity), HBVIB_E_NO_CONVERGENCE, HBVIB_E_CALLBACK, HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; nothing is written
+/// then. HBVIB_STOPPED_BY_CALLER likewise. Threads: any number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_band(const hbvib_model *model,
+                        const hbvib_branch *branch,
+                        int64_t point,
+                        const hbvib_solver_options *solver,
+                        const hbvib_band_options *options,
+                        const hbvib_hooks *hooks,
+                        hbvib_band_info *info,
+                        int64_t capacity,
+                        int64_t *contact,
+                        int64_t *direction,
+                        double *lower_place,
+                        double *upper_place,
+                        int64_t states_capacity,
+                        double *states,
+                        hbvib_branch **lower,
+                        hbvib_branch **upper);
+
+/// Static states of a model along a load history, with friction: constant forces and speeds that
+/// rise and fall, between straight steps. Sliders begin at the places of hbvib_model_set_slider and
+/// are dragged along; the places of a step are the residual state that the history has left there,
+/// for hbvib_model_set_slider. The first load is reached at once. Vibrating forces have no effect.
+///
+/// solver     options; NULL: the defaults.
+/// steps      number of loads, >= 1.
+/// factors    factors of the constant forces, one for each step, or NULL: 1.
+/// speeds     fixed speeds of rotation, one for each step, or NULL: that of the model.
+/// hooks      phase, log and cancellation; progress is not called. NULL: none.
+/// motion     receives the displacements, steps x ndof, step after step; or NULL.
+/// motion_len numbers in it: steps x ndof.
+/// places     receives the places of the sliders along t1 and t2, steps x contacts x 2; or NULL.
+/// places_len numbers in it: steps x contacts x 2.
+/// forces     receives the forces of the contacts along t1, t2 and n, steps x contacts x 3, in the
+///            sense in which they act against the relative motion, so that the one along n is minus
+///            the normal load; or NULL.
+/// forces_len numbers in it: steps x contacts x 3.
+/// Errors: HBVIB_E_DIMENSION (steps, lengths), HBVIB_E_NOT_FINITE, HBVIB_E_UNSUPPORTED (a speed
+/// that is tied to the frequency, and loads that follow it), HBVIB_E_NO_CONVERGENCE or
+/// HBVIB_E_SINGULAR where there is no equilibrium, HBVIB_E_ARGUMENT (overlapping arrays),
+/// HBVIB_E_CALLBACK,
+/// HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; the
+/// arrays are untouched then. HBVIB_STOPPED_BY_CALLER likewise. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_static_history(const hbvib_model *model,
+                                  const hbvib_solver_options *solver,
+                                  int64_t steps,
+                                  const double *factors,
+                                  const double *speeds,
+                                  const hbvib_hooks *hooks,
+                                  double *motion,
+                                  int64_t motion_len,
+                                  double *places,
+                                  int64_t places_len,
+                                  double *forces,
+                                  int64_t forces_len);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

@@ -356,6 +356,8 @@ using VerifyOptions = Filled<hbvib_verify_options, hbvib_verify_options_init>;
 using VerificationInfo = Filled<hbvib_verification, hbvib_verification_init>;
 using FloquetOptions = Filled<hbvib_floquet_options, hbvib_floquet_options_init>;
 using FloquetInfo = Filled<hbvib_floquet_info, hbvib_floquet_info_init>;
+using BandOptions = Filled<hbvib_band_options, hbvib_band_options_init>;
+using BandInfo = Filled<hbvib_band_info, hbvib_band_info_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
 
 /// Range of a forced response, rad per time unit. Arrays handed in are borrowed until it was solved.
@@ -854,6 +856,18 @@ struct HigherPeak {
   double parameter, omega, amplitude;
   Index point;
 };
+/// A slider that sticks through the period and changes the vibration, its place, and the derivative of the amplitude by it.
+struct FreeSlider {
+  Index contact, direction;
+  double place, derivative;
+};
+/// The band of a result over residual forces: numbers, free sliders as contact and direction, and their places at both ends, for
+/// Model::set_slider.
+struct Band {
+  BandInfo info;
+  std::vector<Index> contact, direction;
+  std::vector<double> lower_place, upper_place;
+};
 /// Multipliers of one period of a motion by falling modulus, and the reason of each.
 struct Floquet {
   hbvib_status status;
@@ -1156,6 +1170,8 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   Index add_contact(const Contact& c) { return add(hbvib_model_add_contact, &c); }
   /// preload + per_speed2 Omega^2 at the speed of rotation Omega.
   void set_preload(Index id, double preload, double per_speed2 = 0) { use(hbvib_model_set_preload_at_speed, id, preload, per_speed2); }
+  /// Place of the slider of a friction contact before any motion, along t1 (direction 0) or t2 (1).
+  void set_slider(Index id, double place, Index direction = 0) { use(hbvib_model_set_slider, id, direction, place); }
   Index add_jenkins(In<Index> dof_a, In<Index> dof_b, In<Index> sector_offset, In<double> kt, In<double> mu, In<double> preload) {
     const Index n = dof_a.length();
     detail::check_length(dof_b.size(), n, 4, "dof_b");
@@ -1403,6 +1419,36 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     const auto count = static_cast<Index>(given.size());
     use_whole(hooks, hbvib_sensitivity, branch.get(), point, of, given.data(), count, out.derivatives.data(), count, reasons.data(), &out.onset);
     for (const auto reason : reasons) out.reasons.push_back(static_cast<hbvib_derivative>(reason));
+    return out;
+  }
+  /// The sliders of a point of a forced response that stick through the period and change its vibration. A hook that stops it is
+  /// an Error.
+  std::vector<FreeSlider> freedom(const Branch& branch, Index point, const Hooks& hooks = {}) const {
+    const auto keep = branch.core_;
+    const std::size_t room = detail::extent(2 * branch.reduction().contacts);
+    std::vector<Index> contact(room), direction(room);
+    std::vector<double> place(room), derivative(room);
+    Index count = 0;
+    use_whole(hooks, hbvib_branch_freedom, branch.get(), point, static_cast<Index>(room), contact.data(), direction.data(),
+                   place.data(), derivative.data(), &count);
+    std::vector<FreeSlider> out;
+    for (std::size_t i = 0; i < detail::extent(count); i++) out.push_back({contact[i], direction[i], place[i], derivative[i]});
+    return out;
+  }
+  /// The least and the largest result at a point of a forced response over all residual forces of contacts that stick. A hook that
+  /// stops it is an Error.
+  Band band(const Branch& branch, Index point, const BandOptions& options = BandOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const auto kept = branch.core_;
+    const std::size_t room = detail::extent(2 * branch.reduction().contacts);
+    Band out{BandInfo(), std::vector<Index>(room), std::vector<Index>(room), std::vector<double>(room), std::vector<double>(room)};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    call.done_whole(hbvib_band(get(), branch.get(), point, nullptr, &options, &bound, &out.info, static_cast<Index>(room),
+                               out.contact.data(), out.direction.data(), out.lower_place.data(), out.upper_place.data(), 0, nullptr,
+                               nullptr, nullptr));
+    const std::size_t n = detail::extent(out.info.sliders);
+    out.contact.resize(n), out.direction.resize(n), out.lower_place.resize(n), out.upper_place.resize(n);
     return out;
   }
   /// The highest peak of each design: values of the parameters, design after design. A stop by a hook keeps the designs

@@ -1,4 +1,4 @@
-/* Readers of matrices that finite-element programs write: Matrix Market (also gzipped), Abaqus
+/* Readers and writers of matrices of finite-element programs: Matrix Market (also gzipped), Abaqus
  * *MATRIX GENERATE, CalculiX matrix storage, superelements of both (*USER ELEMENT), Harwell-Boeing text, Nastran
  * OP4 (text and binary) and DMIG, NumPy and scipy (.npz), MATLAB (.mat), Ansys .full. A
  * library of its own, libhbvib_io: `cargo build --release -p hbvib-io`.
@@ -77,6 +77,50 @@ int32_t hbvib_io_dof_table(const hbvib_io_file *file, int64_t *table);
 
 /* Frees a file; NULL does nothing. Its matrices are gone with it. */
 void hbvib_io_free(hbvib_io_file *file);
+
+/* A file without matrices, to be set and written. Free it by hbvib_io_free. Returns 0 or -1. */
+int32_t hbvib_io_new(hbvib_io_file **out);
+
+/* Copies a matrix into a file, in place of the one that is there.
+ *
+ * which   HBVIB_IO_MASS, ...
+ * matrix  entries within rows and columns, with finite values.
+ * Returns 0, or -1 with a sentence in hbvib_io_last_error. */
+int32_t hbvib_io_set_matrix(hbvib_io_file *file, int32_t which, const hbvib_io_matrix *matrix);
+
+/* Copies node number and direction (1 to 6, or 0) of each degree of freedom, two numbers each. Returns 0 or -1. */
+int32_t hbvib_io_set_dofs(hbvib_io_file *file, int64_t count, const int64_t *table);
+
+/* Writes the matrices of a file, as they were read or set: superelements for other programs.
+ *
+ * path    ends with a zero byte; a file that is there is replaced.
+ * format  op4, op4-binary, dmig, user-element, npz, matrix-market, or NULL: that of the name of the file. Several
+ *         matrices in matrix-market are a file each, whose names end with _stiffness, _mass, ...
+ * Returns 0, or -1 with a sentence, as where a format cannot hold these matrices. Threads: any. */
+int32_t hbvib_io_write(const hbvib_io_file *file, const char *path, const char *format);
+
+/* Results of nodes that are gathered for a universal file (UFF). */
+typedef struct HbvibIoResults hbvib_io_results;
+
+/* Results without any. nodes and positions (x, y, z of each) are the mesh; both may be NULL with count 0. Free them by
+ * hbvib_io_results_free. Returns 0 or -1. */
+int32_t hbvib_io_results_new(int64_t count, const int64_t *nodes, const double *positions, hbvib_io_results **out);
+
+/* Adds complex motions of nodes at a frequency: values has real and imaginary part along x, y and z, 6 count numbers.
+ * text is a line for the file, or NULL. Returns 0 or -1. */
+int32_t hbvib_io_results_add_shape(hbvib_io_results *results, const char *text, double frequency, int64_t count,
+                                   const int64_t *nodes, const double *values);
+
+/* Adds a complex function over frequency at a node and direction, as a response: 2 count values. Returns 0 or -1. */
+int32_t hbvib_io_results_add_function(hbvib_io_results *results, const char *text, int64_t node, int64_t direction,
+                                      int64_t count, const double *frequencies, const double *values);
+
+/* Writes nodes (2411), functions (58) and shapes (55) of a universal file. Returns 0, or -1 with a sentence: numbers that
+ * are not finite, or the reason of the system. */
+int32_t hbvib_io_results_write(const hbvib_io_results *results, const char *path);
+
+/* Frees results; NULL does nothing. */
+void hbvib_io_results_free(hbvib_io_results *results);
 
 /* The sentence of the last error of this thread, until its next call. */
 const char *hbvib_io_last_error(void);

@@ -250,7 +250,9 @@ typedef enum {
   HBVIB_PARAMETER_MASS = 6,
   HBVIB_PARAMETER_DAMPING = 7,
   HBVIB_PARAMETER_STIFFNESS = 8,
-  HBVIB_PARAMETER_SPEED = 9
+  HBVIB_PARAMETER_SPEED = 9,
+  HBVIB_PARAMETER_SLIDER_T1 = 10,
+  HBVIB_PARAMETER_SLIDER_T2 = 11
 } hbvib_parameter_kind;
 typedef enum {
   HBVIB_SCALING_ADDITIVE = 0,
@@ -277,6 +279,11 @@ typedef enum {
   HBVIB_FOLLOW_FOLD = 2,
   HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
 } hbvib_follow;
+typedef enum {
+  HBVIB_BAND_AMPLITUDE = 0,
+  HBVIB_BAND_PEAK_AMPLITUDE = 1,
+  HBVIB_BAND_PEAK_OMEGA = 2
+} hbvib_band_of;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
@@ -308,6 +315,8 @@ typedef struct hbvib_floquet_info hbvib_floquet_info;
 typedef struct hbvib_parameter hbvib_parameter;
 typedef struct hbvib_parameter_options hbvib_parameter_options;
 typedef struct hbvib_batch_options hbvib_batch_options;
+typedef struct hbvib_band_options hbvib_band_options;
+typedef struct hbvib_band_info hbvib_band_info;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
@@ -710,6 +719,28 @@ struct hbvib_batch_options {
   const hbvib_response *responses;
   int64_t responses_len;
 };
+struct hbvib_band_options {
+  uint32_t struct_size;
+  int32_t of;
+  const int64_t *contacts;
+  int64_t contacts_len;
+  int64_t starts;
+};
+struct hbvib_band_info {
+  uint32_t struct_size;
+  int32_t complete;
+  int64_t sliders;
+  int64_t states;
+  int64_t solved;
+  double lower;
+  double upper;
+  double lower_omega;
+  double upper_omega;
+  double lower_gain;
+  double upper_gain;
+  int64_t lower_at_limit;
+  int64_t upper_at_limit;
+};
 uint32_t hbvib_version(void);
 const char *hbvib_version_string(void);
 const char *hbvib_status_name(hbvib_status status);
@@ -754,6 +785,7 @@ hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **
 hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
 hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c, int64_t *id);
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);
+hbvib_status hbvib_model_set_slider(hbvib_model *model, int64_t id, int64_t direction, double place);
 hbvib_status hbvib_model_add_jenkins(hbvib_model *model, int64_t n, const int64_t *dof_a, const int64_t *dof_b, const int64_t *sector_offset, const double *kt, const double *mu, const double *preload, int64_t *first_id);
 hbvib_status hbvib_model_add_iwan(hbvib_model *model, int64_t dof_a, int64_t dof_b, int64_t sector_offset, double slip_force, double stiffness, double chi, double beta, int64_t elements, int64_t *first_id);
 hbvib_status hbvib_model_add_table(hbvib_model *model, int64_t dof_a, int64_t dof_b, int64_t sector_offset, int64_t n, const double *displacement, const double *force, int64_t *id);
@@ -853,6 +885,11 @@ hbvib_status hbvib_batch_peaks(const hbvib_batch *batch, int64_t capacity, doubl
 hbvib_status hbvib_batch_response_peaks(const hbvib_batch *batch, int64_t response, int64_t capacity, double *amplitude, double *omega);
 hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
+hbvib_status hbvib_branch_freedom(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int64_t capacity, int64_t *contact, int64_t *direction, double *place, double *derivative, int64_t *count, const hbvib_hooks *hooks);
+hbvib_status hbvib_band_options_init(hbvib_band_options *o, size_t size_of_o);
+hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);
+hbvib_status hbvib_band(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_solver_options *solver, const hbvib_band_options *options, const hbvib_hooks *hooks, hbvib_band_info *info, int64_t capacity, int64_t *contact, int64_t *direction, double *lower_place, double *upper_place, int64_t states_capacity, double *states, hbvib_branch **lower, hbvib_branch **upper);
+hbvib_status hbvib_static_history(const hbvib_model *model, const hbvib_solver_options *solver, int64_t steps, const double *factors, const double *speeds, const hbvib_hooks *hooks, double *motion, int64_t motion_len, double *places, int64_t places_len, double *forces, int64_t forces_len);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_forced_residual(const hbvib_model *model, const hbvib_solver_options *solver, double omega, const double *x, int64_t x_len, double *r, int64_t r_len, double *jac, int64_t jac_len, double *d_omega, int64_t d_omega_len);

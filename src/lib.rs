@@ -115,6 +115,7 @@ pub use contact::force_derivative::Constant;
 pub use sensitivity::{Parameter, Reason};
 
 // Analyses.
+pub use analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
 pub use analysis::batch::{Batch, batch};
 pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
@@ -122,6 +123,7 @@ pub use analysis::damped_modes::{DampedModes, damped_modes};
 pub use analysis::design_peak::DesignPeak;
 pub use analysis::floquet::floquet;
 pub use analysis::forced_response::forced_response;
+pub use analysis::freedom::{FreeSlider, freedom, freedom_with};
 pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
@@ -133,6 +135,7 @@ pub use analysis::parameter_response::parameter_response;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::response_of_motion::response_of;
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
+pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};

@@ -414,6 +414,7 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
             mu: 0.4,
             load,
             has_normal: true,
+            slider: [0.0; 2],
         };
         let motion: Vec<f64> = (0..33).map(|i| (0.7 + f64::from(i)).sin()).collect();
         let mut way = PlaneFrictionEvaluator::new(&set, &law).unwrap();

@@ -35,6 +35,7 @@ import importlib
 from typing import Any
 
 from . import _c, _results, _types
+from ._band import Band, BandCurve, BandEnd, BandStates, FreeSlider
 from ._batch import Batch
 from ._branch import Branch
 from ._c import *
@@ -48,6 +49,7 @@ from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
 from ._sensitivity import Parameter, Sensitivities
+from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
 from ._types import *
@@ -57,7 +59,8 @@ __all__ = [
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve",
+    "FreeSlider", "StaticHistory", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
     "get_include",

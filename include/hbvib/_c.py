@@ -10,7 +10,7 @@ __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block
     "AeroForm", "SectorFrame", "ContactKind", "Tangent", "Flexibility", "Stability", "LogLevel", "Phase", "Measure",
     "Component", "Field", "Reading", "FlexibilityWay", "State", "ContactState", "DampingForm", "ModeMultiple",
     "SynthesisFlag", "SteadyMethod", "Waves", "MultiplierClass", "Grazing", "Bifurcation", "ParameterKind", "Scaling",
-    "Quantity", "Derivative", "Follow"]
+    "Quantity", "Derivative", "Follow", "BandOf"]
 
 
 class Status(enum.IntEnum):
@@ -682,6 +682,8 @@ class ParameterKind(enum.IntEnum):
     DAMPING   The damping matrix.
     STIFFNESS   The stiffness matrix of the structure, without springs and contacts.
     SPEED   The fixed speed of rotation Omega.
+    SLIDER_T1   Place of the slider of a contact before any motion, along t1.
+    SLIDER_T2   The same along t2, of friction in a plane.
 
     >>> import hbvib
     >>> hbvib.ParameterKind(0)
@@ -697,6 +699,8 @@ class ParameterKind(enum.IntEnum):
     DAMPING = 7
     STIFFNESS = 8
     SPEED = 9
+    SLIDER_T1 = 10
+    SLIDER_T2 = 11
 
 
 class Scaling(enum.IntEnum):
@@ -775,6 +779,22 @@ class Follow(enum.IntEnum):
     FOLD = 2
     MODE_MAX_DAMPING = 3
 
+
+class BandOf(enum.IntEnum):
+    """Results that a band bounds.
+
+    AMPLITUDE   The amplitude at the frequency of the point.
+    PEAK_AMPLITUDE   The amplitude of a peak, which moves with the places of the sliders.
+    PEAK_OMEGA   The angular frequency of a peak.
+
+    >>> import hbvib
+    >>> hbvib.BandOf(0)
+    <BandOf.AMPLITUDE: 0>
+    """
+    AMPLITUDE = 0
+    PEAK_AMPLITUDE = 1
+    PEAK_OMEGA = 2
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -839,6 +859,9 @@ parameter_options: uint32 struct_size; int32 follow; pointer parameter; double s
     at_len; double log10_start log10_stop; pointer response
 batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved; pointer responses;
     int64 responses_len
+band_options: uint32 struct_size; int32 of; pointer contacts; int64 contacts_len starts
+band_info: uint32 struct_size; int32 complete; int64 sliders states solved; double lower upper lower_omega upper_omega
+    lower_gain upper_gain; int64 lower_at_limit upper_at_limit
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -896,6 +919,7 @@ cyclic_from_sector: sector p
 contact_init: contact z
 model_add_contact: h contact p
 model_set_preload: h l d
+model_set_slider: h l l d
 model_add_jenkins: h l p p p p p p p
 model_add_iwan: h l l l d d d d l p
 model_add_table: h l l l l p p p
@@ -995,6 +1019,11 @@ batch_peaks: h l p p p p
 batch_response_peaks: h l l p p
 batch_status: h l
 batch_branch: h l p
+branch_freedom: h h l l p p p p p hooks
+band_options_init: band_options z
+band_info_init: band_info z
+band: h h l solver_options band_options hooks band_info l p p p p l p p p
+static_history: h solver_options l p p hooks p l p l p l
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -1057,6 +1086,7 @@ if TYPE_CHECKING:
         def hbvib_contact_init(self, c: Any, size_of_c: int) -> int: ...
         def hbvib_model_add_contact(self, model: Any, c: Any, id: Any) -> int: ...
         def hbvib_model_set_preload(self, model: Any, id: int, preload: float) -> int: ...
+        def hbvib_model_set_slider(self, model: Any, id: int, direction: int, place: float) -> int: ...
         def hbvib_model_add_jenkins(self, model: Any, n: int, dof_a: Any, dof_b: Any, sector_offset: Any, kt: Any, mu:
             Any, preload: Any, first_id: Any) -> int: ...
         def hbvib_model_add_iwan(self, model: Any, dof_a: int, dof_b: int, sector_offset: int, slip_force: float,
@@ -1201,6 +1231,15 @@ if TYPE_CHECKING:
             Any) -> int: ...
         def hbvib_batch_status(self, batch: Any, design: int) -> int: ...
         def hbvib_batch_branch(self, batch: Any, design: int, out: Any) -> int: ...
+        def hbvib_branch_freedom(self, model: Any, branch: Any, point: int, capacity: int, contact: Any, direction: Any,
+            place: Any, derivative: Any, count: Any, hooks: Any) -> int: ...
+        def hbvib_band_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_band_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_band(self, model: Any, branch: Any, point: int, solver: Any, options: Any, hooks: Any, info: Any,
+            capacity: int, contact: Any, direction: Any, lower_place: Any, upper_place: Any, states_capacity: int,
+            states: Any, lower: Any, upper: Any) -> int: ...
+        def hbvib_static_history(self, model: Any, solver: Any, steps: int, factors: Any, speeds: Any, hooks: Any,
+            motion: Any, motion_len: int, places: Any, places_len: int, forces: Any, forces_len: int) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,

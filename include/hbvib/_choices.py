@@ -3,10 +3,11 @@ from __future__ import annotations
 
 from typing import Literal, Union
 
-from ._c import (AeroForm, Block, Component, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind,
+from ._c import (AeroForm, BandOf, Block, Component, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind,
                  Measure, ParameterKind, Part, Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
 
 AeroForms = Union[AeroForm, Literal["displacement", "velocity"], int]
+BandOfs = Union[BandOf, Literal["amplitude", "peak_amplitude", "peak_omega"], int]
 Blocks = Union[Block, Literal["own", "next", "previous"], int]
 Components = Union[Component, Literal["displacement", "velocity", "acceleration"], int]
 ContactKinds = Union[ContactKind, Literal["jenkins", "friction_2d", "friction_3d", "unilateral", "cubic", "regularised"], int]
@@ -26,7 +27,9 @@ MatrixKinds = Union[
 Measures = Union[Measure, Literal["fundamental", "harmonic", "peak", "rms", "range"], int]
 ParameterKinds = Union[
     ParameterKind,
-    Literal["force", "preload", "mu", "kt", "kn", "gap", "mass", "damping", "stiffness", "speed"], int]
+    Literal["force", "preload", "mu", "kt", "kn", "gap", "mass", "damping", "stiffness", "speed", "slider_t1",
+            "slider_t2"],
+    int]
 Parts = Union[
     Part,
     Literal["full", "lower", "upper", "general", "symmetric", "symmetric_lower", "symmetric_upper"], int]

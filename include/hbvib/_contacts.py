@@ -134,6 +134,23 @@ class _Contacts(_Owner):
         law.dof_a[:], law.dof_b[:] = (_side(ContactKind(law.kind), side) for side in (a, b))
         return self._identified("hbvib_model_add_contact", law)
 
+    def set_slider(self, contact: int, place: float, direction: int = 0) -> None:
+        """Places the slider of a friction contact before any motion: the residual state that an assembly or an earlier
+        load has left. A contact that sticks through the period has the force kt (x - place); a place from which its
+        limit would drag the slider acts as the nearest one within, and a contact that slips or opens forgets it.
+
+        direction   0 for t1; 1 for t2, of friction_3d.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.01)
+        >>> model.set_slider(contact, 0.1)
+        >>> print("%.3f" % model.forced_response((0.9, 0.9)).harmonics(0)[0, 0].real)  # its spring of 1 beside that of 1
+        0.050
+        """
+        self._call("hbvib_model_set_slider", contact, direction, place)
+
     def set_preload(self, contact: int, preload: float, per_speed2: float = 0.0) -> None:
         """Changes the normal load of a contact: preload + per_speed2 Omega^2 at the speed of rotation Omega; m R for a
         ring of mass m at the radius R.

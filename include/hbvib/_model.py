@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ._aero import _Aero
 from ._analyses import _Analyses
+from ._band import _Bands
 from ._batch import _Batches
 from ._c import MatrixKind, SectorFrame
 from ._caller_law import _CallerLaws
@@ -17,6 +18,7 @@ from ._convert import _array, _member, _whole
 from ._library import lib
 from ._linear_modes import _LinearModes
 from ._sensitivity import _Sensitivity
+from ._static_history import _StaticHistories
 from ._structs import _new
 from ._time_integration import _TimeIntegration
 
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
     from ._choices import MatrixKinds, SectorFrames
 
 
-class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches):
+class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands,
+            _StaticHistories):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.
 

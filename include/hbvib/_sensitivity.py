@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 class Parameter:
     """A parameter of a model, by which results are differentiated.
 
-    kind       "force": a factor on all forces; "preload", "mu", "kt", "kn", "gap": a constant of a contact; "mass",
-               "damping", "stiffness"; "speed": the fixed speed of rotation; or a ParameterKind.
+    kind       "force": a factor on all forces; "preload", "mu", "kt", "kn", "gap", "slider_t1", "slider_t2": a constant
+               of a contact; "mass", "damping", "stiffness"; "speed": the fixed speed of rotation; or a ParameterKind.
     contact    number of the contact; -1: the constant of all contacts that have it, changed together.
     direction  of mass, damping and stiffness, ndof x ndof: the parameter is the coefficient, 0 at present, of this
                matrix, which is added; in a cyclic model to the block of the sector itself.

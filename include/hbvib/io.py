@@ -1,4 +1,4 @@
-"""Matrices of finite-element programs as scipy matrices: hbvib.io.read(path).
+"""Matrices of finite-element programs as scipy matrices: hbvib.io.read(path) and hbvib.io.write(path, ...).
 
 Matrix Market (also gzipped), Abaqus *MATRIX GENERATE (.mtx), CalculiX (.sti, .mas, .dof), superelements of both (*USER
 ELEMENT), Harwell-Boeing text, Nastran OP4 (text and binary) and DMIG, NumPy and scipy (.npz, .npy), MATLAB (.mat),
@@ -18,7 +18,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ._results import IntArray
 
-__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "read"]
+__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "WriteError", "read", "write", "write_universal"]
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 _FOLDERS = ("", "../../target/release", "../../target/debug", "../../../lib", "../../lib")
@@ -90,6 +90,18 @@ class ReadError(ValueError):
     """
 
 
+class WriteError(ValueError):
+    """Matrices or results that a file cannot hold; the sentence names the file and the reason.
+
+    >>> import hbvib, hbvib.io
+    >>> try:
+    ...     hbvib.io.write("k.xyz", stiffness=[[2.0]])
+    ... except hbvib.io.WriteError as error:
+    ...     print("one of op4" in str(error))
+    True
+    """
+
+
 class _Matrix(ctypes.Structure):
     _fields_ = [(name, ctypes.c_int64) for name in ("rows", "columns", "entries")] + [
         (name, ctypes.c_int32) for name in ("is_complex", "symmetry")] + [
@@ -117,6 +129,16 @@ def _load() -> ctypes.CDLL:
     lib.hbvib_io_dofs.argtypes, lib.hbvib_io_dofs.restype = [ctypes.c_void_p], ctypes.c_int64
     lib.hbvib_io_dof_table.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
     lib.hbvib_io_free.argtypes, lib.hbvib_io_free.restype = [ctypes.c_void_p], None
+    lib.hbvib_io_new.argtypes = lib.hbvib_io_results_free.argtypes = [ctypes.c_void_p]
+    lib.hbvib_io_set_matrix.argtypes = [ctypes.c_void_p, ctypes.c_int32, ctypes.POINTER(_Matrix)]
+    lib.hbvib_io_set_dofs.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p]
+    lib.hbvib_io_write.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p]
+    lib.hbvib_io_results_new.argtypes = [ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    lib.hbvib_io_results_add_shape.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double, ctypes.c_int64,
+                                               ctypes.c_void_p, ctypes.c_void_p]
+    lib.hbvib_io_results_add_function.argtypes = [ctypes.c_void_p, ctypes.c_char_p] + [ctypes.c_int64] * 3 + [ctypes.c_void_p] * 2
+    lib.hbvib_io_results_write.argtypes = [ctypes.c_void_p, ctypes.c_char_p]
+    lib.hbvib_io_results_free.restype = None
     lib.hbvib_io_last_error.restype = ctypes.c_char_p
     return lib
 
@@ -205,3 +227,96 @@ def read(path: Any = None, *, stiffness: Any = None, mass: Any = None, damping: 
     for line in contents.warnings:
         warnings.warn(f"{files}: {line}", SuspiciousMatrices, stacklevel=2)
     return contents
+
+
+def _checked(status: int) -> None:
+    if status != 0:
+        raise WriteError(_lib.hbvib_io_last_error().decode(errors="replace"))
+
+
+def write(path: Any, *, stiffness: Any = None, mass: Any = None, damping: Any = None, structural: Any = None,
+          dofs: Any = None, format: Optional[str] = None) -> None:
+    """Writes matrices of one model, as a superelement for other programs; read() has them back.
+
+    stiffness, mass, damping, structural   arrays or matrices of scipy; symmetric ones are written as a triangle.
+    dofs    node and direction of each row, shape (n, 2), which DMIG and user elements have as names.
+    format  "op4", "op4-binary", "dmig", "user-element", "npz" or "matrix-market"; that of the name unless given: .op4,
+            .pch, .inp, .npz, .mtx.
+
+    WriteError names the file and the reason.
+
+    >>> import hbvib, hbvib.io
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "model.op4")
+    >>> hbvib.io.write(path, stiffness=[[2, -1], [-1, 2]], mass=[[1, 0], [0, 1]])
+    >>> hbvib.io.read(path).stiffness.toarray()
+    array([[ 2., -1.],
+           [-1.,  2.]])
+    """
+    from scipy import sparse  # type: ignore[import-untyped, unused-ignore]
+    handle = ctypes.c_void_p()
+    _checked(_lib.hbvib_io_new(ctypes.byref(handle)))
+    try:
+        for which, given in enumerate((mass, damping, stiffness, structural)):
+            if given is None:
+                continue
+            a = sparse.coo_matrix(given)
+            a.sum_duplicates()
+            kind = np.complex128 if np.iscomplexobj(a.data) else np.float64
+            symmetric = a.shape[0] == a.shape[1] and abs(a - a.T).nnz == 0
+            if symmetric:
+                a = sparse.tril(a).tocoo()
+            row, column = (np.ascontiguousarray(index, np.uint32) for index in (a.row, a.col))
+            values = np.ascontiguousarray(a.data, kind)
+            view = _Matrix(a.shape[0], a.shape[1], len(values), kind is np.complex128, symmetric,
+                           row.ctypes.data, column.ctypes.data, values.ctypes.data)
+            _checked(_lib.hbvib_io_set_matrix(handle, which, ctypes.byref(view)))
+        if dofs is not None:
+            table = np.ascontiguousarray(dofs, np.int64)
+            if table.ndim != 2 or table.shape[1] != 2:
+                raise WriteError(f"dofs has the shape {table.shape}, needs (n, 2)")
+            _checked(_lib.hbvib_io_set_dofs(handle, len(table), table.ctypes.data))
+        named = None if format is None else format.encode()
+        _checked(_lib.hbvib_io_write(handle, os.fsencode(os.fspath(path)), named))
+    finally:
+        _lib.hbvib_io_free(handle)
+
+
+def write_universal(path: Any, *, nodes: Any = None, positions: Any = None, shapes: Any = (), functions: Any = ()) -> None:
+    """Writes results of nodes as a universal file (UFF), which test programs read.
+
+    nodes, positions   numbers of the nodes, and x, y, z of each, shape (n, 3).
+    shapes      (text, frequency, nodes, motion) each: complex motion of nodes along x, y, z, shape (n, 3); data set 55.
+    functions   (text, node, direction, frequencies, values) each: complex values over frequency, directions from 1; data set 58.
+
+    >>> import hbvib, hbvib.io
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "shape.uff")
+    >>> hbvib.io.write_universal(path, nodes=[7], positions=[[0, 0, 1]], shapes=[("first", 12.5, [7], [[0, 1j, 0.5]])],
+    ...                          functions=[("response", 7, 3, [10, 20], [1, 2j])])
+    >>> open(path).read().count("    -1")
+    6
+    """
+    numbers = np.ascontiguousarray([] if nodes is None else nodes, np.int64)
+    at = np.ascontiguousarray([] if positions is None else positions, np.float64)
+    if at.size not in (0, 3 * numbers.size):
+        raise WriteError(f"positions has {at.size} numbers, needs {3 * numbers.size}")
+    handle = ctypes.c_void_p()
+    _checked(_lib.hbvib_io_results_new(numbers.size, numbers.ctypes.data, at.ctypes.data if at.size else None,
+                                       ctypes.byref(handle)))
+    try:
+        for text, frequency, of, motion in shapes:
+            own, values = np.ascontiguousarray(of, np.int64), np.ascontiguousarray(motion, np.complex128)
+            if values.size != 3 * own.size:
+                raise WriteError(f"the shape {text!r} has {values.size} values, needs {3 * own.size}")
+            _checked(_lib.hbvib_io_results_add_shape(handle, str(text).encode(), float(frequency), own.size, own.ctypes.data,
+                                                     values.ctypes.data))
+        for text, node, direction, frequencies, values in functions:
+            x, y = np.ascontiguousarray(frequencies, np.float64), np.ascontiguousarray(values, np.complex128)
+            if x.size != y.size:
+                raise WriteError(f"the function {text!r} has {y.size} values, needs {x.size}")
+            _checked(_lib.hbvib_io_results_add_function(handle, str(text).encode(), int(node), int(direction), x.size,
+                                                        x.ctypes.data, y.ctypes.data))
+        _checked(_lib.hbvib_io_results_write(handle, os.fsencode(os.fspath(path))))
+    finally:
+        _lib.hbvib_io_results_free(handle)

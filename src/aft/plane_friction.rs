@@ -114,8 +114,8 @@ impl PlaneFrictionEvaluator {
         }
         law.path(motion, pieces, &mut self.path, interrupt)?;
         self.add_forces(law, set, motion, out, interrupt)?;
-        out.stuck = matches!(self.path.repetition, Repetition::Rests([None, None]));
-        out.linear = out.stuck;
+        out.linear = matches!(self.path.repetition, Repetition::Rests([None, None]));
+        out.stuck = out.linear && law.slider().iter().all(|w| *w == 0.0);
         let Some(sensitivity) = self.sensitivity.as_mut().filter(|_| !out.is_force_alone()) else {
             return Ok(());
         };
@@ -142,6 +142,8 @@ impl PlaneFrictionEvaluator {
     ) -> Result<()> {
         let (d, m, turn) = (out.directions, set.packed_len(), self.path.turn);
         let [constant, by_y] = law.limit();
+        // The pull of a piece counts from the slider's place before any motion, the motion from zero.
+        let of_slider = law.slider().map(|w| law.stiffness() * w);
         for spectrum in &mut self.spectra {
             spectrum.fill(Complex64::ZERO);
         }
@@ -156,7 +158,7 @@ impl PlaneFrictionEvaluator {
                 pack(set, &self.transform, &mut self.g);
                 for (i, offset) in out.offset.chunks_exact_mut(m.max(1)).take(2).enumerate() {
                     for (o, g) in offset.iter_mut().zip(&self.g) {
-                        *o += (force[i] - pull[i]) * g;
+                        *o += (force[i] - pull[i] - of_slider[i]) * g;
                     }
                 }
             }

@@ -149,8 +149,8 @@ impl VaryingNormalLoadEvaluator {
             transform([piece.start, piece.end], TAU.recip(), TAU, &mut self.transform);
             let share = self.transform[0].re;
             out.count(piece.state, share);
-            out.stuck = piece.state == State::Stick && piece.anchor.is_none() && is_whole(share);
-            out.linear = out.stuck;
+            out.linear = piece.state == State::Stick && piece.anchor.is_none() && is_whole(share);
+            out.stuck = out.linear && piece.constant == 0.0;
             let [by_x, by_y, _] = &mut self.spectra;
             add_stiffness(by_x, piece.of_x, &self.transform, 1);
             add_stiffness(by_y, piece.of_y, &self.transform, 1);

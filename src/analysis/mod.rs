@@ -1,6 +1,9 @@
 //! The crate's public face: each analysis puts the layers together.
 
 mod all_solutions;
+pub mod band;
+mod band_line;
+mod band_search;
 pub mod batch;
 mod branch_stability;
 mod branch_switching;
@@ -19,8 +22,10 @@ mod forced_curve;
 mod forced_discretised;
 mod forced_equations;
 pub mod forced_response;
+pub mod freedom;
 pub mod further_threads;
 pub mod harmonic_residual;
+mod held_sliders;
 mod inside_start;
 pub mod interference;
 pub mod linear_contacts;
@@ -42,7 +47,10 @@ mod residual_numbering;
 pub mod response_of_motion;
 mod sampling;
 pub mod sensitivity_analysis;
+mod slip_margins;
+pub mod static_history;
 mod static_solution;
+mod stuck_contacts;
 mod subharmonic_net;
 pub mod synthesis;
 pub mod time_response;
@@ -52,11 +60,13 @@ mod verified_responses;
 pub mod verify;
 mod watched_responses;
 
+pub use crate::analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::design_peak::DesignPeak;
 pub use crate::analysis::floquet::floquet;
 pub use crate::analysis::forced_response::forced_response;
+pub use crate::analysis::freedom::{FreeSlider, freedom, freedom_with};
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
@@ -66,6 +76,7 @@ pub use crate::analysis::parameter_response::parameter_response;
 pub use crate::analysis::point_error::estimate_at;
 pub use crate::analysis::response_of_motion::response_of;
 pub use crate::analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
+pub use crate::analysis::static_history::{LoadHistory, StaticStep, static_history};
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};
 pub use crate::analysis::time_response::time_response;
 pub use crate::analysis::verify::{Verification, verify};

@@ -189,6 +189,34 @@ pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i6
     })
 }
 
+/// Places the slider of a friction contact before any motion: the residual state that an assembly
+/// or an earlier load has left. A contact that sticks through the period has the tangential force
+/// kt (x - place); a place from which its limit would drag the slider acts as the nearest one
+/// within. A contact that slips or opens in every period forgets it.
+///
+/// id         number from hbvib_model_add_contact or another function that adds contacts.
+/// direction  0 for t1; 1 for t2, of HBVIB_FRICTION_3D alone.
+/// place      length, finite; 0 at first.
+/// Errors: HBVIB_E_INDEX (id, direction), HBVIB_E_UNSUPPORTED (the contact has no slider there, or
+/// an infinite preload), HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time
+/// per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_set_slider(
+    model: *mut hbvib_model,
+    id: i64,
+    direction: i64,
+    place: f64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let id = index(id, model.contacts().len(), 2, "id")?;
+        let direction = index(direction, 2, 3, "direction")?;
+        let argument = if place.is_finite() { 3 } else { 4 };
+        model.set_slider(id, direction, place).with_argument(argument)?;
+        Ok(Status::Ok)
+    })
+}
+
 /// The law of a kind of the header.
 fn kind(number: i32) -> Result<ContactKind> {
     use hbvib_contact_kind as known;
@@ -230,6 +258,7 @@ pub(super) fn law(c: &hbvib_contact) -> Result<Contact> {
         gap: c.gap,
         cubic: c.cubic,
         velocity: c.velocity,
+        slider: [0.0; 2],
         dofs: Vec::new(),
     })
 }

@@ -31,6 +31,7 @@ pub mod thread_memory;
 pub mod thread_start;
 mod versioned_struct;
 
+mod band;
 mod batch;
 mod caller_laws;
 mod caller_laws_check;
@@ -71,10 +72,12 @@ mod solve_options;
 mod solve_responses;
 mod stability;
 mod stability_lists;
+mod static_history;
 mod time;
 mod time_verify;
 mod version_and_errors;
 
+pub use band::*;
 pub use batch::*;
 pub use caller_laws::*;
 pub use caller_laws_check::*;
@@ -115,6 +118,7 @@ pub use solve_options::*;
 pub use solve_responses::*;
 pub use stability::*;
 pub use stability_lists::*;
+pub use static_history::*;
 pub use time::*;
 pub use time_verify::*;
 pub use version_and_errors::*;

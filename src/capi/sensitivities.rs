@@ -43,6 +43,10 @@ pub enum hbvib_parameter_kind {
     HBVIB_PARAMETER_STIFFNESS = 8,
     /// The fixed speed of rotation Omega.
     HBVIB_PARAMETER_SPEED = 9,
+    /// Place of the slider of a contact before any motion, along t1.
+    HBVIB_PARAMETER_SLIDER_T1 = 10,
+    /// The same along t2, of friction in a plane.
+    HBVIB_PARAMETER_SLIDER_T2 = 11,
 }
 
 /// How a parameter changes a matrix.
@@ -268,7 +272,7 @@ pub(super) unsafe fn parameter(p: &hbvib_parameter, ndof: usize) -> Result<Param
 
 unsafe fn describe(p: &hbvib_parameter, ndof: usize) -> Result<Parameter<'_>> {
     use hbvib_parameter_kind as k;
-    const KINDS: [i32; 10] = [
+    const KINDS: [i32; 12] = [
         k::HBVIB_PARAMETER_FORCE as i32,
         k::HBVIB_PARAMETER_PRELOAD as i32,
         k::HBVIB_PARAMETER_MU as i32,
@@ -279,6 +283,8 @@ unsafe fn describe(p: &hbvib_parameter, ndof: usize) -> Result<Parameter<'_>> {
         k::HBVIB_PARAMETER_DAMPING as i32,
         k::HBVIB_PARAMETER_STIFFNESS as i32,
         k::HBVIB_PARAMETER_SPEED as i32,
+        k::HBVIB_PARAMETER_SLIDER_T1 as i32,
+        k::HBVIB_PARAMETER_SLIDER_T2 as i32,
     ];
     const NAME: &str = "hbvib_parameter";
     super::versioned_struct::check_reserved(p.reserved, 5, NAME)?;
@@ -293,11 +299,11 @@ unsafe fn describe(p: &hbvib_parameter, ndof: usize) -> Result<Parameter<'_>> {
     let Some(kind) = KINDS.iter().position(|kind| *kind == p.kind) else {
         return fail!(
             Argument,
-            "{NAME}: kind = {}, needs HBVIB_PARAMETER_FORCE = 0 .. HBVIB_PARAMETER_SPEED = 9",
+            "{NAME}: kind = {}, needs HBVIB_PARAMETER_FORCE = 0 .. HBVIB_PARAMETER_SLIDER_T2 = 11",
             p.kind
         );
     };
-    let (of_contact, of_matrix) = ((1..=5).contains(&kind), (6..=8).contains(&kind));
+    let (of_contact, of_matrix) = (matches!(kind, 1..=5 | 10 | 11), (6..=8).contains(&kind));
     if !of_contact && p.contact != -1 {
         return fail!(
             Argument,
@@ -321,7 +327,11 @@ unsafe fn describe(p: &hbvib_parameter, ndof: usize) -> Result<Parameter<'_>> {
             },
         };
         return Ok(Parameter::Contact {
-            constant: constants[kind - 1],
+            constant: if kind > 9 {
+                Constant::Slider(kind - 10)
+            } else {
+                constants[kind - 1]
+            },
             contact,
         });
     }

@@ -8,7 +8,7 @@
 //! another law. Where the force alone is proportional to the load, f(y; N) = r f_r(y).
 
 use crate::contact::{Contact, Law};
-use crate::error::Result;
+use crate::error::{Result, fail};
 use crate::model::Model;
 use crate::model::speed::{Speed, SpeedLoad};
 use std::sync::Arc;
@@ -72,7 +72,14 @@ impl TiedLoad {
         let Some(load) = model.speed_loads().iter().find(|load| load.contact == contact) else {
             return Ok(None);
         };
+        let number = contact;
         let contact = &model.contacts()[contact];
+        if contact.is_placed() {
+            return fail!(
+                Unsupported,
+                "contact {number}: the place of its slider is given, but its normal load follows the frequency; set a fixed speed"
+            );
+        }
         let reference = load.reference(contact, p);
         let constant = load.load_at_rest(contact);
         if p == 0.0 || reference == 0.0 {

@@ -19,6 +19,8 @@ pub struct Constants {
     pub cubic: f64,
     /// Reference velocity of regularised friction.
     pub velocity: f64,
+    /// Places of the sliders before any motion.
+    pub slider: [f64; 2],
     /// Whether a side can move along n.
     pub has_normal: bool,
 }

@@ -20,6 +20,7 @@ impl Contact {
             gap: 0.0,
             cubic: 0.0,
             velocity: 0.0,
+            slider: [0.0; 2],
             dofs: Vec::new(),
         }
     }

@@ -40,6 +40,7 @@ impl Contact {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number");
             }
         }
+        self.check_slider()?;
         let constants = [
             ("kt", self.kt),
             ("kn", self.kn),
@@ -74,6 +75,38 @@ impl Contact {
     /// `Argument`, naming the constant.
     pub fn check_stiffness(&self) -> Result<()> {
         self.ask(|law| law.check_stiffness())
+    }
+
+    /// Refuses a place of a slider that the law does not have, or whose force nothing limits.
+    fn check_slider(&self) -> Result<()> {
+        let sliders = self.sliders();
+        for (k, &place) in self.slider.iter().enumerate() {
+            let name = ["t1", "t2"][k];
+            if !place.is_finite() {
+                return fail!(
+                    NotFinite,
+                    "contact: place of the slider along {name} = {place}, needs a finite number"
+                );
+            }
+            if place == 0.0 {
+                continue;
+            }
+            if k >= sliders {
+                return fail!(
+                    Unsupported,
+                    "contact: place of the slider along {name} = {place}, but a {} has none there",
+                    self.law_name()
+                );
+            }
+            if self.preload.is_infinite() {
+                return fail!(
+                    Unsupported,
+                    "contact: place of the slider along {name} = {place} under an infinite preload, which is a linear spring; give its force \
+                     as a constant one"
+                );
+            }
+        }
+        Ok(())
     }
 
     /// Refuses degrees of freedom along directions in which the law does not act.

@@ -45,6 +45,9 @@ pub struct Contact {
     /// Velocity at which regularised friction reaches 76 % (tanh 1) of its limit, above 0; 0 for the
     /// others.
     pub velocity: f64,
+    /// Places of the sliders of friction along t1 and t2 before any motion; 0 for the others. The force of a contact that
+    /// sticks through the period is kt·(x − slider).
+    pub slider: [f64; 2],
     /// Degrees of freedom on whose motions over the ground a law of the caller or a polynomial acts, in its
     /// order. Empty: the law acts on one motion, that between `dof_a` and `dof_b` along t1.
     pub dofs: Vec<usize>,
@@ -61,6 +64,7 @@ impl Contact {
             gap: self.gap,
             cubic: self.cubic,
             velocity: self.velocity,
+            slider: self.slider,
             has_normal: self.has_normal(),
         }
     }
@@ -210,6 +214,18 @@ impl Contact {
     #[doc(hidden)]
     pub fn role(&self) -> Role {
         self.ask(|law| law.role())
+    }
+
+    /// Number of directions in which the contact has a slider; 0 for laws without.
+    #[must_use]
+    pub fn sliders(&self) -> usize {
+        self.ask(|law| law.sliders())
+    }
+
+    /// Whether the place of a slider is given.
+    #[must_use]
+    pub fn is_placed(&self) -> bool {
+        self.slider.iter().any(|place| *place != 0.0)
     }
 
     /// Name of the contact if it has no normal load.

@@ -18,6 +18,8 @@ pub enum Constant {
     Kn,
     /// Closing at which a contact without preload begins to press.
     Gap,
+    /// Place of the slider before any motion along t1 (0) or t2 (1).
+    Slider(usize),
 }
 
 impl Constant {
@@ -30,6 +32,8 @@ impl Constant {
             Self::Kt => "kt",
             Self::Kn => "kn",
             Self::Gap => "gap",
+            Self::Slider(0) => "slider_t1",
+            Self::Slider(_) => "slider_t2",
         }
     }
 }
@@ -45,6 +49,8 @@ pub struct Combination {
     pub by_normal: f64,
     /// Factor of J e, with a normal motion of 1 at all times.
     pub by_shift: f64,
+    /// Factors of J e, with a motion of 1 along t1, t2 at all times.
+    pub by_slider: [f64; 2],
     /// Factor of the force f.
     pub force: f64,
     /// Factor of f − J x − J y: zero while the contact sticks.
@@ -114,7 +120,7 @@ impl ForceDerivative {
                 by_shift: gap / kn,
                 ..Combination::ZERO
             },
-            Constant::Mu | Constant::Kt => Combination::ZERO,
+            Constant::Mu | Constant::Kt | Constant::Slider(_) => Combination::ZERO,
         };
         Self {
             tangential: parts,
@@ -131,6 +137,7 @@ impl Combination {
         by_tangential: 0.0,
         by_normal: 0.0,
         by_shift: 0.0,
+        by_slider: [0.0; 2],
         force: 0.0,
         offset: 0.0,
     };
@@ -160,6 +167,17 @@ impl Combination {
         ..Self::ZERO
     };
 
+    /// −J e: the derivative by the place of the slider along t1 (0) or t2 (1).
+    #[must_use]
+    pub fn of_slider(k: usize) -> Self {
+        let mut by_slider = [0.0; 2];
+        by_slider[k.min(1)] = -1.0;
+        Self {
+            by_slider,
+            ..Self::ZERO
+        }
+    }
+
     /// The sum of two sets of numbers.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
@@ -168,6 +186,7 @@ impl Combination {
             by_tangential: self.by_tangential + other.by_tangential,
             by_normal: self.by_normal + other.by_normal,
             by_shift: self.by_shift + other.by_shift,
+            by_slider: [0, 1].map(|k| self.by_slider[k] + other.by_slider[k]),
             force: self.force + other.force,
             offset: self.offset + other.offset,
         }
@@ -180,6 +199,8 @@ impl Combination {
             + self.by_tangential * parts.by_tangential
             + self.by_normal * parts.by_normal
             + self.by_shift * parts.by_shift
+            + self.by_slider[0] * parts.by_slider[0]
+            + self.by_slider[1] * parts.by_slider[1]
             + self.force * parts.force
             + self.offset * parts.offset
     }
@@ -190,6 +211,7 @@ impl Combination {
             by_tangential: self.by_tangential / value,
             by_normal: self.by_normal / value,
             by_shift: self.by_shift / value,
+            by_slider: self.by_slider.map(|x| x / value),
             force: self.force / value,
             offset: self.offset / value,
         }

@@ -83,6 +83,11 @@ pub trait ContactLaw {
         false
     }
 
+    /// Number of directions, the first ones, in which friction has a slider whose place may be given.
+    fn sliders(&self) -> usize {
+        0
+    }
+
     /// A bound of the force in each direction over all motions; infinite where there is none.
     fn largest_force(&self) -> f64 {
         f64::INFINITY
@@ -279,6 +284,9 @@ pub trait PlaneFriction: Law {
     /// kt
     fn stiffness(&self) -> f64;
 
+    /// Places of the slider before any motion.
+    fn slider(&self) -> [f64; 2];
+
     /// a and b
     fn limit(&self) -> [f64; 2];
 
@@ -409,6 +417,9 @@ pub trait EventLaw: Debug + Send + Sync {
 
 /// A slider in time, the memory of friction.
 pub trait SliderLaw {
+    /// The slider's place before any motion.
+    fn start(&self) -> f64;
+
     /// The slider after any motion that ends at x and y, from w: the play operator.
     fn drag(&self, motion: [f64; 2], w: f64) -> f64;
 

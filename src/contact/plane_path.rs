@@ -237,8 +237,9 @@ impl PlanePath {
         })
     }
 
-    /// Takes a packed motion x₁, x₂ and, where the limit depends on it, y: u = kt·x, R = a + b·y with `limit` = [a, b].
-    pub fn load(&mut self, kt: f64, limit: [f64; 2], motion: &[f64]) {
+    /// Takes a packed motion x₁, x₂ and, where the limit depends on it, y: u = kt·(x − w) from the place w of the slider
+    /// before any motion, R = a + b·y with `limit` = [a, b].
+    pub fn load(&mut self, (kt, slider): (f64, [f64; 2]), limit: [f64; 2], motion: &[f64]) {
         let m = self.motion.set.packed_len();
         self.constant_limit = limit[0];
         let scales = [kt, kt, limit[1]];
@@ -251,6 +252,11 @@ impl PlanePath {
         {
             for (s, x) in signal.iter_mut().zip(x) {
                 *s = scale * x;
+            }
+        }
+        if self.motion.set.has_mean() {
+            for (signal, w) in self.motion.signals.chunks_exact_mut(m.max(1)).zip(slider) {
+                signal[0] -= kt * w;
             }
         }
         let spacing = self.spacing();

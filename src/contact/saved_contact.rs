@@ -98,6 +98,7 @@ impl Contact {
             gap,
             cubic,
             velocity,
+            slider: [0.0; 2],
             dofs,
         })
     }

@@ -156,6 +156,9 @@ impl Model {
             contacts: digest(|out| {
                 for contact in &self.contacts {
                     contact.digest_to(out);
+                    for place in contact.slider {
+                        out.f64(place);
+                    }
                 }
                 for load in &self.speed_loads {
                     out.count(load.contact);

@@ -12,6 +12,21 @@ use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
 impl Model {
+    /// Places the slider of a friction contact before any motion along t1 (`direction` 0) or t2 (1): the residual state that
+    /// an assembly or an earlier load has left. A contact that sticks through the period has the force kt·(x − place); a
+    /// place from which its limit would drag it acts as the nearest one within. A contact that slips or opens in every
+    /// period forgets it.
+    ///
+    /// # Errors
+    /// `Index` for an unknown contact; `Unsupported` for a direction in which the contact has no slider, or an infinite
+    /// preload; `NotFinite`.
+    pub fn set_slider(&mut self, id: usize, direction: usize, place: f64) -> Result<()> {
+        if direction > 1 {
+            return fail!(Index, "direction = {direction}, needs 0 for t1 or 1 for t2");
+        }
+        self.set_constant(id, Constant::Slider(direction), place)
+    }
+
     /// Multiplies all forces, unbalance included.
     ///
     /// # Errors
@@ -39,6 +54,15 @@ impl Model {
                 contact.law_name()
             );
         }
+        if let Constant::Slider(k) = constant {
+            let mut changed = contact.clone();
+            changed.slider[k] = value;
+            changed.check_constants()?;
+            if let Some(place) = self.contact_mut(id) {
+                *place = changed;
+            }
+            return Ok(());
+        }
         let load = self.speed_loads().iter().find(|load| load.contact == id).copied();
         let mut changed = contact.clone();
         match (constant, &load) {
@@ -48,6 +72,7 @@ impl Model {
             (Constant::Kt, _) => changed.kt = value,
             (Constant::Kn, _) => changed.kn = value,
             (Constant::Gap, _) => changed.gap = value,
+            (Constant::Slider(k), _) => changed.slider[k] = value,
         }
         changed.check_constants()?;
         changed.check_stiffness()?;

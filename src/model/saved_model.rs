@@ -2,7 +2,8 @@
 //! about results is in them; a loaded model solves to the same bits.
 //!
 //! Little-endian: mark (8 bytes), version (4), 0 (4), length L of the model (8), the model (L), checksum of all
-//! bytes before it (8). Version 2 adds the aerodynamic influence; a model without is written as version 1.
+//! bytes before it (8). Version 2 adds the aerodynamic influence, version 3 the places of sliders; a model
+//! without is written as an earlier version.
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
@@ -19,7 +20,7 @@ use num_complex::Complex64;
 const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Bytes before the model.
 const HEAD: usize = 24;
@@ -56,7 +57,11 @@ impl Model {
     pub fn save_into(&self, buffer: &mut [u8]) -> Result<usize> {
         let mut out = ByteWriter::new(buffer);
         out.bytes(&MARK);
-        out.u32(if self.structure.has_aero() { VERSION } else { 1 });
+        out.u32(match (self.has_places(), self.structure.has_aero()) {
+            (true, _) => VERSION,
+            (false, true) => 2,
+            (false, false) => 1,
+        });
         out.u32(0);
         // The length is known at the end.
         out.count(0);
@@ -117,10 +122,25 @@ impl Model {
                 out.f64(value);
             }
         }
+        if self.has_places() {
+            out.bool(self.structure.has_aero());
+        }
         if self.structure.has_aero() {
             self.save_aero(out);
         }
+        if self.has_places() {
+            for contact in &self.contacts {
+                for place in contact.slider {
+                    out.f64(place);
+                }
+            }
+        }
         Ok(())
+    }
+
+    /// Whether the place of a slider is given.
+    fn has_places(&self) -> bool {
+        self.contacts.iter().any(Contact::is_placed)
     }
 
     fn content_from(input: &mut ByteReader<'_>, version: u32) -> Result<Self> {
@@ -178,8 +198,15 @@ impl Model {
             }
             try_push(&mut model.speed_loads, load, CONTEXT)?;
         }
-        if version >= 2 {
+        let has_places = version >= 3;
+        if version == 2 || (has_places && input.bool()?) {
             model.load_aero(input)?;
+        }
+        for (i, contact) in model.contacts.iter_mut().enumerate().filter(|_| has_places) {
+            contact.slider = [input.f64()?, input.f64()?];
+            contact
+                .check_constants()
+                .map_err(|e| e.at(format_args!("contact {i}")))?;
         }
         Ok(model)
     }

@@ -91,7 +91,10 @@ impl ContactMotion {
             }
             None => None,
         };
-        let mut parts = [(); 3].map(|()| Vec::new());
+        let slider = contact.slider.map(|w| w / length);
+        // J x over the tangential motions, J y over the normal one, J e of a unit normal motion, J e of unit motions along t1
+        // and t2.
+        let mut parts = [(); 5].map(|()| Vec::new());
         for part in &mut parts {
             *part = try_vec(size, 0.0, CONTEXT)?;
         }
@@ -102,6 +105,12 @@ impl ContactMotion {
                 add_product(1.0, columns, y, &mut parts[usize::from(normal)]);
                 if normal && set.has_mean() {
                     parts[2].copy_from_slice(&columns[..size]);
+                } else if k < contact.sliders() && set.has_mean() {
+                    // Motions count from the slider's place before any motion.
+                    parts[3 + k].copy_from_slice(&columns[..size]);
+                    for (part, column) in parts[0].iter_mut().zip(columns) {
+                        *part -= slider[k] * column;
+                    }
                 }
             }
         }
@@ -115,10 +124,14 @@ impl ContactMotion {
             if let Some(found) = &evaluation {
                 own.by_tangential = length * along(&parts[0]);
                 own.force = length * along(&found.force);
+                own.by_slider = [along(&parts[3]), along(&parts[4])];
                 if self.normal == Some(k) || !found.stuck {
                     own.by_normal = length * along(&parts[1]);
                     own.by_shift = along(&parts[2]);
                     own.offset = length * along(&found.offset);
+                    for (k, w) in slider.iter().enumerate() {
+                        own.offset += w * length * own.by_slider[k];
+                    }
                 }
             }
             let sum = if self.normal == Some(k) {

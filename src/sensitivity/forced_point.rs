@@ -283,6 +283,45 @@ impl<'a> ForcedPoint<'a> {
         self.problem.sampling_error(u, omega)
     }
 
+    /// Newton's step at the point of which the adjoint was made last.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn newton_step(&self) -> Result<Vec<f64>> {
+        let mut step = try_copy(&self.at.values, CONTEXT)?;
+        for x in &mut step {
+            *x = -*x;
+        }
+        self.system.solve(&mut step);
+        Ok(step)
+    }
+
+    /// The change of the motions by the place of a slider that sticks through the period, with the stiffness of its spring along
+    /// a coordinate, at the point of which the adjoint was made last and at a fixed frequency: that under a constant load.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn by_slider(&mut self, (coordinate, stiffness): (usize, f64), omega: f64) -> Result<Vec<f64>> {
+        let condensed = self.condensed;
+        let set = condensed.set();
+        let m = set.packed_len();
+        let mut change = try_vec(condensed.unknowns(), 0.0, CONTEXT)?;
+        let mut moved = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
+        let Some((i, block)) = condensed.blocks().iter().enumerate().find(|(_, b)| b.number == 0) else {
+            return Ok(change);
+        };
+        for &(p, a) in block.rows[coordinate].terms() {
+            moved[p] += stiffness * a.conj();
+        }
+        self.workspace
+            .motion_under(condensed, i, omega, &mut moved, self.interrupt)?;
+        for (c, row) in block.rows.iter().enumerate() {
+            set.set(&mut change[c * m..(c + 1) * m], i, row.along(&moved));
+        }
+        self.system.solve(&mut change);
+        Ok(change)
+    }
+
     /// Residual at the point of which the adjoint was made last.
     pub fn residual(&self) -> &[f64] {
         &self.at.values

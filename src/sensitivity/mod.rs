@@ -34,4 +34,4 @@ pub(crate) use one_sided::contact_at_onset;
 pub use parameter::{Parameter, Reason};
 pub(crate) use peak_shift::peak_shift;
 pub(crate) use total_derivative::TotalDerivative;
-pub(crate) use tracked_response::{ResponsePoint, TrackedResponse};
+pub(crate) use tracked_response::{ResponsePoint, TrackedResponse, peak_row};

@@ -37,7 +37,8 @@ pub(crate) fn contact_at_onset(
                     *y *= factor;
                 }
             }
-            Ok(evaluate(&*law, (condensed, samples, adjoint.omega), &motion, interrupt)?.stuck)
+            let found = evaluate(&*law, (condensed, samples, adjoint.omega), &motion, interrupt)?;
+            Ok(found.linear && found.slip_fraction == 0.0 && found.open_fraction == 0.0)
         };
         if sticks(1.0 - NEAR)? && !sticks(1.0 + NEAR)? {
             return Ok(Some(number));

@@ -468,7 +468,12 @@ impl Tracked for TrackedResponse<'_> {
 }
 
 /// The derivatives of g = ∂A/∂ω − λᵀ ∂R/∂ω by the motions and by ω, at fixed p, and d²A/dω².
-fn peak_row(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64, adjoint: &Adjoint) -> Result<(Vec<f64>, f64)> {
+pub(crate) fn peak_row(
+    point: &mut ForcedPoint<'_>,
+    u: &[f64],
+    omega: f64,
+    adjoint: &Adjoint,
+) -> Result<(Vec<f64>, f64)> {
     let tangent = point.tangent(omega)?;
     let speed = norm(&tangent);
     let width = if speed > 0.0 { norm(u) / speed } else { omega };

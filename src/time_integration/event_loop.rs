@@ -42,10 +42,14 @@ pub(crate) struct State {
 impl State {
     /// The state at rest.
     pub fn rest(system: &System<'_>) -> Result<Self> {
+        let mut e = try_vec(system.elements.len(), 0.0, CONTEXT)?;
+        for (e, element) in e.iter_mut().zip(&system.elements) {
+            *e = element.slider().map_or(0.0, |slider| -slider.start());
+        }
         Ok(Self {
             x: try_vec(system.order(), 0.0, CONTEXT)?,
             v: try_vec(system.order(), 0.0, CONTEXT)?,
-            e: try_vec(system.elements.len(), 0.0, CONTEXT)?,
+            e,
         })
     }
 

@@ -71,7 +71,7 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
             transform.synthesise(&set, &packed, &mut motions, Lane { first: k, step: 2 });
         }
         // The slider's place is kept until the end, where the stretch follows from it and the motion at time 0.
-        let mut place = *stretch;
+        let mut place = slider.start();
         for motion in motions.chunks_exact(2).cycle().take(2 * times + 1) {
             place = slider.drag([motion[0], motion[1]], place);
         }

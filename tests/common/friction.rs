@@ -58,6 +58,7 @@ impl Random {
             kn: 1.0 + 0.9 * self.next(),
             mu: 0.6 + 0.5 * self.next(),
             load: 0.8 + 1.2 * self.next(),
+            slider: 0.0,
         };
         (law, motion)
     }
@@ -72,7 +73,17 @@ pub fn case(constants: [f64; 4], x: &[f64], closing: &[f64]) -> (Friction2d, Har
         c.iter().enumerate().map(part).collect()
     };
     let motion = [packed(x, 1.0), packed(closing, -1.0)].concat();
-    (Friction2d { kt, kn, mu, load }, set, motion)
+    (
+        Friction2d {
+            kt,
+            kn,
+            mu,
+            load,
+            slider: 0.0,
+        },
+        set,
+        motion,
+    )
 }
 
 pub const CONSTANTS: [f64; 4] = [1.0, 1.3, 0.4, 0.6];
@@ -107,7 +118,7 @@ pub struct March<'a> {
 
 impl March<'_> {
     pub fn run(&self, motion: &[f64], jacobian: Option<&mut [f64]>) -> Vec<f64> {
-        let Friction2d { kt, kn, mu, load } = *self.law;
+        let Friction2d { kt, kn, mu, load, .. } = *self.law;
         let (n, m) = (self.samples, self.set.packed_len());
         let mut basis = vec![0.0; m];
         let mut force = vec![0.0; 2 * m];

@@ -46,6 +46,7 @@ pub fn law(load: f64, has_normal: bool) -> Friction3d {
         mu: 0.4,
         load,
         has_normal,
+        slider: [0.0; 2],
     }
 }
 

@@ -112,6 +112,7 @@ fn a_constant_load_is_a_jenkins_contact() {
         let jenkins = Jenkins {
             stiffness: law.kt,
             limit: law.mu * law.load,
+            slider: 0.0,
         };
         let reference = scalar(&jenkins, &set, &motion[..m]);
         assert!(distance(&out.force[..m], &reference.force) < 1e-13);
@@ -166,6 +167,7 @@ fn a_contact_that_sticks_is_linear_and_is_dragged_along_by_its_bounds_alone() {
         kn: 1.0,
         mu: 0.5,
         load: 3.0,
+        slider: 0.0,
     };
     // x = 0.2 cos τ, y = 0.4 sin τ: N is between 2.6 and 3.4, |kt·x| at most 0.4.
     let out = evaluate(&law, &set, &[0.0, 0.2, 0.0, 0.0, 0.0, -0.4]);
@@ -197,6 +199,7 @@ fn a_load_in_phase_with_the_motion_has_its_closed_form() {
         kn,
         mu,
         load: 0.0,
+        slider: 0.0,
     };
     // Harmonics of max(cos τ, 0).
     let half = [1.0 / PI, 0.5, 0.0, 2.0 / (3.0 * PI), 0.0, 0.0, 0.0];
@@ -231,6 +234,7 @@ fn a_load_that_just_vanishes_is_the_limit_from_both_sides() {
                 kn: 1.0,
                 mu: 0.7,
                 load,
+                slider: 0.0,
             };
             evaluate(&law, &set, &motion)
         };
@@ -260,6 +264,7 @@ fn constants_without_friction_or_contact_give_no_force_and_no_nan() {
         kn: 1.0,
         mu: 0.5,
         load: 0.4,
+        slider: 0.0,
     };
     for law in [
         Friction2d { mu: 0.0, ..law },
@@ -333,6 +338,7 @@ fn ties_of_events_leave_the_force_right() {
                 kn: 1.0,
                 mu: 0.5,
                 load: (2.0 * law.load).round() * 0.5,
+                slider: 0.0,
             };
         } else {
             let ratio = law.kt / (law.mu * law.kn) * random.next().signum();

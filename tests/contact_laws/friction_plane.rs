@@ -105,6 +105,7 @@ fn straight_motion_obeys_the_law_of_one_direction() {
             kn: law.kn,
             mu: law.mu,
             load: law.load,
+            slider: 0.0,
         };
         let mut exact = Evaluation::new(&set, 2).unwrap();
         Evaluator::new(&set, 0, std::iter::once(&line as &dyn Law))
@@ -147,6 +148,7 @@ fn constant_load_on_a_line_is_the_jenkins_element_its_dragged_mean_included() {
     let jenkins = Jenkins {
         stiffness: law.kt,
         limit: law.mu * law.load,
+        slider: 0.0,
     };
     let play = law.mu * law.load / law.kt;
     for (mean, amplitude) in [(0.0, 3.0), (2.0, 1.4), (0.4, 0.5), (3.0, 0.5), (-3.0, 0.5), (0.9, 0.5)] {

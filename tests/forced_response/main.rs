@@ -5,6 +5,7 @@
 mod common;
 
 mod backward_waves;
+mod bands_of_many_sliders;
 mod capacity;
 mod continuation;
 mod derivatives;
@@ -13,12 +14,14 @@ mod duffing;
 mod duffing_folds;
 mod folds;
 mod full_wheel;
+mod load_history;
 mod many_contacts;
 mod mean_friction;
 mod preload;
 mod reduced_structures;
 mod reference_point;
 mod reference_response;
+mod residual_band;
 mod ring_damper_speeds;
 mod rotation;
 mod small_systems;

@@ -173,6 +173,11 @@ fn derivatives_by_parameters_are_computed_and_refused() {
 }
 
 #[test]
+fn residual_forces_have_their_freedom_and_band() {
+    silent("band", |_| vec![]);
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

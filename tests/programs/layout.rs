@@ -65,6 +65,8 @@ fn in_rust() -> String {
         hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
         hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop, response }
         hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved, responses, responses_len }
+        hbvib_band_options { struct_size, of, contacts, contacts_len, starts }
+        hbvib_band_info { struct_size, complete, sliders, states, solved, lower, upper, lower_omega, upper_omega, lower_gain, upper_gain, lower_at_limit, upper_at_limit }
         // END GENERATED
     }
 }

@@ -52,6 +52,8 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("", "n_spring", "2"),
     ("", "n_damper", "2"),
     ("", "capacity", "512"),
+    ("", "states_capacity", "4"),
+    ("hbvib_static_history", "steps", "1"),
     ("", "classes_len", "8"),
     ("", "multipliers_len", "8"),
     ("", "x_len", "30"),

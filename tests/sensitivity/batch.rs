@@ -55,6 +55,7 @@ fn value(change: &Change, new: &Design, step: f64) -> f64 {
                 Constant::Kt => contact.kt,
                 Constant::Kn => contact.kn,
                 Constant::Gap => contact.gap,
+                Constant::Slider(k) => contact.slider[*k],
             }
         }
     }

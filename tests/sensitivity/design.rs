@@ -171,6 +171,7 @@ fn constant_of(contact: &mut Contact, constant: Constant) -> &mut f64 {
         Constant::Kt => &mut contact.kt,
         Constant::Kn => &mut contact.kn,
         Constant::Gap => &mut contact.gap,
+        Constant::Slider(k) => &mut contact.slider[k],
     }
 }
 

@@ -96,7 +96,14 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Design studies",
         about: "parameters of a model, derivatives of results by them, responses over them",
-        files: &["sensitivities", "parameter_responses", "parameter_optima", "batch"],
+        files: &[
+            "sensitivities",
+            "parameter_responses",
+            "parameter_optima",
+            "batch",
+            "band",
+            "static_history",
+        ],
     },
     Section {
         title: "Low level",

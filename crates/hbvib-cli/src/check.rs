@@ -4,7 +4,7 @@ use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
 use crate::model_report::ModelReport;
-use crate::{campbell, map, motion_files, print, study, tornado};
+use crate::{band_curve, campbell, map, motion_files, print, study, tornado};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -87,6 +87,9 @@ pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     }
     if let Some(part) = &job.tornado {
         tornado::check(part, built)?;
+    }
+    if let Some(part) = &job.band {
+        band_curve::check(part, built)?;
     }
     Ok(())
 }

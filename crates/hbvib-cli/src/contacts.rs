@@ -120,6 +120,7 @@ pub fn contacts(
                 gap,
                 cubic: part.cubic * area,
                 velocity: part.velocity,
+                slider: [0.0; 2],
                 dofs: Vec::new(),
             })
         })

@@ -4,7 +4,7 @@ use crate::job_faces::FacesPart;
 use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
-use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
+use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::job_surfaces::SurfacesPart;
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
@@ -34,6 +34,7 @@ pub struct Job {
     pub study: Option<StudyPart>,
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
+    pub band: Option<BandPart>,
     pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
@@ -479,10 +480,11 @@ impl Job {
             self.study.is_some(),
             self.map.is_some(),
             self.tornado.is_some(),
+            self.band.is_some(),
         ];
         if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado] or [band]",
                 path.display()
             ));
         }

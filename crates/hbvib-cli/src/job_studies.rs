@@ -1,4 +1,4 @@
-//! The parts of a job that are computed over a quantity: Campbell diagrams, curves over a parameter, maps and tornados.
+//! The parts of a job that are computed over a quantity: Campbell diagrams, curves over a parameter, maps, tornados and bands.
 
 use crate::job::DofName;
 use schemars::JsonSchema;
@@ -134,6 +134,24 @@ pub struct AxisPart {
     pub to: f64,
     #[serde(default = "values")]
     pub points: usize,
+}
+
+/// The lower and the upper curve of a response over the forces that sticking contacts may keep.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BandPart {
+    /// Range of frequency.
+    pub from_hz: f64,
+    pub to_hz: f64,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<DofName>,
+    /// Starts of the search where several sliders are free.
+    pub starts: Option<usize>,
+    pub csv: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
 }
 
 /// Changes of the highest peak by quantities, from its derivatives, the largest first.

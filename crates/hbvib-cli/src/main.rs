@@ -9,6 +9,7 @@
 
 mod arguments;
 mod at_speeds;
+mod band_curve;
 mod build;
 mod calculix_results;
 mod calculix_run;

@@ -12,7 +12,8 @@ use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
-    campbell, check, contact_tables, html_report, map, motion_files, output, solutions, study, tornado, verification,
+    band_curve, campbell, check, contact_tables, html_report, map, motion_files, output, solutions, study, tornado,
+    verification,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -75,7 +76,7 @@ fn judged(job: &Job, (model, branch): (&Model, &Branch), stop: &AtomicBool, file
     }
 }
 
-/// Diagrams, curves, maps and tornados, each of its own.
+/// Diagrams, curves, maps, tornados and bands, each of its own.
 fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
     let model = &built.model;
     if let Some(part) = job.campbell.as_ref().filter(|_| end.goes_on(stop)) {
@@ -93,6 +94,10 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut File
     if let Some(part) = job.tornado.as_ref().filter(|_| end.goes_on(stop)) {
         let outcome = watched(stop, |hooks| tornado::write(part, built, hooks, files));
         ended(outcome, "tornado", stop, files, end);
+    }
+    if let Some(part) = job.band.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| band_curve::write(part, built, hooks, files));
+        ended(outcome, "band", stop, files, end);
     }
 }
 

@@ -199,6 +199,8 @@ fn of_contact(model: &Model, constant: Constant, id: usize) -> f64 {
         Constant::Mu => of(|contact| contact.mu),
         Constant::Kt => of(|contact| contact.kt),
         Constant::Kn => of(|contact| contact.kn),
+        Constant::Slider(0) => of(|contact| contact.slider[0]),
+        Constant::Slider(_) => of(|contact| contact.slider[1]),
     }
 }
 

@@ -12,13 +12,13 @@ thread_local! {
 
 /// The matrices of a file, and the report on them.
 pub struct HbvibIoFile {
-    found: Matrices,
+    pub(crate) found: Matrices,
     facts: Vec<CString>,
     warnings: Vec<CString>,
 }
 
 impl HbvibIoFile {
-    fn new(found: Matrices) -> Self {
+    pub(crate) fn new(found: Matrices) -> Self {
         let report = crate::report(&found);
         let lines = |all: Vec<String>| all.into_iter().filter_map(|line| CString::new(line).ok()).collect();
         Self {
@@ -32,27 +32,27 @@ impl HbvibIoFile {
 /// A matrix as the caller sees it; the arrays belong to the file.
 #[repr(C)]
 pub struct HbvibIoMatrix {
-    rows: i64,
-    columns: i64,
-    entries: i64,
-    is_complex: i32,
-    symmetry: i32,
-    row: *const u32,
-    column: *const u32,
-    values: *const f64,
+    pub(crate) rows: i64,
+    pub(crate) columns: i64,
+    pub(crate) entries: i64,
+    pub(crate) is_complex: i32,
+    pub(crate) symmetry: i32,
+    pub(crate) row: *const u32,
+    pub(crate) column: *const u32,
+    pub(crate) values: *const f64,
 }
 
-const OK: i32 = 0;
+pub(crate) const OK: i32 = 0;
 const ABSENT: i32 = 1;
-const FAILED: i32 = -1;
+pub(crate) const FAILED: i32 = -1;
 
-fn report(sentence: &str) -> i32 {
+pub(crate) fn report(sentence: &str) -> i32 {
     LAST_ERROR.with(|last| *last.borrow_mut() = CString::new(sentence.replace('\0', " ")).unwrap_or_default());
     FAILED
 }
 
 /// Runs `body`; a panic becomes a status.
-fn guarded(body: impl FnOnce() -> i32) -> i32 {
+pub(crate) fn guarded(body: impl FnOnce() -> i32) -> i32 {
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| report("internal error: the reader panicked"))
 }
 
@@ -135,13 +135,13 @@ pub unsafe extern "C" fn hbvib_io_report_line(file: *const HbvibIoFile, warnings
 }
 
 #[cfg(unix)]
-fn path_of(bytes: &[u8]) -> PathBuf {
+pub(crate) fn path_of(bytes: &[u8]) -> PathBuf {
     use std::os::unix::ffi::OsStrExt;
     PathBuf::from(std::ffi::OsStr::from_bytes(bytes))
 }
 
 #[cfg(not(unix))]
-fn path_of(bytes: &[u8]) -> PathBuf {
+pub(crate) fn path_of(bytes: &[u8]) -> PathBuf {
     PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
 }
 

@@ -13,6 +13,8 @@ mod bytes_read;
 mod calculix;
 #[allow(unsafe_code, reason = "the C interface")]
 mod capi;
+#[allow(unsafe_code, reason = "the C interface")]
+mod capi_write;
 mod columns;
 mod consistency;
 mod directions;
@@ -24,6 +26,8 @@ mod face_shapes;
 mod harwell_boeing;
 mod lines;
 mod matlab;
+#[cfg(feature = "hdf5")]
+mod matlab_hdf5;
 mod matrix;
 mod matrix_market;
 mod named_matrices;
@@ -58,6 +62,7 @@ mod write_dmig;
 mod write_market;
 mod write_npz;
 mod write_op4;
+mod write_universal;
 mod write_user_element;
 mod zip_archive;
 
@@ -79,6 +84,7 @@ pub use write_dmig::write_dmig;
 pub use write_market::write_matrix_market;
 pub use write_npz::{write_npz, write_scipy_npz};
 pub use write_op4::{Op4Form, write_op4};
+pub use write_universal::write_universal;
 pub use write_user_element::write_user_element;
 
 /// Result with the crate's [`Error`].

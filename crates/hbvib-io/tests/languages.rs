@@ -24,12 +24,50 @@ fn printed(command: &mut Command) -> String {
 
 #[test]
 fn a_c_program_reads_a_job_and_gets_a_sentence_for_a_file_that_is_not_there() {
-    let folder = std::env::temp_dir().join(format!("hbvib_io_c_{}", std::process::id()));
+    let job = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/sector.mas");
+    let (folder, text) = c_program("read", READS, &[job.as_os_str()]);
+    assert_eq!(text, "24 24 1 0, -2.7921933406855e+07 at 0 1 of 3.2\n");
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+/// Compiles a program in C against the library, and runs it in a folder.
+fn c_program(name: &str, text: &str, arguments: &[&std::ffi::OsStr]) -> (PathBuf, String) {
+    let folder = std::env::temp_dir().join(format!("hbvib_io_{name}_{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let source = folder.join("io.c");
-    std::fs::write(
-        &source,
-        r#"
+    std::fs::write(folder.join("io.c"), text).unwrap();
+    let library = library();
+    let place = library.parent().unwrap().display();
+    printed(
+        Command::new("cc")
+            .args([
+                "-std=c99",
+                "-Wall",
+                "-Wextra",
+                "-pedantic",
+                "-Werror",
+                "-o",
+                "io",
+                "io.c",
+            ])
+            .current_dir(&folder)
+            .arg(format!(
+                "-I{}",
+                root().join("include").canonicalize().unwrap().display()
+            ))
+            .args([format!("-L{place}"), format!("-Wl,-rpath,{place}"), "-lhbvib_io".into()]),
+    );
+    // Cargo names other folders in which an older library may lie.
+    let mut program = Command::new(folder.join("io"));
+    let text = printed(
+        program
+            .args(arguments)
+            .current_dir(&folder)
+            .env("LD_LIBRARY_PATH", library.parent().unwrap()),
+    );
+    (folder, text)
+}
+
+const READS: &str = r#"
 #include "hbvib_io.h"
 #include <stdio.h>
 #include <string.h>
@@ -61,25 +99,125 @@ int main(int argc, char **argv)
     hbvib_io_free(file);
     return 0;
 }
-"#,
-    )
-    .unwrap();
-    let program = folder.join("io");
-    let library = library();
-    let place = library.parent().unwrap().display();
-    printed(
-        Command::new("cc")
-            .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-o"])
-            .arg(&program)
-            .arg(&source)
-            .arg(format!("-I{}", root().join("include").display()))
-            .args([format!("-L{place}"), format!("-Wl,-rpath,{place}"), "-lhbvib_io".into()]),
+"#;
+
+#[test]
+fn a_c_program_writes_a_superelement_and_results() {
+    let (folder, _) = c_program("write", WRITES, &[]);
+    for name in ["model.op4", "model.pch", "model.npz"] {
+        let found = hbvib_io::read(&folder.join(name)).unwrap();
+        let full = |a: &hbvib_io::Matrix| {
+            let mut full = [[0.0; 2]; 2];
+            for ((i, j), v) in a.row.iter().zip(&a.column).zip(&a.values) {
+                full[*i as usize][*j as usize] += v;
+                if i != j && a.symmetry == hbvib_io::Symmetry::Symmetric {
+                    full[*j as usize][*i as usize] += v;
+                }
+            }
+            full
+        };
+        assert_eq!(
+            found.stiffness.as_ref().map(full),
+            Some([[2.0, -1.0], [-1.0, 2.5]]),
+            "{name}"
+        );
+        assert_eq!(found.mass.as_ref().map(full), Some([[1.0, 0.0], [0.0, 3.0]]), "{name}");
+        if name != "model.op4" {
+            assert_eq!(found.dofs, [(4, 1), (7, 3)], "{name}");
+        }
+    }
+    let results = hbvib_io::read_universal(&folder.join("results.uff")).unwrap();
+    assert_eq!(
+        (results.nodes.len(), results.nodes[1].number, results.nodes[1].position),
+        (2, 7, [0.5, 0.25, 1e-3])
     );
-    let job = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/sector.mas");
-    let text = printed(Command::new(program).arg(job));
-    assert_eq!(text, "24 24 1 0, -2.7921933406855e+07 at 0 1 of 3.2\n");
+    let shape = &results.shapes[0];
+    assert_eq!((&shape.nodes[..], shape.reals[0], shape.per_node), (&[7][..], 12.5, 3));
+    assert_eq!(shape.values, [(1.0, 2.0), (3.0, 4.0), (5.0, -6.5)]);
+    let function = &results.functions[0];
+    assert_eq!((function.response, &function.abscissa[..]), ((7, 3), &[10.0, 20.0][..]));
+    assert_eq!(
+        (&function.values[..], &function.text[0][..]),
+        (&[(1.0, 0.0), (0.25, -1.0)][..], "tip?    -1")
+    );
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+const WRITES: &str = r#"
+#include "hbvib_io.h"
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#define NEEDS(x) if (!(x)) return __LINE__
+#define REFUSED(x, word) if ((x) != -1 || !strstr(hbvib_io_last_error(), word)) return __LINE__
+
+int main(void)
+{
+    const uint32_t row[] = {0, 1, 1}, column[] = {0, 0, 1};
+    const double values[] = {2.0, -1.0, 2.5}, masses[] = {1.0, 3.0}, bad[] = {1.0, NAN};
+    const int64_t dofs[] = {4, 1, 7, 3}, nodes[] = {4, 7};
+    const double at[] = {0, 0, 0, 0.5, 0.25, 1e-3}, motion[] = {1, 2, 3, 4, 5, -6.5};
+    const double hertz[] = {10, 20}, response[] = {1, 0, 0.25, -1};
+    const uint32_t diagonal[] = {0, 1};
+    hbvib_io_matrix k = {2, 2, 3, 0, HBVIB_IO_SYMMETRIC, NULL, NULL, NULL};
+    hbvib_io_matrix m = {2, 2, 2, 0, HBVIB_IO_SYMMETRIC, NULL, NULL, NULL};
+    hbvib_io_file *file = NULL;
+    hbvib_io_results *results = NULL;
+    REFUSED(hbvib_io_new(NULL), "out is NULL");
+    NEEDS(hbvib_io_new(&file) == 0 && file);
+    REFUSED(hbvib_io_set_matrix(file, HBVIB_IO_STIFFNESS, &k), "NULL");
+    k.row = row; k.column = column; k.values = values;
+    m.row = m.column = diagonal; m.values = masses;
+    REFUSED(hbvib_io_set_matrix(file, 9, &k), "which needs");
+    REFUSED(hbvib_io_set_matrix(NULL, 2, &k), "NULL");
+    k.rows = 1;
+    REFUSED(hbvib_io_set_matrix(file, HBVIB_IO_STIFFNESS, &k), "outside");
+    k.rows = -1;
+    REFUSED(hbvib_io_set_matrix(file, HBVIB_IO_STIFFNESS, &k), "out of range");
+    k.rows = 2; k.symmetry = 4;
+    REFUSED(hbvib_io_set_matrix(file, HBVIB_IO_STIFFNESS, &k), "symmetry");
+    k.symmetry = HBVIB_IO_SYMMETRIC;
+    m.values = bad;
+    REFUSED(hbvib_io_set_matrix(file, HBVIB_IO_MASS, &m), "finite");
+    m.values = masses;
+    NEEDS(hbvib_io_set_matrix(file, HBVIB_IO_STIFFNESS, &k) == 0);
+    NEEDS(hbvib_io_set_matrix(file, HBVIB_IO_MASS, &m) == 0);
+    REFUSED(hbvib_io_set_dofs(file, 2, NULL), "table is NULL");
+    REFUSED(hbvib_io_set_dofs(file, -2, dofs), "out of range");
+    REFUSED(hbvib_io_set_dofs(NULL, 2, dofs), "file is NULL");
+    NEEDS(hbvib_io_set_dofs(file, 2, dofs) == 0);
+    NEEDS(hbvib_io_write(file, "model.op4", "op4-binary") == 0);
+    NEEDS(hbvib_io_write(file, "model.pch", NULL) == 0);
+    NEEDS(hbvib_io_write(file, "model.npz", NULL) == 0);
+    REFUSED(hbvib_io_write(file, "model.xyz", NULL), "one of op4");
+    REFUSED(hbvib_io_write(file, "model.npz", "op5"), "one of op4");
+    REFUSED(hbvib_io_write(file, "/nowhere/model.npz", NULL), "cannot be written");
+    REFUSED(hbvib_io_write(file, NULL, NULL), "path is NULL");
+    REFUSED(hbvib_io_write(NULL, "model.npz", NULL), "file is NULL");
+    hbvib_io_free(file);
+    REFUSED(hbvib_io_results_new(2, nodes, at, NULL), "out is NULL");
+    REFUSED(hbvib_io_results_new(2, NULL, at, &results), "nodes is NULL");
+    REFUSED(hbvib_io_results_new(-1, nodes, at, &results), "out of range");
+    NEEDS(hbvib_io_results_new(2, nodes, at, &results) == 0);
+    REFUSED(hbvib_io_results_add_shape(NULL, "", 1.0, 1, nodes, motion), "results is NULL");
+    REFUSED(hbvib_io_results_add_shape(results, "", 1.0, 1, nodes, NULL), "values is NULL");
+    REFUSED(hbvib_io_results_add_shape(results, "", 1.0, -1, nodes, motion), "out of range");
+    NEEDS(hbvib_io_results_add_shape(results, NULL, 12.5, 1, nodes + 1, motion) == 0);
+    REFUSED(hbvib_io_results_add_function(NULL, "", 7, 3, 2, hertz, response), "results is NULL");
+    REFUSED(hbvib_io_results_add_function(results, "", 7, 3, 2, NULL, response), "NULL");
+    REFUSED(hbvib_io_results_add_function(results, "", 7, 3, -2, hertz, response), "out of range");
+    NEEDS(hbvib_io_results_add_function(results, "tip\n    -1", 7, 3, 2, hertz, response) == 0);
+    REFUSED(hbvib_io_results_write(NULL, "results.uff"), "results is NULL");
+    REFUSED(hbvib_io_results_write(results, NULL), "path is NULL");
+    NEEDS(hbvib_io_results_write(results, "results.uff") == 0);
+    NEEDS(hbvib_io_results_add_function(results, NULL, 7, 3, 2, bad, response) == 0);
+    REFUSED(hbvib_io_results_write(results, "bad.uff"), "finite");
+    hbvib_io_results_free(results);
+    hbvib_io_results_free(NULL);
+    return 0;
+}
+"#;
 
 #[test]
 fn python_gets_scipy_matrices() {
@@ -109,6 +247,22 @@ except hbvib_io.ReadError as error:
     assert "make.py, line" in str(error), error
 else:
     raise AssertionError("read a program")
+import tempfile
+with tempfile.TemporaryDirectory() as folder:
+    at = os.path.join(folder, "a.")
+    for end, form in (("op4", None), ("op4", "op4-binary"), ("npz", None), ("pch", None), ("inp", None)):
+        hbvib_io.write(at + end, stiffness=stiffness, mass=mass.toarray(), dofs=dofs, format=form)
+        found = hbvib_io.read(at + end)
+        assert abs(found.stiffness - stiffness).max() <= 1e-8 * abs(stiffness).max() and found.mass.shape == (24, 24), end
+    loss = np.array([[1, 2j], [2, 3.5]])
+    hbvib_io.write(at + "npz", stiffness=np.eye(2), structural=loss)
+    assert (hbvib_io.read(at + "npz").structural.toarray() == loss).all()
+    for wrong in (dict(), dict(stiffness=np.eye(2), mass=np.eye(3)), dict(stiffness=[[np.nan]]), dict(stiffness=np.eye(2), dofs=[1])):
+        try:
+            hbvib_io.write(at + "op4", **wrong)
+        except hbvib_io.WriteError:
+            continue
+        raise AssertionError(wrong)
 print("ok")
 "#;
     let own = root().join(".venv/bin/python");

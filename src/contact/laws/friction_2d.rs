@@ -17,7 +17,7 @@
 //!
 //! The period map of the slider is s ↦ clamp(s), so that the state after any slip or opening does not depend on
 //! the state before: a walk that begins there has the periodic state at once. A slider that never slips nor
-//! opens is loaded slowly from s = 0 and dragged along just so far as its bounds need. See Petrov & Ewins,
+//! opens is loaded slowly from s = 0, or from the place where it was left, and dragged along just so far as its bounds need. See Petrov & Ewins,
 //! J. Turbomach. 125 (2003) 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
@@ -48,6 +48,7 @@ pub struct Friction2dContact {
     gap: f64,
     clearance: f64,
     load: f64,
+    slider: f64,
 }
 
 impl Friction2dContact {
@@ -60,6 +61,7 @@ impl Friction2dContact {
             gap: constants.gap,
             clearance: constants.clearance(),
             load: constants.load(),
+            slider: constants.slider[0],
         }
     }
 }
@@ -83,6 +85,7 @@ pub(super) fn under_varying_load(constant: Constant, (kt, kn, mu, gap): (f64, f6
         Constant::Mu => ForceDerivative::by_factor(mu, Combination::BY_LIMIT),
         Constant::Preload | Constant::Kn | Constant::Gap if kn == 0.0 => ForceDerivative::ONE_SIDED,
         Constant::Preload | Constant::Kn | Constant::Gap => ForceDerivative::of_normal_load(constant, kn, gap),
+        Constant::Slider(k) => ForceDerivative::tangential(Combination::of_slider(k)),
     }
 }
 
@@ -135,11 +138,18 @@ impl ContactLaw for Friction2dContact {
         true
     }
 
+    fn sliders(&self) -> usize {
+        1
+    }
+
     fn is_preloaded(&self) -> bool {
         self.kn > 0.0 && self.load >= 0.0
     }
 
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        if constant == Constant::Slider(1) {
+            return None;
+        }
         Some(under_varying_load(constant, (self.kt, self.kn, self.mu, self.gap)))
     }
 
@@ -153,6 +163,7 @@ impl ContactLaw for Friction2dContact {
             kn: self.kn,
             mu: self.mu,
             load: self.load / length,
+            slider: self.slider / length,
         }))
     }
 
@@ -168,7 +179,7 @@ impl ContactLaw for Friction2dContact {
                 ..LawInTime::events(spring)
             });
         }
-        let slider = Slider::under_varying_load(self.kt, self.kn, self.mu, self.load);
+        let slider = Slider::under_varying_load(self.kt, self.kn, self.mu, self.load).starting_at(self.slider);
         Ok(LawInTime::events(slider))
     }
 }
@@ -184,6 +195,8 @@ pub struct Friction2d {
     pub mu: f64,
     /// n₀, the normal load at rest; negative: minus kn times the gap at rest.
     pub load: f64,
+    /// Place of the slider before any motion.
+    pub slider: f64,
 }
 
 impl Law for Friction2d {
@@ -249,6 +262,7 @@ impl VaryingNormalLoad for Friction2d {
                 kn: self.kn,
                 mu: self.mu,
                 load: self.load,
+                slider: self.kt * self.slider,
             },
             set,
             motion: (x, y),
@@ -272,7 +286,12 @@ impl Friction2d {
         if self.kt == 0.0 || self.mu == 0.0 {
             return [f64::INFINITY; 2];
         }
-        slider_in_line(self.kt * rest, limit, self.kt * x, self.mu * self.kn * y)
+        slider_in_line(
+            self.kt * (rest - self.slider),
+            limit,
+            self.kt * x,
+            self.mu * self.kn * y,
+        )
     }
 
     /// Pieces of the normal force.
@@ -320,15 +339,16 @@ fn always_closed(walk: &mut Walk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
     if room < 0.0 && !upper.turning_points.is_empty() {
         return walk.run([highest.tau, highest.tau + TAU], Phase::slip(0, highest.tau), interrupt);
     }
-    let dragged = if highest.x > limit {
+    let slider = walk.play.slider;
+    let dragged = if highest.x - slider > limit {
         Some((1.0, highest.tau))
-    } else if lowest.x < -limit {
+    } else if lowest.x - slider < -limit {
         Some((-1.0, lowest.tau))
     } else {
         None
     };
     let play = &walk.play;
-    let mut piece = dragged.map_or(play.stick(), |(sign, tau)| play.stick_after_slip(sign, tau));
+    let mut piece = dragged.map_or(play.stick_from_start(), |(sign, tau)| play.stick_after_slip(sign, tau));
     (piece.start, piece.end) = (0.0, TAU);
     walk.pieces.push(piece);
     Ok(())

@@ -26,9 +26,16 @@ pub(super) struct Slider {
     kn: f64,
     /// The y at which the contact opens, n₀/kn; infinite under a constant load.
     opening: f64,
+    /// The slider's place before any motion.
+    start: f64,
 }
 
 impl Slider {
+    /// The same with the slider at a place before any motion.
+    pub(super) fn starting_at(self, start: f64) -> Self {
+        Self { start, ..self }
+    }
+
     /// Under the constant load of a Jenkins contact.
     pub(super) fn under_constant_load(kt: f64, slip_limit: f64) -> Self {
         Self {
@@ -37,6 +44,7 @@ impl Slider {
             fall: 0.0,
             kn: 0.0,
             opening: f64::INFINITY,
+            start: 0.0,
         }
     }
 
@@ -48,6 +56,7 @@ impl Slider {
             fall: mu * kn / kt,
             kn,
             opening: load / kn,
+            start: 0.0,
         }
     }
 
@@ -67,6 +76,10 @@ impl Slider {
 }
 
 impl SliderLaw for Slider {
+    fn start(&self) -> f64 {
+        self.start
+    }
+
     fn drag(&self, [x, y]: [f64; 2], w: f64) -> f64 {
         let range = self.range(y);
         w.max(x - range).min(x + range)

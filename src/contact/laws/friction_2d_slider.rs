@@ -21,9 +21,19 @@ pub(super) struct Play {
     pub(super) kn: f64,
     pub(super) mu: f64,
     pub(super) load: f64,
+    /// s before any motion.
+    pub(super) slider: f64,
 }
 
 impl Play {
+    /// Stick of a slider that has not moved.
+    pub(super) fn stick_from_start(&self) -> CoupledPiece {
+        CoupledPiece {
+            constant: if self.slider == 0.0 { 0.0 } else { -self.slider },
+            ..self.stick()
+        }
+    }
+
     /// Stick of a slider at s = 0.
     pub(super) fn stick(&self) -> CoupledPiece {
         CoupledPiece {

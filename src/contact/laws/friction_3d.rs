@@ -114,6 +114,10 @@ impl ContactLaw for Friction3dContact {
         true
     }
 
+    fn sliders(&self) -> usize {
+        2
+    }
+
     fn largest_force(&self) -> f64 {
         if self.constants.kn == 0.0 {
             self.slip_limit
@@ -127,7 +131,8 @@ impl ContactLaw for Friction3dContact {
     }
 
     fn is_preloaded(&self) -> bool {
-        self.role() == Role::Active && self.constants.kn > 0.0 && self.load >= 0.0
+        let is_pressed = self.constants.kn > 0.0 && self.load >= 0.0;
+        self.role() == Role::Active && (is_pressed || self.constants.slider.iter().any(|w| *w != 0.0))
     }
 
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
@@ -139,6 +144,7 @@ impl ContactLaw for Friction3dContact {
             Constant::Kt => Some(ForceDerivative::by_factor(c.kt, Combination::BY_TANGENTIAL)),
             Constant::Mu => Some(ForceDerivative::by_factor(c.mu, Combination::BY_LIMIT)),
             Constant::Preload => Some(ForceDerivative::by_factor(c.preload, Combination::BY_LIMIT)),
+            Constant::Slider(k) => Some(ForceDerivative::tangential(Combination::of_slider(k))),
             Constant::Kn | Constant::Gap => None,
         }
     }
@@ -160,6 +166,7 @@ impl ContactLaw for Friction3dContact {
             mu: c.mu,
             load: self.load / length,
             has_normal: c.has_normal,
+            slider: c.slider.map(|w| w / length),
         }))
     }
 
@@ -184,6 +191,8 @@ pub struct Friction3d {
     pub load: f64,
     /// Whether the normal motion y is the third direction; if not, the load is constant.
     pub has_normal: bool,
+    /// Place of the slider before any motion.
+    pub slider: [f64; 2],
 }
 
 impl Law for Friction3d {
@@ -192,7 +201,7 @@ impl Law for Friction3d {
     }
 
     fn is_odd(&self) -> bool {
-        !self.has_normal
+        !self.has_normal && self.slider.iter().all(|w| *w == 0.0)
     }
 
     fn form(&self) -> Form<'_> {
@@ -223,7 +232,7 @@ impl Law for Friction3d {
         if load < 0.0 || self.kt == 0.0 || self.mu == 0.0 {
             return closing;
         }
-        let force = [self.kt * rest[0], self.kt * rest[1]];
+        let force = [0, 1].map(|i| self.kt * (rest[i] - self.slider[i]));
         let vibrating = [self.kt * motion[0], self.kt * motion[1]];
         closing.with_slider(slider_in_plane(force, self.mu * load, vibrating, of_limit))
     }
@@ -231,7 +240,7 @@ impl Law for Friction3d {
 
 impl PlaneFriction for Friction3d {
     fn path(&self, motion: &[f64], normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
-        path.load(self.kt, self.limit(), motion);
+        path.load((self.kt, self.slider), self.limit(), motion);
         if self.kt == 0.0 || self.mu == 0.0 {
             path.repetition = Repetition::FromNothing;
             return Ok(());
@@ -241,6 +250,10 @@ impl PlaneFriction for Friction3d {
 
     fn stiffness(&self) -> f64 {
         self.kt
+    }
+
+    fn slider(&self) -> [f64; 2] {
+        self.slider
     }
 
     fn limit(&self) -> [f64; 2] {
@@ -269,6 +282,7 @@ impl VaryingNormalLoad for Friction3d {
             kn: self.kn,
             mu: self.mu,
             load: self.load,
+            slider: 0.0,
         };
         law.coupled_pieces(set, motion, search, normal, tangential, interrupt)
     }

@@ -2,7 +2,8 @@
 //!
 //! While it sticks, f = k·(x − x(r)) + σ·fc from the turning point r that ended the last slip of sign σ;
 //! while it slips, f = ±fc. A slider that never slips carries f = k·x; where the mean of the motion
-//! alone exceeds its range, it is dragged along just so far (a virgin slider loaded slowly).
+//! alone exceeds its range, it is dragged along just so far (a virgin slider loaded slowly). A slider that was
+//! left at w carries f = k·(x − w) and is dragged from there.
 //! The law is a play operator; see Visintin, Differential Models of Hysteresis (1994), and the
 //! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
 //! doi:10.1115/1.1539868.
@@ -31,6 +32,7 @@ pub struct JenkinsContact {
     mu: f64,
     preload: f64,
     slip_limit: f64,
+    slider: f64,
 }
 
 impl JenkinsContact {
@@ -40,6 +42,7 @@ impl JenkinsContact {
             mu: constants.mu,
             preload: constants.preload,
             slip_limit: constants.slip_limit(),
+            slider: constants.slider[0],
         }
     }
 }
@@ -83,8 +86,16 @@ impl ContactLaw for JenkinsContact {
         true
     }
 
+    fn sliders(&self) -> usize {
+        1
+    }
+
     fn largest_force(&self) -> f64 {
         self.slip_limit
+    }
+
+    fn is_preloaded(&self) -> bool {
+        self.role() == Role::Active && self.slider != 0.0
     }
 
     fn has_preload(&self) -> bool {
@@ -100,7 +111,8 @@ impl ContactLaw for JenkinsContact {
             Constant::Mu | Constant::Preload if sticks => ForceDerivative::ZERO,
             Constant::Mu => ForceDerivative::by_factor(self.mu, Combination::BY_LIMIT),
             Constant::Preload => ForceDerivative::by_factor(self.preload, Combination::BY_LIMIT),
-            Constant::Kn | Constant::Gap => return None,
+            Constant::Slider(0) => ForceDerivative::tangential(Combination::of_slider(0)),
+            Constant::Kn | Constant::Gap | Constant::Slider(_) => return None,
         })
     }
 
@@ -116,16 +128,22 @@ impl ContactLaw for JenkinsContact {
         Ok(Arc::new(Jenkins {
             stiffness: self.kt,
             limit: self.slip_limit / length,
+            slider: self.slider / length,
         }))
     }
 
     fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
+        if self.slider != 0.0 {
+            return None;
+        }
         let limit = self.slip_limit / length;
         Some(Arc::new(Saturated { stiffness, limit }))
     }
 
     fn in_time(&self) -> Result<LawInTime> {
-        Ok(LawInTime::events(Slider::under_constant_load(self.kt, self.slip_limit)))
+        Ok(LawInTime::events(
+            Slider::under_constant_load(self.kt, self.slip_limit).starting_at(self.slider),
+        ))
     }
 }
 
@@ -136,6 +154,8 @@ pub struct Jenkins {
     pub stiffness: f64,
     /// fc, infinite for a contact that sticks for ever
     pub limit: f64,
+    /// Place of the slider before any motion.
+    pub slider: f64,
 }
 
 /// The slider between two slips: where the current stick began, and the sign of the slip before.
@@ -154,12 +174,14 @@ impl Jenkins {
     /// A motion that stays within the slider's range 2p.
     fn stuck(&self, end: f64, lowest: (f64, f64), highest: (f64, f64), pieces: &mut Vec<Piece>) {
         let play = self.limit / self.stiffness;
-        let (anchor, offset) = if highest.1 > play {
+        let (anchor, offset) = if highest.1 - self.slider > play {
             (Some(highest.0), self.limit)
-        } else if lowest.1 < -play {
+        } else if lowest.1 - self.slider < -play {
             (Some(lowest.0), -self.limit)
-        } else {
+        } else if self.slider == 0.0 {
             (None, 0.0)
+        } else {
+            (None, -self.stiffness * self.slider)
         };
         pieces.push(Piece {
             start: 0.0,
@@ -185,7 +207,7 @@ impl Jenkins {
 
 impl Law for Jenkins {
     fn is_odd(&self) -> bool {
-        true
+        self.slider == 0.0
     }
 
     fn form(&self) -> Form<'_> {
@@ -198,7 +220,12 @@ impl Law for Jenkins {
 
     fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
         let k = self.stiffness;
-        Onset::NEVER.with_slider(slider_in_line(k * rest[0], self.limit, k * motion[0], Complex64::ZERO))
+        Onset::NEVER.with_slider(slider_in_line(
+            k * (rest[0] - self.slider),
+            self.limit,
+            k * motion[0],
+            Complex64::ZERO,
+        ))
     }
 }
 

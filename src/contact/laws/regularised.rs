@@ -82,7 +82,7 @@ impl ContactLaw for RegularisedContact {
         match constant {
             Constant::Mu => Some(ForceDerivative::by_factor(self.mu, Combination::FORCE)),
             Constant::Preload => Some(ForceDerivative::by_factor(self.preload, Combination::FORCE)),
-            Constant::Kt | Constant::Kn | Constant::Gap => None,
+            Constant::Kt | Constant::Kn | Constant::Gap | Constant::Slider(_) => None,
         }
     }
 

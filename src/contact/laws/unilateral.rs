@@ -89,7 +89,7 @@ impl ContactLaw for UnilateralContact {
             Constant::Preload | Constant::Gap | Constant::Kn => {
                 Some(ForceDerivative::of_normal_load(constant, self.kn, self.gap))
             }
-            Constant::Mu | Constant::Kt => None,
+            Constant::Mu | Constant::Kt | Constant::Slider(_) => None,
         }
     }
 

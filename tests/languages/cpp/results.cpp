@@ -320,6 +320,37 @@ void rotation() {
   rotor.set_preload(contact, 0.5, 0.1);
 }
 
+/// A wedge damper that sticks at a platform and slips at a blade.
+void residual_forces() {
+  auto model = hbvib::Model::plain(3);
+  const double mass[3][3] = {{1, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}}, damping[3][3] = {{0.04, 0, 0}, {0, 0.004, 0}, {0, 0, 0.004}};
+  const double stiffness[3][3] = {{1, 0, 0}, {0, 1e-3, 0}, {0, 0, 1e-3}};
+  model.set_matrix(HBVIB_MASS, mass);
+  model.set_matrix(HBVIB_DAMPING, damping);
+  model.set_matrix(HBVIB_STIFFNESS, stiffness);
+  for (const bool blade : {false, true}) {
+    hbvib::Contact c;
+    c.kind = HBVIB_FRICTION_2D;
+    c.dof_a[0] = 1, c.dof_a[1] = 2;
+    if (blade) c.dof_b[0] = 0;
+    c.kt = 1, c.kn = 1.5, c.mu = blade ? 0.15 : 0.6;
+    c.normal[0] = blade ? -1 : 1, c.normal[1] = -1;
+    c.tangent[0] = 1, c.tangent[1] = blade ? -1 : 1;
+    model.add_contact(c);
+  }
+  model.add_force(2, 0, 1);
+  model.add_force(0, 1, 0.02);
+  hbvib::SolverOptions s;
+  s.tolerance = 0, s.harmonics = 5;
+  const auto branch = model.forced_response(s, {1.25, 1.25});
+  const auto free = model.freedom(branch, 0);
+  claim(free.size() == 1 && free[0].contact == 0 && free[0].direction == 0, "one slider is free");
+  const auto band = model.band(branch, 0);
+  claim(band.info.sliders == 1 && band.info.upper > 1.05 * band.info.lower && band.lower_place.size() == 1, "the response is a band");
+  model.set_slider(0, band.upper_place[0]);
+  near(model.forced_response(s, {1.25, 1.25}).field(HBVIB_AMPLITUDE)[0], band.info.upper, 1e-6, "its end is a response");
+}
+
 }  // namespace
 
 int main() {
@@ -333,5 +364,6 @@ int main() {
     alike();
     nonlinear_mode();
     rotation();
+    residual_forces();
   });
 }

@@ -37,6 +37,8 @@ program layout
    call parameter()
    call parameter_options()
    call batch_options()
+   call band_options()
+   call band_info()
    ! END GENERATED
 
 contains
@@ -546,6 +548,34 @@ contains
       call field('responses', c_loc(s), c_loc(s%responses), c_sizeof(s%responses))
       call field('responses_len', c_loc(s), c_loc(s%responses_len), c_sizeof(s%responses_len))
    end subroutine batch_options
+
+   subroutine band_options()
+      type(hbvib_band_options), target :: s
+      call whole('hbvib_band_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('of', c_loc(s), c_loc(s%of), c_sizeof(s%of))
+      call field('contacts', c_loc(s), c_loc(s%contacts), c_sizeof(s%contacts))
+      call field('contacts_len', c_loc(s), c_loc(s%contacts_len), c_sizeof(s%contacts_len))
+      call field('starts', c_loc(s), c_loc(s%starts), c_sizeof(s%starts))
+   end subroutine band_options
+
+   subroutine band_info()
+      type(hbvib_band_info), target :: s
+      call whole('hbvib_band_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('complete', c_loc(s), c_loc(s%complete), c_sizeof(s%complete))
+      call field('sliders', c_loc(s), c_loc(s%sliders), c_sizeof(s%sliders))
+      call field('states', c_loc(s), c_loc(s%states), c_sizeof(s%states))
+      call field('solved', c_loc(s), c_loc(s%solved), c_sizeof(s%solved))
+      call field('lower', c_loc(s), c_loc(s%lower), c_sizeof(s%lower))
+      call field('upper', c_loc(s), c_loc(s%upper), c_sizeof(s%upper))
+      call field('lower_omega', c_loc(s), c_loc(s%lower_omega), c_sizeof(s%lower_omega))
+      call field('upper_omega', c_loc(s), c_loc(s%upper_omega), c_sizeof(s%upper_omega))
+      call field('lower_gain', c_loc(s), c_loc(s%lower_gain), c_sizeof(s%lower_gain))
+      call field('upper_gain', c_loc(s), c_loc(s%upper_gain), c_sizeof(s%upper_gain))
+      call field('lower_at_limit', c_loc(s), c_loc(s%lower_at_limit), c_sizeof(s%lower_at_limit))
+      call field('upper_at_limit', c_loc(s), c_loc(s%upper_at_limit), c_sizeof(s%upper_at_limit))
+   end subroutine band_info
 
    ! END GENERATED
 

@@ -291,6 +291,8 @@ contains
       integer, allocatable :: classes(:)
       real(dp) :: derivatives(2)
       type(hbvib_branch) :: study
+      type(hbvib_band_info) :: bounds
+      real(dp), allocatable :: lowest(:), uppermost(:)
       integer :: j, reasons(2), onset
       exact = load/cmplx(k - omega**2, c*omega, dp)
       call oscillator(k, c, load)
@@ -322,6 +324,12 @@ contains
                  'derivatives')
       call expect('force and normal load scale the motion', close(sum(derivatives), abs(start(1, 1)), 1e-8_dp))
       call expect('all derivatives exist', all(reasons == HBVIB_DERIVATIVE_EXISTS) .and. onset == 0)
+      call works(model%set_slider(1, 1, 0._dp), 'the place of a slider')
+      call works(model%band(branch, point(1), bounds, lower=lowest, upper=uppermost), 'a band')
+      call expect('a contact that slips keeps no force', bounds%sliders == 0 .and. size(lowest) == 0 .and. &
+                  .not. bounds%upper > bounds%lower .and. size(uppermost) == 0)
+      call refused(model%set_slider(2, 1, 0._dp), HBVIB_E_INDEX, 'id = 2, needs 1', 'the slider of contact 2')
+      call refused(model%set_slider(1, 0, 0._dp), HBVIB_E_INDEX, 'direction = 0, needs 1 .. 2', 'a direction')
       call refused(model%sensitivity(branch, point(1), [hbvib_parameter(kind=HBVIB_PARAMETER_MU, contact=0)], derivatives(:1)), &
                    HBVIB_E_INDEX, 'contact = 0, needs 1', 'a derivative by contact 0')
       call works(model%parameter_response(study, hbvib_parameter(kind=HBVIB_PARAMETER_PRELOAD, contact=1), 1._dp, 1.5_dp, &

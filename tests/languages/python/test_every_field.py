@@ -195,6 +195,28 @@ def over(follow, **given):
     return run
 
 
+def wedge():
+    """A damper between a platform, where it sticks and keeps any force, and a blade, where it slips."""
+    model = hbvib.Model(mass=np.diag([1, 0.01, 0.01]), damping=np.diag([0.04, 0.004, 0.004]), stiffness=np.diag([1, 1e-3, 1e-3]))
+    model.add_contact("friction_2d", [1, 2, -1], [-1, -1, -1], kt=1, kn=1.5, mu=0.6, normal=(1, -1, 0), tangent=(1, 1, 0))
+    model.add_contact("friction_2d", [1, 2, -1], [0, -1, -1], kt=1, kn=1.5, mu=0.15, normal=(-1, -1, 0), tangent=(-1, 1, 0))
+    model.add_force(2, 1, harmonic=0)
+    model.add_force(0, 0.02)
+    return model
+
+
+damper = wedge()
+damped = damper.forced_response((1.23, 1.27), harmonics=3)
+
+
+def banded(model, branch, point):
+    def run(**o):
+        options, info = new("hbvib_band_options", **o), new("hbvib_band_info")
+        call("hbvib_band", model.handle, branch.handle, point, None, options, None, info, 0, None, None, None, None, 0, None, None, None)
+        return bits(info.lower, info.upper, info.sliders)
+    return run
+
+
 MU = described(kind=int(hbvib.ParameterKind.MU))
 
 
@@ -242,6 +264,14 @@ def hooked(**o):
 
 
 NAN, NONE = float("nan"), None
+crest_of_damper = int(damped.peaks().point[0])
+of_damper = banded(damper, damped, crest_of_damper)
+
+
+def chosen(**o):
+    return banded(damper, damped, crest_of_damper)(**{"contacts": np.array([0]), "contacts_len": 1, **o})
+
+
 FOLLOW = hbvib.Follow
 KIND = hbvib.ParameterKind
 # Structs, their fields, and claims about each field with a call and a value.
@@ -412,6 +442,14 @@ TABLE = {
         "responses_len": [(refused("responses_len"), batched(responses=np.frombuffer(ONE, np.uint8)), -1),
                           (CHANGES, batched(responses=np.frombuffer(ONE, np.uint8)), 1)],
     },
+    "hbvib_band_options": {
+        "struct_size": [(refused("struct_size"), of_damper, 8)],
+        "of": [(CHANGES, of_damper, 1), (CHANGES, of_damper, 2), (refused("of = 3"), of_damper, 3)],
+        "contacts": [(CHANGES, chosen, np.array([1])), (refused("contacts"), chosen, np.array([2])), (refused("contacts"), chosen, NONE)],
+        "contacts_len": [(refused("contacts_len"), chosen, -1),
+                         (CHANGES, lambda **o: chosen(**{"contacts": np.array([1]), **o}), 0)],
+        "starts": [(same("With one it has no effect"), of_damper, 1), (refused("starts"), of_damper, 0)],
+    },
     "hbvib_hooks": {
         "struct_size": [(refused("struct_size"), hooked, 8)],
         "log_level": [(CHANGES, hooked, int(hbvib.LogLevel.WARN)), (CHANGES, hooked, 0), (refused("log_level"), hooked, 9)],
@@ -454,6 +492,7 @@ ELSEWHERE = {"hbvib_solver_options", "hbvib_contact", "hbvib_matrix", "hbvib_use
 FILLED = {
     "hbvib_force_call", "hbvib_jacobian_gap", "hbvib_progress", "hbvib_phase_report", "hbvib_view", "hbvib_reduction", "hbvib_energy",
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
+    "hbvib_band_info",
     "hbvib_descent", "hbvib_searched",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED

@@ -37,6 +37,11 @@ def jenkins(model):
     model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
 
 
+def planes(model):
+    for normal in (-1, 2):
+        model.add_contact("friction_3d", [0, 1, normal], kt=1, kn=0 if normal < 0 else 1, mu=0.3, preload=1)
+
+
 def setter(base, changed, wrong, prepare=lambda model: None, make=wheel):
     """Arguments of a setter, other values of them, and values that are refused with the words that name them."""
     return base, changed, wrong, prepare, make
@@ -78,6 +83,10 @@ SETTERS = {
                                     dict(dofs=([9], "dofs"), quadratic=([[[NAN]]], "quadratic"), cubic=([[[[INF]]]], "cubic"))),
     "set_preload": setter(dict(contact=0, preload=2.0, per_speed2=0.1), dict(preload=3.0, per_speed2=0.2),
                           dict(contact=(1, "id"), preload=(NAN, "preload"), per_speed2=(NAN, "per_speed2")), jenkins),
+    "set_slider": setter(dict(contact=0, place=0.2, direction=0), dict(place=0.3, contact=1, direction=1),
+                         dict(contact=(2, "id"), place=(NAN, "place"), direction=(2, "direction")), planes),
+    "set_sliders": setter(dict(places=[[0.1, 0.2], [0.3, 0.4]]), dict(places=[[0.1, 0.2], [0.3, 0.5]]),
+                          dict(places=([[0.1, 0.2]], "places")), planes),
     "set_matrix": setter(dict(which="damping", matrix=0.1 * np.tri(3), part="lower"),
                          dict(which="structural", matrix=0.2 * np.tri(3), part="upper"),
                          dict(which=("stiff", "stiffness"), matrix=(np.eye(2), "damping"), part=("half", "lower"))),
@@ -115,6 +124,27 @@ for method, (base, changed, wrong, prepare, make) in SETTERS.items():
 hold(CHANGES, "set_speed(per_omega)", described("set_speed"), outcome(described("set_speed"), speed=0.5), per_omega=0.5)
 
 # Analyses whose arguments are not fields of structs.
+damper = hbvib.Model(mass=np.diag([1, 0.01, 0.01]), damping=np.diag([0.04, 0.004, 0.004]), stiffness=np.diag([1, 1e-3, 1e-3]))
+damper.add_contact("friction_2d", [1, 2, -1], [-1, -1, -1], kt=1, kn=1.5, mu=0.6, normal=(1, -1, 0), tangent=(1, 1, 0))
+damper.add_contact("friction_2d", [1, 2, -1], [0, -1, -1], kt=1, kn=1.5, mu=0.15, normal=(-1, -1, 0), tangent=(-1, 1, 0))
+damper.add_force(2, 1, harmonic=0)
+damper.add_force(0, 0.02)
+damped, free_damped = (damper.forced_response(omega, harmonics=3) for omega in ((1.23, 1.27), (1.235, 1.265)))
+top = int(damped.peaks().point[0])
+
+
+pressed = hbvib.Model(mass=1, stiffness=1)
+pressed.add_contact("jenkins", 0, kt=1, mu=0.5, preload=0.1)
+pressed.set_preload(0, 0.1, per_speed2=0.1)
+pressed.set_speed(1.0)
+pressed.add_force(0, 1.0, harmonic=0)
+
+
+def ends_of(**o):
+    found = damper.band(**o)
+    return np.array([found.lower.value, found.upper.value])
+
+
 turning = wheel(rayleigh=(0.02, 0.02))
 jenkins(turning)
 turning.add_contact("unilateral", 1, kn=0.5, gap=0.1)
@@ -182,6 +212,18 @@ ANALYSES = {
         "direction": [(refused("direction"), 1)], "n": [(CHANGES, 17), (refused("n = 0"), 0)]}),
     "summary": (*analysis(branch.summary, point=3, contact=0),
                 {"point": [(CHANGES, 4), (refused("point"), -1)], "contact": [(CHANGES, 1), (refused("contact"), 9)]}),
+    "freedom": (*analysis(lambda **o: np.array([one.place for one in damper.freedom(**o)]), branch=damped, point=0), {
+        "branch": [(CHANGES, free_damped), (refused("model"), branch)], "point": [(CHANGES, 1), (refused("point"), -1)]}),
+    "band": (*analysis(ends_of, branch=damped, point=top, of="amplitude", contacts=[0], starts=1), {
+        "branch": [(CHANGES, free_damped), (refused("model"), branch)], "point": [(CHANGES, 1), (refused("point"), -1)],
+        "of": [(CHANGES, "peak_omega"), (refused("peak_omega"), "mean")], "contacts": [(CHANGES, [1]), (refused("contacts"), [2])],
+        "starts": [(same("one it has no effect"), 2), (refused("starts"), 0)]}),
+    "band_curve": (*analysis(lambda **o: np.array(damper.band_curve(**o)[:3]), branch=damped, points=[0], contacts=[0], starts=1), {
+        "branch": [(CHANGES, free_damped), (refused("model"), branch)], "points": [(CHANGES, [1]), (refused("point"), [-1])],
+        "contacts": [(CHANGES, [1]), (refused("contacts"), [2])], "starts": [(refused("starts"), 0)]}),
+    "static_history": (*analysis(lambda **o: pressed.static_history(**o).forces, factors=[1.0, 1.0], speeds=[1.0, 0.5]), {
+        "factors": [(CHANGES, [1.0, 0.5]), (refused("factors"), [NAN, 1.0])],
+        "speeds": [(CHANGES, [1.0, 0.7]), (refused("speeds"), [NAN, 1.0])]}),
     "energy": (*analysis(branch.energy, point=3), {"point": [(CHANGES, 4), (refused("point"), -1)]}),
     "slip": (*analysis(branch.slip, point=crest), {"point": [(CHANGES, 0), (refused("point"), -1)]}),
     "leading_response": (*analysis(lambda **o: np.array([sure.leading_response(**o)]), point=0), {

@@ -58,6 +58,7 @@ PREFIXES = dict(
     Quantity="OF_",
     Derivative="DERIVATIVE_",
     Follow="FOLLOW_",
+    BandOf="BAND_",
     AeroForm="AERO_",
     FlexibilityWay="FLEXIBILITY_WAY_",
 )
@@ -65,7 +66,7 @@ ours = {"HBVIB_GROUND": hbvib.GROUND, "HBVIB_DIAMETER_OF_ENGINE_ORDER": hbvib.DI
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
-    "ParameterKind Scaling Quantity Derivative Follow AeroForm FlexibilityWay Measure "
+    "ParameterKind Scaling Quantity Derivative Follow BandOf AeroForm FlexibilityWay Measure "
     "Component Reading"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():

@@ -142,6 +142,40 @@ def small():
         file.write(record(struct.pack("<3qd", 4, 1, 1, 1.0)))
 
 
+def hdf5():
+    """version73.mat and packed73.mat in the layout of MATLAB's save -v7.3, by h5py: no MATLAB was at hand."""
+    import h5py
+
+    k = np.array([[4.0, -1, 0.5], [-1, 4, -1], [0.25, -1, 4]])
+    d = np.array([[0, 1 - 2j, 0], [0, 0, 0], [3j, 0, 0.5]])
+    for name, packed in (("version73.mat", {}), ("packed73.mat", dict(compression=3, shuffle=True, chunks=True))):
+        with h5py.File(name, "w", userblock_size=512, libver="earliest") as file:
+            def put(place, key, array, of, **more):
+                one = place.create_dataset(key, data=array, **more)
+                one.attrs["MATLAB_class"] = np.bytes_(of)
+                return one
+            # MATLAB has columns one after another.
+            put(file, "K", k.T.copy(), "double", **packed)
+            put(file, "C", (0.5 * k).T.astype("f4"), "single", **packed)
+            put(file, "dofs", np.array([[1, 1], [1, 2], [2, 1]]).T.astype("i4"), "int32", **packed)
+            put(file, "title", np.array([[87], [104]], "u2"), "char")
+            put(file, "dt", np.array([[1.0, 2.0, 3.0]]), "double")
+            for key, a in (("M", sp.csc_matrix(np.diag([1.0, 2, 3]))), ("D", sp.csc_matrix(d))):
+                group = file.create_group(key)
+                group.attrs["MATLAB_class"] = np.bytes_("double")
+                group.attrs["MATLAB_sparse"] = np.uint64(3)
+                pair = np.dtype([("real", "f8"), ("imag", "f8")])
+                values = np.array([(z.real, z.imag) for z in a.data], pair) if np.iscomplexobj(a.data) else a.data
+                group.create_dataset("data", data=values)
+                group.create_dataset("ir", data=a.indices.astype("u8"))
+                group.create_dataset("jc", data=a.indptr.astype("u8"))
+            file.create_group("settings").create_dataset("step", data=np.array([[1.0]]))
+        head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64, by h5py".ljust(116) + b"\0" * 8 + b"\x00\x02IM"
+        with open(name, "r+b") as file:
+            file.write(head)
+
+
 if __name__ == "__main__":
     universal()
+    hdf5()
     small()

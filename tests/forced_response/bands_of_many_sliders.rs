@@ -1,0 +1,140 @@
+//! Bands over many free sliders: eight contacts of a face between the blades of a wheel against one of the same stiffness, whose largest
+//! peak is one of two; friction in a plane at eight nodes against random residual states.
+
+use crate::common::{harmonics, solve_at, sweep};
+use hbvib::{BandOf, BandOptions, Contact, ContactKind, Frame, Hooks, MatrixKind, MatrixView, Model, band, freedom};
+use num_complex::Complex64;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
+    let n = values.len();
+    let mut full = vec![0.0; n * n];
+    for (i, x) in values.iter().enumerate() {
+        full[i * n + i] = *x;
+    }
+    model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
+}
+
+/// A wedge damper between each blade and the next one; its face on the blade as a number of equal contacts.
+fn wheel(parts: usize) -> Model {
+    let mut model = Model::cyclic(3, 24).unwrap();
+    model.set_wave(3);
+    diagonal(&mut model, MatrixKind::Mass, &[1.0, 0.01, 0.01]);
+    diagonal(&mut model, MatrixKind::Damping, &[0.02, 0.004, 0.004]);
+    diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3]);
+    let r = FRAC_1_SQRT_2;
+    let face = |side: f64, mu: f64, share: f64, sector_offset: i64| Contact {
+        kind: ContactKind::Friction2d,
+        dof_a: [Some(1), Some(2), None],
+        dof_b: [Some(0), None, None],
+        frame: Some(Frame::new([side * r, -r, 0.0], Some([side * r, r, 0.0])).unwrap()),
+        sector_offset,
+        kn: 1.5 * share,
+        ..Contact::jenkins(0, None, share, mu, 0.0)
+    };
+    for _ in 0..parts {
+        model.add_contact(&face(1.0, 0.6, 1.0 / parts as f64, 0)).unwrap();
+    }
+    model.add_contact(&face(-1.0, 0.15, 1.0, 1)).unwrap();
+    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
+    model.add_force(0, 1, Complex64::new(0.05, 0.0)).unwrap();
+    model
+}
+
+#[test]
+fn eight_sliders_a_sector_have_the_band_of_one() {
+    let solver = harmonics(5);
+    let bands = [1, 8].map(|parts| {
+        let model = wheel(parts);
+        let branch = sweep(&model, &solver, 1.0, 1.2, &[]);
+        let peak = branch.peaks()[0].point;
+        assert_eq!(freedom(&model, &branch, peak).unwrap().len(), parts);
+        let options = BandOptions {
+            of: BandOf::PeakAmplitude,
+            ..BandOptions::default()
+        };
+        band(&model, &branch, peak, &solver, &options, &mut Hooks::default()).unwrap()
+    });
+    let [one, many] = &bands;
+    println!("{} .. {}, {} solved", many.lower.value, many.upper.value, many.solved);
+    assert!(many.is_complete && many.sliders.len() == 8);
+    assert!(one.upper.value > 1.1 * one.lower.value);
+    assert!((one.lower.value / many.lower.value - 1.0).abs() < 1e-6);
+    assert!((one.upper.value / many.upper.value - 1.0).abs() < 1e-6);
+}
+
+/// Eight nodes that move in three directions on friction in a plane, every other one with a large limit.
+fn nodes() -> Model {
+    const N: usize = 24;
+    let mut model = Model::new(N).unwrap();
+    diagonal(&mut model, MatrixKind::Mass, &[1.0; N]);
+    diagonal(&mut model, MatrixKind::Damping, &[0.03; N]);
+    let mut stiffness = vec![0.0; N * N];
+    for i in 0..N {
+        stiffness[i * N + i] = 1.5 + 0.05 * i as f64;
+        for j in 0..i {
+            let coupled = -0.12 / (1.0 + (i - j) as f64);
+            (stiffness[i * N + j], stiffness[j * N + i]) = (coupled, coupled);
+        }
+    }
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &stiffness))
+        .unwrap();
+    for node in 0..8 {
+        let dofs = [3 * node, 3 * node + 1, 3 * node + 2].map(Some);
+        let (mu, load) = if node % 2 == 0 { (0.15, 0.1) } else { (0.5, 0.3) };
+        model
+            .add_contact(&Contact::friction_3d(dofs, [None; 3], (0.3, 0.5), mu, load))
+            .unwrap();
+    }
+    model.add_force(0, 1, Complex64::new(0.06, 0.0)).unwrap();
+    model.add_force(4, 1, Complex64::new(0.0, 0.03)).unwrap();
+    model
+}
+
+#[test]
+fn no_random_residual_state_lies_outside_the_band() {
+    let model = nodes();
+    let solver = harmonics(3);
+    let omega = 1.35;
+    let branch = solve_at(&model, &solver, omega);
+    let free = freedom(&model, &branch, 0).unwrap();
+    let options = BandOptions {
+        starts: 1,
+        ..BandOptions::default()
+    };
+    let found = band(&model, &branch, 0, &solver, &options, &mut Hooks::default()).unwrap();
+    let (lower, upper) = (&found.lower, &found.upper);
+    println!(
+        "{} free, {} .. {}, {} solved",
+        free.len(),
+        lower.value,
+        upper.value,
+        found.solved
+    );
+    assert!(found.is_complete && free.len() >= 6 && upper.value > 1.002 * lower.value);
+    let mut most = [f64::INFINITY, 0.0];
+    for trial in 0..30 {
+        let mut other = model.try_clone().unwrap();
+        for (i, slider) in free.iter().enumerate() {
+            // Anywhere; a place beyond the limit acts as the nearest one within.
+            let turn = 0.618_033_988_75 * (1 + trial * free.len() + i) as f64;
+            other
+                .set_slider(slider.contact, slider.direction, 1.2 * (turn.fract() - 0.5))
+                .unwrap();
+        }
+        let amplitude = solve_at(&other, &solver, omega).amplitude()[0];
+        most = [most[0].min(amplitude), most[1].max(amplitude)];
+        assert!(
+            amplitude > lower.value * (1.0 - 1e-6) && amplitude < upper.value * (1.0 + 1e-6),
+            "{amplitude}"
+        );
+    }
+    // The ends are motions of the model itself.
+    for end in [lower, upper] {
+        let amplitude = end.branch.as_ref().unwrap().amplitude()[0];
+        assert!((amplitude / end.value - 1.0).abs() < 1e-7, "{amplitude}");
+    }
+    println!("random states {most:?}");
+    assert!(most[1] - most[0] > 0.2 * (upper.value - lower.value));
+}

@@ -1,0 +1,153 @@
+//! Static states along a load history, against closed forms: a cylinder on two inclined planes that a centrifugal force presses between
+//! them, up and down; and the residual force that a response then has.
+
+use crate::common::{harmonics, solve_at};
+use hbvib::{
+    Contact, ContactKind, Frame, Interrupt, LoadHistory, MatrixKind, MatrixView, Model, SolverOptions, Speed, freedom,
+    static_history,
+};
+use num_complex::Complex64;
+
+const KT: f64 = 1.3;
+const KN: f64 = 0.9;
+const MU: f64 = 0.25;
+const SUPPORT: f64 = 0.02;
+/// Inclination of the planes against the direction along the platform.
+const BETA: f64 = 0.9;
+
+/// The cylinder, along the platform, outward and, if `across`, along its axis.
+fn cylinder(kind: &ContactKind, across: bool) -> Model {
+    let n = 2 + usize::from(across);
+    let mut model = Model::new(n).unwrap();
+    for (which, d) in [
+        (MatrixKind::Mass, 0.1),
+        (MatrixKind::Damping, 0.01),
+        (MatrixKind::Stiffness, SUPPORT),
+    ] {
+        let full: Vec<f64> = (0..n * n).map(|i| if i % (n + 1) == 0 { d } else { 0.0 }).collect();
+        model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
+    }
+    let (s, c) = BETA.sin_cos();
+    for side in [1.0, -1.0] {
+        let contact = Contact {
+            kind: kind.clone(),
+            dof_a: [Some(0), Some(1), across.then_some(2)],
+            dof_b: [None; 3],
+            frame: Some(Frame::new([side * s, -c, 0.0], Some([side * c, s, 0.0])).unwrap()),
+            kn: KN,
+            ..Contact::jenkins(0, None, KT, MU, 0.0)
+        };
+        model.add_contact(&contact).unwrap();
+    }
+    model.add_force(1, 0, Complex64::new(1.0, 0.0)).unwrap();
+    model
+}
+
+/// Outward displacement and tangential force of each plane under the force, as its size goes through turning points.
+fn closed_form(turns: &[f64]) -> (f64, f64) {
+    let (s, c) = BETA.sin_cos();
+    let (stick, limit) = (KT * s, MU * KN * c);
+    assert!(stick > limit, "the contacts slip from the start");
+    let with_slip = |sign: f64| SUPPORT + 2.0 * KN * c * (c + sign * MU * s);
+    let (mut v, mut f, mut from) = (0.0, 0.0, 0.0);
+    for &to in turns {
+        let sign = if to > from { 1.0 } else { -1.0 };
+        // Slip begins where f + stick (w - v) = sign limit w.
+        let slip = (f - stick * v) / (sign * limit - stick);
+        let force = |v: f64, f: f64| SUPPORT * v + 2.0 * (c * KN * c * v + s * f);
+        if sign * (to - force(slip, sign * limit * slip)) > 0.0 {
+            v = to / with_slip(sign);
+            f = sign * limit * v;
+        } else {
+            let w = (to - 2.0 * s * (f - stick * v)) / (SUPPORT + 2.0 * (KN * c * c + s * stick));
+            (v, f) = (w, f + stick * (w - v));
+        }
+        from = to;
+    }
+    (v, f)
+}
+
+#[test]
+fn a_cylinder_between_planes_keeps_the_force_of_its_speeds() {
+    // Squares of speeds: up, down into stick, down into reversed slip, up again, further up.
+    let squares = [2.0, 1.6, 0.7, 0.9, 3.0, 0.1];
+    for (kind, across) in [(ContactKind::Friction2d, false), (ContactKind::Friction3d, true)] {
+        let model = cylinder(&kind, across);
+        let history = LoadHistory {
+            factors: &squares,
+            speeds: &[],
+        };
+        let steps = static_history(&model, &SolverOptions::default(), &history, &Interrupt::none()).unwrap();
+        let mut reversed = 0;
+        for (i, step) in steps.iter().enumerate() {
+            let (v, f) = closed_form(&squares[..=i]);
+            println!("{}: {} {v}, {:?} {f}", squares[i], step.motion[1], step.forces);
+            assert!((step.motion[1] / v - 1.0).abs() < 1e-9);
+            for (force, place) in step.forces.iter().zip(&step.places) {
+                assert!((force[0] - f).abs() < 1e-9 * f.abs());
+                assert!((force[2] + KN * BETA.cos() * v).abs() < 1e-9 * v);
+                assert!((KT * (BETA.sin() * v - place[0]) - f).abs() < 1e-9 * f.abs());
+            }
+            reversed += usize::from(f < 0.0);
+        }
+        assert!(reversed > 0);
+    }
+}
+
+/// A response with the places that a history has left starts from its residual forces.
+#[test]
+fn a_response_after_a_history_has_its_residual_force() {
+    let mut model = cylinder(&ContactKind::Friction2d, false);
+    let history = LoadHistory {
+        factors: &[2.0, 1.0],
+        speeds: &[],
+    };
+    let steps = static_history(&model, &SolverOptions::default(), &history, &Interrupt::none()).unwrap();
+    let last = &steps[1];
+    for (id, place) in last.places.iter().enumerate() {
+        model.set_slider(id, 0, place[0]).unwrap();
+    }
+    // The response at hardly any vibration is the static state.
+    model.add_force(0, 1, Complex64::new(1e-6, 0.0)).unwrap();
+    let branch = solve_at(&model, &harmonics(1), 0.5);
+    let mean = crate::common::all_harmonics(&branch, 0)[1].re;
+    assert!((mean / last.motion[1] - 1.0).abs() < 1e-9);
+    assert!(freedom(&model, &branch, 0).unwrap().is_empty(), "all contacts stick");
+}
+
+/// A preload m R Omega^2 that rises and falls under a constant pull.
+#[test]
+fn a_slider_under_a_load_of_the_speed_is_dragged_where_the_load_falls() {
+    let mut model = Model::new(1).unwrap();
+    for (which, d) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
+        model.set_matrix(which, &MatrixView::dense(1, &[d])).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.5, 0.0)).unwrap();
+    model.set_preload_at_speed(0, 0.0, 1.0).unwrap();
+    model.set_speed(Speed::Fixed(1.0)).unwrap();
+    model.add_force(0, 0, Complex64::new(1.0, 0.0)).unwrap();
+    let history = LoadHistory {
+        factors: &[1.0, 1.0, 1.0, 1.0],
+        speeds: &[2.0, 0.5, 1.5, 0.2],
+    };
+    let steps = static_history(&model, &SolverOptions::default(), &history, &Interrupt::none()).unwrap();
+    // Stick at limits above 1/2 from the start; then limits 0.125, no change while it rises, 0.02.
+    for (step, force) in steps.iter().zip([0.5, 0.125, 0.125, 0.02]) {
+        assert!((step.forces[0][0] - force).abs() < 1e-11, "{:?}", step.forces);
+        assert!((step.motion[0] - (1.0 - force)).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn histories_that_are_none_are_refused_by_name() {
+    let model = cylinder(&ContactKind::Friction2d, false);
+    let with = |factors: &[f64], speeds: &[f64]| {
+        let history = LoadHistory { factors, speeds };
+        static_history(&model, &SolverOptions::default(), &history, &Interrupt::none())
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(with(&[], &[]).contains("0 steps"));
+    assert!(with(&[1.0, 2.0], &[1.0]).contains("2 factors and 1 speeds"));
+    assert!(with(&[f64::NAN], &[]).contains("factors[0] = NaN"));
+}

@@ -1,0 +1,512 @@
+//! The band of a response: a wedge damper between a fixed platform and a blade, whose one contact sticks through the period and keeps any
+//! force within its limit. Reference rows are motions found by integration in time.
+
+use crate::common::{harmonics, solve_at, sweep};
+use hbvib::{
+    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, Frame, Hooks, MatrixKind,
+    MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, VerifyOptions, band, floquet, freedom,
+    parameter_response, sensitivity, verify,
+};
+use num_complex::Complex64;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// Contact of the damper with the platform, and with the blade.
+const PLATFORM: usize = 0;
+const BLADE: usize = 1;
+
+/// The structure: a blade q and a damper (u along, v outward), and as many motions across as are given.
+fn structure(force: f64, across: usize) -> Model {
+    let n = 3 + across;
+    let mut model = Model::new(n).unwrap();
+    for (which, blade, damper) in [
+        (MatrixKind::Mass, 1.0, 0.01),
+        (MatrixKind::Damping, 0.04, 0.004),
+        (MatrixKind::Stiffness, 1.0, 1e-3),
+    ] {
+        let mut full = vec![0.0; n * n];
+        for i in 0..n {
+            full[i * n + i] = if i == 0 { blade } else { damper };
+        }
+        model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
+    }
+    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
+    model.add_force(0, 1, Complex64::new(force, 0.0)).unwrap();
+    model
+}
+
+/// The damper in wedges of 45 degrees; friction coefficients of platform and blade.
+fn wedge(mu: [f64; 2], force: f64, kind: ContactKind) -> Model {
+    let mut model = structure(force, 0);
+    add_faces(&mut model, mu, [kind.clone(), kind], None);
+    model
+}
+
+/// The same with friction in a plane at the platform, and a motion of the damper across.
+fn across(force: f64) -> Model {
+    let mut model = structure(force, 1);
+    add_faces(
+        &mut model,
+        [0.6, 0.2],
+        [ContactKind::Friction3d, ContactKind::Friction2d],
+        Some(3),
+    );
+    model
+}
+
+fn add_faces(model: &mut Model, mu: [f64; 2], kinds: [ContactKind; 2], third: Option<usize>) {
+    let r = FRAC_1_SQRT_2;
+    let faces = [
+        ([r, -r, 0.0], [r, r, 0.0], None),
+        ([-r, -r, 0.0], [-r, r, 0.0], Some(0)),
+    ];
+    for (((normal, tangent, blade), mu), kind) in faces.into_iter().zip(mu).zip(kinds) {
+        let contact = Contact {
+            kind,
+            dof_a: [Some(1), Some(2), third],
+            dof_b: [blade, None, None],
+            frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
+            kn: 1.5,
+            ..Contact::jenkins(0, None, 1.0, mu, 0.0)
+        };
+        model.add_contact(&contact).unwrap();
+    }
+}
+
+fn peak_wedge() -> Model {
+    wedge([0.6, 0.15], 0.02, ContactKind::Friction2d)
+}
+
+fn amplitude_in_time(model: &Model, branch: &Branch) -> f64 {
+    let found = verify(model, branch, 0, &VerifyOptions::default(), &mut Hooks::default()).unwrap();
+    assert!(found.same, "{:e}", found.distance);
+    assert!(found.residual < 1e-11);
+    found.response.norm()
+}
+
+/// Place of the slider at the platform, ω, |q₁| by time.
+const ROWS: [[f64; 3]; 8] = [
+    [0.2, 1.248_629, 0.180_690_065_060_681_97],
+    [0.3, 1.251_335, 0.193_674_496_728_591_72],
+    [0.4, 1.253_429, 0.205_603_595_664_210_66],
+    [0.5, 1.254_617, 0.218_297_686_676_544_26],
+    [0.6, 1.255_342, 0.231_596_135_610_781_1],
+    [0.7, 1.257_141, 0.244_850_100_259_421_47],
+    [0.8, 1.258_714, 0.258_712_971_646_499_2],
+    [0.134_443_12, 1.246_061, 0.171_247_756_864_574_1],
+];
+
+#[test]
+fn a_slider_that_is_placed_moves_as_the_reference_in_time() {
+    for [place, omega, amplitude] in ROWS {
+        let mut model = peak_wedge();
+        model.set_slider(PLATFORM, 0, place).unwrap();
+        let branch = solve_at(&model, &harmonics(15), omega);
+        println!("{place}: {} {amplitude}", branch.amplitude()[0]);
+        // Fifteen harmonics.
+        assert!((branch.amplitude()[0] / amplitude - 1.0).abs() < 1e-3);
+        // The reference is beyond the limit by 9e-6 at the last place, where the slider is dragged as far.
+        let accuracy = if place < 0.15 { 1e-5 } else { 1e-9 };
+        assert!((amplitude_in_time(&model, &branch) - amplitude).abs() < accuracy);
+    }
+}
+
+#[test]
+fn the_band_of_the_peak_reaches_from_limit_to_limit() {
+    let model = peak_wedge();
+    let solver = harmonics(31);
+    let branch = sweep(&model, &solver, 1.23, 1.27, &[]);
+    let peak = branch.peaks()[0];
+    let free = freedom(&model, &branch, peak.point).unwrap();
+    assert_eq!(
+        free.iter().map(|f| (f.contact, f.direction)).collect::<Vec<_>>(),
+        [(PLATFORM, 0)]
+    );
+    let options = BandOptions {
+        of: BandOf::PeakAmplitude,
+        ..BandOptions::default()
+    };
+    let found = band(&model, &branch, peak.point, &solver, &options, &mut Hooks::default()).unwrap();
+    let (lower, upper) = (&found.lower, &found.upper);
+    println!(
+        "{} {:?} .. {} {:?}, {} solved",
+        lower.value, lower.places, upper.value, upper.places, found.solved
+    );
+    assert!(found.is_complete && found.sliders == [(PLATFORM, 0)]);
+    // The lower end of the reference, with 31 harmonics.
+    assert!((lower.value - 0.171_247_757).abs() < 1e-4 && (lower.places[0] - 0.134_443).abs() < 1e-4);
+    assert!(peak.amplitude >= lower.value && peak.amplitude <= upper.value);
+    assert!((upper.value / lower.value - 2.24).abs() < 0.01);
+    for end in [lower, upper] {
+        assert_eq!(end.at_limit, [PLATFORM]);
+        let mut model = peak_wedge();
+        model.set_slider(PLATFORM, 0, end.places[0]).unwrap();
+        let in_time = amplitude_in_time(&model, end.branch.as_ref().unwrap());
+        assert!((in_time / end.value - 1.0).abs() < 3e-4, "{in_time}");
+    }
+    // The derivative by the place against neighbouring states.
+    for pair in found.states.windows(3) {
+        let slope = (pair[2].value - pair[0].value) / (pair[2].place - pair[0].place);
+        let middle = pair[1].derivative;
+        assert!((slope - middle).abs() < 0.15 * middle.abs(), "{pair:?}");
+    }
+}
+
+#[test]
+fn a_band_at_a_frequency_has_its_extrema_between_the_limits() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = harmonics(25);
+    // Place and amplitude at the limits by time, and the largest amplitude.
+    for (omega, low, high, most) in [
+        (1.1, [0.2773, 0.296_101], [1.5328, 0.256_589], 0.296_101),
+        (1.2, [0.6908, 0.704_305], [1.4887, 0.630_151], 0.713_739),
+        (1.25, [0.5230, 0.534_100], [1.4623, 0.682_024], 0.682_024),
+        (1.3, [0.3590, 0.385_700], [1.5365, 0.587_997], 0.587_997),
+    ] {
+        let branch = solve_at(&model, &solver, omega);
+        let found = band(
+            &model,
+            &branch,
+            0,
+            &solver,
+            &BandOptions::default(),
+            &mut Hooks::default(),
+        )
+        .unwrap();
+        let (first, last) = (found.states[0], found.states[found.states.len() - 1]);
+        println!(
+            "{omega}: {first:?} {last:?} {} {} solved",
+            found.upper.value, found.solved
+        );
+        assert!(found.is_complete && found.solved < 60);
+        for (state, [place, amplitude]) in [(first, low), (last, high)] {
+            // Twenty-five harmonics.
+            assert!((state.place - place).abs() < 5e-4 || omega < 1.15);
+            assert!((state.value / amplitude - 1.0).abs() < 5e-4);
+        }
+        assert!((found.upper.value / most - 1.0).abs() < 2e-3);
+        assert!(found.states.is_sorted_by(|a, b| a.place <= b.place));
+        if (omega - 1.2_f64).abs() < 1e-9 {
+            let place = found.upper.places[0];
+            assert!(place > first.place + 0.1 && place < last.place - 0.1 && found.upper.at_limit.is_empty());
+            let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+            model.set_slider(PLATFORM, 0, place).unwrap();
+            let in_time = amplitude_in_time(&model, found.upper.branch.as_ref().unwrap());
+            assert!((in_time / found.upper.value - 1.0).abs() < 1e-4, "{in_time}");
+            // The largest of the rows lies beside the maximum.
+            model.set_slider(PLATFORM, 0, 0.85).unwrap();
+            let beside = amplitude_in_time(&model, &solve_at(&model, &solver, omega));
+            assert!(
+                (beside - 0.713_739_420_472_758_3).abs() < 1e-9 && in_time > beside,
+                "{beside}"
+            );
+        }
+    }
+}
+
+/// The contact with the platform as two of half its stiffness: a band of two sliders, whose limits allow no more.
+#[test]
+fn two_contacts_that_share_a_face_have_the_band_of_one() {
+    let whole = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let mut model = structure(0.1, 0);
+    let shared = Contact {
+        kt: 0.5,
+        kn: 0.75,
+        ..whole.contacts()[PLATFORM].clone()
+    };
+    for contact in [shared.clone(), whole.contacts()[BLADE].clone(), shared] {
+        model.add_contact(&contact).unwrap();
+    }
+    let solver = harmonics(9);
+    for omega in [1.2, 1.3] {
+        let (one, two) = (solve_at(&whole, &solver, omega), solve_at(&model, &solver, omega));
+        let options = BandOptions {
+            starts: 2,
+            ..BandOptions::default()
+        };
+        let one = band(&whole, &one, 0, &solver, &options, &mut Hooks::default()).unwrap();
+        let two = band(&model, &two, 0, &solver, &options, &mut Hooks::default()).unwrap();
+        println!(
+            "{} {} / {} {} {:?} {:?} {} solved",
+            one.lower.value,
+            one.upper.value,
+            two.lower.value,
+            two.upper.value,
+            two.lower.places,
+            two.upper.places,
+            two.solved
+        );
+        assert_eq!(two.sliders, [(0, 0), (2, 0)]);
+        assert!((one.lower.value / two.lower.value - 1.0).abs() < 1e-6);
+        assert!((one.upper.value / two.upper.value - 1.0).abs() < 1e-6);
+    }
+}
+
+/// Friction in a plane across which nothing acts has the band of friction along it.
+#[test]
+fn friction_in_a_plane_has_the_band_of_its_line() {
+    let solver = harmonics(7);
+    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let plane = across(0.1);
+    for omega in [1.2, 1.3] {
+        let (one, two) = (solve_at(&line, &solver, omega), solve_at(&plane, &solver, omega));
+        let options = BandOptions {
+            starts: 2,
+            ..BandOptions::default()
+        };
+        let one = band(&line, &one, 0, &solver, &options, &mut Hooks::default()).unwrap();
+        let two = band(&plane, &two, 0, &solver, &options, &mut Hooks::default()).unwrap();
+        println!(
+            "{} {} / {} {} {:?} {:?} {} solved",
+            one.lower.value,
+            one.upper.value,
+            two.lower.value,
+            two.upper.value,
+            two.lower.places,
+            two.upper.places,
+            two.solved
+        );
+        assert_eq!(two.sliders, [(0, 0), (0, 1)]);
+        assert!((one.lower.value / two.lower.value - 1.0).abs() < 1e-5);
+        assert!((one.upper.value / two.upper.value - 1.0).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn contacts_that_all_slip_or_all_stick_have_no_band() {
+    // One Jenkins contact that slips, one that sticks and loads nothing that vibrates, and both stuck.
+    for (force, preload) in [(0.3, [1.0, 1.0]), (0.3, [1.0, 50.0]), (1e-3, [1.0, 1.0])] {
+        let mut model = Model::new(2).unwrap();
+        for (which, d) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Damping, 0.05),
+            (MatrixKind::Stiffness, 1.0),
+        ] {
+            model
+                .set_matrix(which, &MatrixView::dense(2, &[d, 0.0, 0.0, d]))
+                .unwrap();
+        }
+        for (dof, load) in preload.into_iter().enumerate() {
+            model.add_contact(&Contact::jenkins(dof, None, 1.0, 0.2, load)).unwrap();
+        }
+        model.add_contact(&Contact::jenkins(0, Some(1), 0.5, 0.2, 0.5)).unwrap();
+        model.add_force(0, 1, Complex64::new(force, 0.0)).unwrap();
+        let branch = sweep(&model, &harmonics(5), 0.8, 1.8, &[]);
+        for peak in branch.peaks() {
+            let found = band(
+                &model,
+                &branch,
+                peak.point,
+                &harmonics(5),
+                &BandOptions::default(),
+                &mut Hooks::default(),
+            );
+            let found = found.unwrap();
+            assert!(freedom(&model, &branch, peak.point).unwrap().is_empty());
+            assert!(
+                found.sliders.is_empty()
+                    && found.lower.value.to_bits() == peak.amplitude.to_bits()
+                    && found.upper.value.to_bits() == peak.amplitude.to_bits()
+            );
+            assert_eq!(found.solved, 0);
+        }
+    }
+}
+
+#[test]
+fn states_that_are_none_are_refused_by_name() {
+    let model = peak_wedge();
+    let branch = solve_at(&model, &harmonics(3), 1.2);
+    let with = |options: &BandOptions<'_>| {
+        band(&model, &branch, 0, &harmonics(3), options, &mut Hooks::default())
+            .unwrap_err()
+            .to_string()
+    };
+    let of_peak = BandOptions {
+        of: BandOf::PeakAmplitude,
+        ..BandOptions::default()
+    };
+    assert!(with(&of_peak).contains("no peak"));
+    assert!(
+        with(&BandOptions {
+            starts: 0,
+            ..BandOptions::default()
+        })
+        .contains("starts = 0")
+    );
+    assert!(
+        with(&BandOptions {
+            contacts: &[2],
+            ..BandOptions::default()
+        })
+        .contains("the model has 2")
+    );
+    let mut other = peak_wedge();
+    assert!(
+        other
+            .set_slider(2, 0, 0.1)
+            .unwrap_err()
+            .to_string()
+            .contains("contact id = 2")
+    );
+    assert!(
+        other
+            .set_slider(0, 1, 0.1)
+            .unwrap_err()
+            .to_string()
+            .contains("slider_t2")
+    );
+    assert!(
+        other
+            .set_slider(0, 2, 0.1)
+            .unwrap_err()
+            .to_string()
+            .contains("direction = 2")
+    );
+    assert!(
+        other
+            .set_slider(0, 0, f64::NAN)
+            .unwrap_err()
+            .to_string()
+            .contains("finite")
+    );
+    other.set_slider(0, 0, 0.3).unwrap();
+    assert!(
+        freedom(&other, &branch, 0)
+            .unwrap_err()
+            .to_string()
+            .contains("other contacts")
+    );
+    let loaded = Model::load(&other.save().unwrap()).unwrap();
+    assert_eq!(
+        loaded.contacts()[0].slider.map(f64::to_bits),
+        [0.3, 0.0].map(f64::to_bits)
+    );
+}
+
+/// A place within the limits, and a contact with a preload that sticks beside one that slips.
+#[test]
+fn derivatives_by_the_place_and_the_constants_are_those_of_differences() {
+    let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    model.set_slider(PLATFORM, 0, 1.1).unwrap();
+    let amplitude = |model: &Model| solve_at(model, &harmonics(7), 1.3).amplitude()[0];
+    let branch = solve_at(&model, &harmonics(7), 1.3);
+    let by = |constant| Parameter::Contact {
+        constant,
+        contact: Some(PLATFORM),
+    };
+    let constants = [
+        Constant::Slider(0),
+        Constant::Kt,
+        Constant::Kn,
+        Constant::Mu,
+        Constant::Preload,
+    ];
+    let found = sensitivity(&model, &branch, 0, &constants.map(by), Quantity::Amplitude).unwrap();
+    for (constant, derivative) in constants.into_iter().zip(&found.values) {
+        let step = 1e-4;
+        let at = |sign: f64| {
+            let mut contacts = model.contacts().to_vec();
+            let changed = &mut contacts[PLATFORM];
+            match constant {
+                Constant::Slider(k) => changed.slider[k] += sign * step,
+                Constant::Kt => changed.kt += sign * step,
+                Constant::Kn => changed.kn += sign * step,
+                Constant::Mu => changed.mu += sign * step,
+                // A load below zero is a gap.
+                _ if sign > 0.0 => changed.preload = step,
+                _ => changed.gap = step / changed.kn,
+            }
+            let mut other = structure(0.1, 0);
+            other.add_contacts(&contacts).unwrap();
+            amplitude(&other)
+        };
+        let difference = (at(1.0) - at(-1.0)) / (2.0 * step);
+        println!("{constant:?}: {derivative} {difference}");
+        assert!((derivative - difference).abs() < 1e-6 + 2e-5 * difference.abs());
+    }
+    let free = freedom(&model, &branch, 0).unwrap();
+    assert!((free[0].derivative / found.values[0] - 1.0).abs() < 1e-9 && (free[0].place - 1.1).abs() < 1e-9);
+}
+
+#[test]
+fn freedom_counts_the_multipliers_that_stuck_sliders_keep_at_1() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    for omega in [1.2, 1.3] {
+        let branch = solve_at(&model, &harmonics(15), omega);
+        let found = floquet(&model, &branch, 0, &FloquetOptions::default(), &mut Hooks::default()).unwrap();
+        let stuck = found
+            .multipliers
+            .iter()
+            .filter(|m| m.class == MultiplierClass::NeutralStuck)
+            .count();
+        assert_eq!(freedom(&model, &branch, 0).unwrap().len(), stuck);
+        assert_eq!(stuck, 1);
+    }
+}
+
+/// The result over the place, as the curve of a parameter that is followed by arc length.
+#[test]
+fn states_lie_on_the_curve_over_the_place() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = harmonics(7);
+    let branch = solve_at(&model, &solver, 1.2);
+    let found = band(
+        &model,
+        &branch,
+        0,
+        &solver,
+        &BandOptions::default(),
+        &mut Hooks::default(),
+    )
+    .unwrap();
+    let (first, last) = (found.states[0].place, found.states[found.states.len() - 1].place);
+    let at: Vec<f64> = found.states[1..found.states.len() - 1]
+        .iter()
+        .map(|s| s.place)
+        .collect();
+    let parameter = Parameter::Contact {
+        constant: Constant::Slider(0),
+        contact: Some(PLATFORM),
+    };
+    let range = ParameterRange {
+        start: first + 1e-6,
+        stop: last - 1e-6,
+        at: &at,
+        follow: Follow::Omega(1.2),
+        response: None,
+    };
+    let curve = parameter_response(&model, &solver, parameter, &range, &mut Hooks::default()).unwrap();
+    for (i, state) in found.states[1..found.states.len() - 1].iter().enumerate() {
+        let there = curve.at(i);
+        assert_eq!(there.len(), 1);
+        assert!((there[0].amplitude / state.value - 1.0).abs() < 1e-8, "{state:?}");
+    }
+    let highest = curve.amplitude().iter().copied().fold(0.0, f64::max);
+    assert!(highest < found.upper.value * (1.0 + 1e-9) && highest > found.upper.value - 1e-3);
+}
+
+#[test]
+#[ignore = "seconds: many harmonics"]
+fn a_band_with_many_harmonics_is_that_in_time() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = harmonics(101);
+    let branch = solve_at(&model, &solver, 1.2);
+    let found = band(
+        &model,
+        &branch,
+        0,
+        &solver,
+        &BandOptions::default(),
+        &mut Hooks::default(),
+    )
+    .unwrap();
+    let (first, last) = (found.states[0], found.states[found.states.len() - 1]);
+    println!("{first:?} {last:?} {} {:?}", found.upper.value, found.upper.places);
+    // The last rows on both sides are a step of 2e-4 apart; that beyond the upper limit is dragged in time.
+    assert!((first.place - 0.6908).abs() < 2e-4 && (last.place - 1.4885).abs() < 1e-4);
+    assert!((first.value / 0.704_305 - 1.0).abs() < 1e-5 && (last.value / 0.630_173 - 1.0).abs() < 1e-5);
+    let mut model = model;
+    model.set_slider(PLATFORM, 0, found.upper.places[0]).unwrap();
+    let in_time = amplitude_in_time(&model, found.upper.branch.as_ref().unwrap());
+    assert!((in_time - found.upper.value).abs() < 1e-5, "{in_time}");
+}
