@@ -1711,8 +1711,9 @@ typedef struct {
   int64_t responses_len;
   /// Further solutions that are sought, for hbvib_branch_children: 0 (default) none; 1 branches
   /// that branch off where the period doubles, a symmetry breaks or at simple branch points; 2
-  /// detached curves, too, near the resonances that nonlinear modes predict. Stability is then
-  /// computed along all of them, as by HBVIB_STABILITY_WAVE where the solver option is none.
+  /// detached curves, too, near the resonances that nonlinear modes predict; 3 subharmonic curves
+  /// of the orders 2 and 3, too, by a net of starts. Stability is then computed along all of
+  /// them, as by HBVIB_STABILITY_WAVE where the solver option is none.
   int32_t branches;
   /// Largest number of generations of branches that branch off, up to 8; 0 (default): 3.
   int32_t branch_depth;
@@ -1837,6 +1838,8 @@ typedef struct {
   double amplitude_min;
   /// Largest one.
   double amplitude_max;
+  /// Nets of starts of subharmonic curves.
+  int64_t starts;
 } hbvib_searched;
 
 /// Fills a search with zeros.

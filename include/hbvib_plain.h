@@ -506,6 +506,7 @@ struct hbvib_searched {
   int64_t lost_resonances;
   double amplitude_min;
   double amplitude_max;
+  int64_t starts;
 };
 struct hbvib_view {
   uint32_t struct_size;

@@ -458,6 +458,7 @@ class Searched(NamedTuple):
     lost_resonances   Those near which no solution was found.
     amplitude_min   Smallest modal amplitude to which modes were followed; 0 without modes.
     amplitude_max   Largest one.
+    starts   Nets of starts of subharmonic curves.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -475,6 +476,7 @@ class Searched(NamedTuple):
     lost_resonances: int
     amplitude_min: float
     amplitude_max: float
+    starts: int
 
 
 class JacobianGap(NamedTuple):

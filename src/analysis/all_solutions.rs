@@ -41,6 +41,9 @@ pub(super) fn forced_response(
     if range.branches > 1 {
         tree.add_detached(&mut branch, depth, hooks)?;
     }
+    if range.branches > 2 {
+        tree.add_subharmonics(&mut branch, depth, hooks)?;
+    }
     branch.set_searched(tree.searched);
     Ok(branch)
 }

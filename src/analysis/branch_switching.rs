@@ -203,7 +203,9 @@ impl Tree<'_> {
             content: Content { base, even: true },
             leaves: Some(sense),
             known: &known,
+            periods,
             entry: Cell::default(),
+            net: None,
         };
         self.at_period(&model, (&inside, &guess), (periods, parent.response_dof()), hooks)
     }

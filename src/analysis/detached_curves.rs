@@ -187,13 +187,15 @@ impl Tree<'_> {
             content: Content::of(guess, &self.model.felt_by_contacts()?).0,
             leaves: None,
             known: &known,
+            periods: 1,
             entry: Cell::default(),
+            net: None,
         };
         let found = self.at_period(self.model, (&inside, guess), (1, branch.response_dof()), hooks)?;
         let Found::Curve(curve, dropped) = found else {
             return Ok(found);
         };
-        match self.whole(self.model, &curve, hooks)? {
+        match self.whole(self.model, &curve, 1, hooks)? {
             Some(whole) => Ok(Found::Curve(whole, dropped)),
             None => Ok(Found::Curve(curve, dropped)),
         }
@@ -201,8 +203,16 @@ impl Tree<'_> {
 
     /// A curve that left the range, followed from that end once more, through its start to its other end; `None` where it did not
     /// leave the range.
-    fn whole(&self, model: &Model, curve: &Branch, hooks: &mut Hooks<'_>) -> Result<Option<Branch>> {
-        let (low, high) = self.ends();
+    pub fn whole(
+        &self,
+        model: &Model,
+        curve: &Branch,
+        periods: usize,
+        hooks: &mut Hooks<'_>,
+    ) -> Result<Option<Branch>> {
+        let scale = 1.0 / periods as f64;
+        let (a, b) = (self.range.omega_start * scale, self.range.omega_stop * scale);
+        let (low, high) = (a.min(b), a.max(b));
         let (Some(last), Some(end)) = (curve.points().checked_sub(1), curve.omega().last().copied()) else {
             return Ok(None);
         };
@@ -210,16 +220,24 @@ impl Tree<'_> {
         if curve.status() != Status::Ok || !is_end {
             return Ok(None);
         }
+        let mut at = Vec::new();
+        for omega in self.range.at {
+            try_push(&mut at, omega * scale, CONTEXT)?;
+        }
         let highest = curve.carried_at(last).and_then(|carried| carried.last().copied());
         let guess = Recovery::at(curve, last, &hooks.interrupt())?.all(highest.unwrap_or(1))?;
         let range = ForcedOptions {
             omega_start: end,
             omega_stop: if end.to_bits() == low.to_bits() { high } else { low },
             guess: Some(&guess),
-            branches: 0,
-            ..*self.range
+            at: &at,
+            responses: if periods == 1 { self.range.responses } else { &[] },
+            together: self.range.together,
+            ..ForcedOptions::default()
         };
         let solver = SolverOptions {
+            harmonics: self.solver.harmonics.saturating_mul(periods),
+            max_harmonics: self.solver.max_harmonics.saturating_mul(periods),
             response_dof: Some(curve.response_dof()),
             ..*self.solver
         };

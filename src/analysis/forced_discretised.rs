@@ -13,9 +13,10 @@ use crate::analysis::watched_responses::WatchedResponses;
 use crate::condense::FlexibilityWay;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reduction, Reference, reduced_resonances};
+use crate::continuation::corrector::Outcome;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, PointAt, Settings};
-use crate::error::{Result, boxed, try_extend, try_vec};
+use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
@@ -176,6 +177,28 @@ impl<'a> ForcedDiscretised<'a> {
         let metric = Metric::along(norm(at.unknowns()), &self.settings);
         self.stale = true;
         corrector.null_direction(problem, &at.v, start, metric, interrupt)
+    }
+
+    /// Packed relative motions of a motion of all degrees of freedom in the current harmonics.
+    pub fn packed(&self, motion: &[Complex64]) -> Result<Vec<f64>> {
+        relative_motion(self.resolutions.current.resolution, motion)
+    }
+
+    /// Solves at the parameter of a start, wherever the solution lies; `None` where Newton's method fails.
+    pub fn solve_at(&mut self, near: &Point, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
+        let n = near.unknowns().len();
+        let mut row = try_vec(n + 1, 0.0, "a start")?;
+        row[n] = 1.0;
+        let mut v = try_copy(&near.v, "a start")?;
+        let metric = Metric::along(norm(near.unknowns()), &self.settings);
+        self.stale = true;
+        let outcome = corrector.correct(problem, &mut v, &row, metric, true, interrupt)?;
+        let Outcome::Converged(corrected) = outcome else {
+            return Ok(None);
+        };
+        v[n] = near.parameter();
+        Ok(Some(Point::new(v, corrected, 0.0)))
     }
 
     /// How the flexibility is made along the branch, and why so.

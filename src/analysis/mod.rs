@@ -51,6 +51,7 @@ mod slip_margins;
 pub mod static_history;
 mod static_solution;
 mod stuck_contacts;
+mod subharmonic_net;
 pub mod synthesis;
 pub mod time_response;
 mod tracked_damping;

@@ -163,11 +163,13 @@ pub struct hbvib_searched {
     pub amplitude_min: f64,
     /// Largest one.
     pub amplitude_max: f64,
+    /// Nets of starts of subharmonic curves.
+    pub starts: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_searched {
     const NAME: &'static str = "hbvib_searched";
-    const FIRST_SIZE: usize = 80;
+    const FIRST_SIZE: usize = 88;
 
     fn defaults() -> Self {
         Self {
@@ -182,6 +184,7 @@ unsafe impl VersionedStruct for hbvib_searched {
             lost_resonances: 0,
             amplitude_min: 0.0,
             amplitude_max: 0.0,
+            starts: 0,
         }
     }
 }
@@ -216,6 +219,7 @@ pub unsafe extern "C" fn hbvib_branch_searched(branch: *const hbvib_branch, out:
             lost_resonances: searched.lost_resonances as i64,
             amplitude_min: searched.amplitudes.0,
             amplitude_max: searched.amplitudes.1,
+            starts: searched.starts as i64,
             ..hbvib_searched::defaults()
         };
         unsafe { fill_out(out, value) };

@@ -24,7 +24,8 @@ pub struct ForcedOptions<'a> {
     /// Whether the tolerance holds for the responses in one norm, (Σ|error|²/Σ|response|²)^½, instead of for each by itself.
     pub together: bool,
     /// Further solutions that are sought: 0 none; 1 branches that branch off where the period doubles, a symmetry breaks, or at
-    /// simple branch points; 2 detached curves, too. With 1 and 2 stability is computed along all of them.
+    /// simple branch points; 2 detached curves, too; 3 subharmonic curves of
+    /// the orders 2 and 3 by a net of starts, too. From 1 on stability is computed along all of them.
     pub branches: usize,
     /// Largest number of generations of branches that branch off; 0: 3.
     pub branch_depth: usize,
@@ -61,8 +62,8 @@ impl ForcedOptions<'_> {
                 return fail!(Argument, "{name} = {value}, needs an angular frequency > 0");
             }
         }
-        if self.branches > 2 {
-            return fail!(Argument, "branches = {}, needs 0, 1 or 2", self.branches);
+        if self.branches > 3 {
+            return fail!(Argument, "branches = {}, needs 0, 1, 2 or 3", self.branches);
         }
         for (name, value, most) in [
             ("branch_depth", self.branch_depth, LARGEST.0),

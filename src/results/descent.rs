@@ -66,4 +66,6 @@ pub struct Searched {
     pub resonances: usize,
     /// Those near which no solution was found.
     pub lost_resonances: usize,
+    /// Nets of starts of subharmonic curves.
+    pub starts: usize,
 }

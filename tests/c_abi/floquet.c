@@ -135,8 +135,8 @@ static void children(void)
     o.omega_start = 2.3;
     o.omega_stop = 2.4;
     EXPECT("defaults", o.branches == 0 && o.branch_depth == 0 && o.most_branches == 0);
-    o.branches = 3;
-    REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 3");
+    o.branches = 4;
+    REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 4");
     o.branches = 1;
     o.branch_depth = 9;
     REFUSED("depth", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branch_depth = 9");

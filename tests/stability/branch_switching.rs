@@ -47,7 +47,7 @@ fn a_mass_against_a_stop_moves_with_the_double_period() {
     let child = &found.children()[0];
     let descent = child.descent().unwrap();
     assert_eq!((descent.periods, descent.bifurcation), (2, Some(0)));
-    assert!(child.unstable_directions().iter().all(|n| *n == 0.0));
+    assert!(child.unstable_directions().iter().all(|n| *n < 0.5));
     for (i, omega) in ["2.38", "2.43"].into_iter().enumerate() {
         let (point, x) = at(child, i);
         for h in [1, 2] {
@@ -96,7 +96,7 @@ fn a_cascade_of_doublings_is_followed_down_to_its_depth() {
     }
     // Before its own doubling the motion of four periods is stable in time.
     let four = &found.children()[0].children()[0];
-    assert_eq!(four.unstable_directions()[0], 0.0);
+    assert!(four.unstable_directions()[0] < 0.5);
     let longer = model.with_longer_period(4).unwrap();
     assert!(holds_in_time(&longer, four, 2));
 }

@@ -2,6 +2,7 @@
 
 use crate::job_faces::FacesPart;
 use crate::job_motion::{MotionPart, UnitsPart};
+use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
 use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::job_surfaces::SurfacesPart;
@@ -27,6 +28,7 @@ pub struct Job {
     pub response: Vec<ResponsePart>,
     pub forced: Option<ForcedPart>,
     pub mode: Option<ModePart>,
+    pub solutions: Option<SolutionsPart>,
     pub verify: Option<VerifyPart>,
     pub campbell: Option<CampbellPart>,
     pub study: Option<StudyPart>,
@@ -435,6 +437,9 @@ impl Job {
                 "{}: names two analyses: needs one of [forced] and [mode]",
                 path.display()
             ));
+        }
+        if job.solutions.is_some() && job.forced.is_none() {
+            return Err(format!("{}: [solutions] needs [forced]", path.display()));
         }
         if job.verify.is_some() && job.forced.is_none() {
             return Err(format!("{}: [verify] needs [forced]", path.display()));

@@ -5,13 +5,15 @@ use crate::curve::{Before, Curve};
 use crate::end::{self, End};
 use crate::files::Files;
 use crate::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
+use crate::job_solutions::SolutionsPart;
 use crate::progress::watched;
 use crate::responses::{self, ResponsePart};
 use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
-    band_curve, campbell, check, contact_tables, html_report, map, motion_files, output, study, tornado, verification,
+    band_curve, campbell, check, contact_tables, html_report, map, motion_files, output, solutions, study, tornado,
+    verification,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -41,6 +43,8 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
         let solved = solve(&job, &built, stored, &stop);
         if let Some((branch, before)) = end.take(solved, &stop) {
             written(&job, &built, &Curve::new(&branch, before.as_ref()), &mut files);
+            let text = solutions::write(&job, &branch, &mut files);
+            files.tell(&text);
             judged(&job, (&built.model, &branch), &stop, &mut files, &mut end);
         }
     }
@@ -128,7 +132,8 @@ fn verified(
 fn solve(job: &Job, built: &Built, stored: Option<Stored>, stop: &AtomicBool) -> Outcome<(Branch, Option<Before>)> {
     watched(stop, |hooks| match (&job.forced, &job.mode) {
         (Some(part), _) => {
-            let mut run = |begin: &Begin<'_>| forced((part, &job.response), built, begin, hooks);
+            let parts = (part, &job.response[..], job.solutions.as_ref());
+            let mut run = |begin: &Begin<'_>| forced(parts, built, begin, hooks);
             match stored {
                 Some(stored) => restart::go_on(part, stored, &mut run).map(|(branch, before)| (branch, Some(before))),
                 None => run(&Begin {
@@ -145,7 +150,7 @@ fn solve(job: &Job, built: &Built, stored: Option<Stored>, stop: &AtomicBool) ->
 }
 
 fn forced(
-    (part, watched): (&ForcedPart, &[ResponsePart]),
+    (part, watched, sought): (&ForcedPart, &[ResponsePart], Option<&SolutionsPart>),
     built: &Built,
     begin: &Begin<'_>,
     hooks: &mut Hooks<'_>,
@@ -160,7 +165,9 @@ fn forced(
         guess: begin.guess,
         responses: &responses,
         together: part.together,
-        ..ForcedOptions::default()
+        branches: sought.map_or(0, |sought| sought.branches),
+        branch_depth: sought.map_or(0, |sought| sought.depth),
+        most_branches: sought.map_or(0, |sought| sought.most),
     };
     let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
     let solver = SolverOptions {

@@ -284,6 +284,7 @@ contains
       call field('lost_resonances', c_loc(s), c_loc(s%lost_resonances), c_sizeof(s%lost_resonances))
       call field('amplitude_min', c_loc(s), c_loc(s%amplitude_min), c_sizeof(s%amplitude_min))
       call field('amplitude_max', c_loc(s), c_loc(s%amplitude_max), c_sizeof(s%amplitude_max))
+      call field('starts', c_loc(s), c_loc(s%starts), c_sizeof(s%starts))
    end subroutine searched
 
    subroutine view()

@@ -292,7 +292,7 @@ TABLE = {
         "guess_len": [(refused("guess_len"), guessed, -1), (refused("guess_len"), guessed, 3), (CHANGES, guessed, 4)],
         "responses": [(CHANGES, watched, gauges(4, 3)), (refused("responses"), watched, NONE)],
         "responses_len": [(CHANGES, watched, 1), (refused("responses_len"), watched, -1)],
-        "branches": [(refused("branches"), forced, 3), (refused("branches"), forced, -1)],
+        "branches": [(refused("branches"), forced, 4), (refused("branches"), forced, -1)],
         "branch_depth": [(refused("branch_depth"), forced, 9), (refused("branch_depth"), forced, -1)],
         "most_branches": [(refused("most_branches"), forced, 10001), (refused("most_branches"), forced, -1)],
     },
