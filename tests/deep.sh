@@ -4,6 +4,8 @@ set -eu
 cd "$(dirname "$0")/.."
 cargo test --release --tests -- --ignored --test-threads=1
 cargo test --release -p hbvib-cli --bin hbvib -- --ignored
+# MATLAB files of version 7.3, whose crate takes a minute to compile.
+cargo test --release -p hbvib-io --features hdf5 --test matlab_hdf5
 
 # Programs in C and C++ under tools that watch memory, leaks and races.
 for tool in address thread valgrind; do

@@ -25,7 +25,7 @@ const START: u64 = 4096;
 /// | NumPy and scipy | `.npz`, `.npy` | matrices named K, M, C, D or stiffness, mass, ..., or one matrix |
 /// | Ansys .full | the head of the file | stiffness, mass; nodes and directions |
 /// | MATLAB 5 | `.mat` of `save -v6` and `-v7` | as NumPy |
-/// | MATLAB 7.3 | `.mat` of `save -v7.3` | as NumPy |
+/// | MATLAB 7.3, with the feature `hdf5` | `.mat` of `save -v7.3` | as NumPy |
 /// | Abaqus and CalculiX superelements | `*USER ELEMENT`, `*MATRIX, TYPE=` | stiffness, mass; nodes and directions |
 /// | Abaqus | `.mtx` | one matrix: MASS or DMP in the name of the file tell which |
 /// | Harwell-Boeing text | else | one matrix |

@@ -12,7 +12,12 @@ pub(crate) fn format(path: &Path, start: &[u8]) -> Option<String> {
         .unwrap_or("")
         .to_ascii_lowercase();
     let matlab = "save it by save -v7 or -v7.3 (scipy.io.savemat writes that), or as Matrix Market (mmwrite)";
-    let sentence = if start.starts_with(b"\x89HDF") {
+    let sentence = if start.starts_with(b"MATLAB 7.3") {
+        // With the feature it is read.
+        "a MATLAB file of version 7.3 (HDF5), which is read where this was built with the feature hdf5: build it so, or save the file by \
+         save -v7"
+            .into()
+    } else if start.starts_with(b"\x89HDF") {
         format!("an HDF5 file without the head of MATLAB's version 7.3, which is not read: {matlab}")
     } else if start.starts_with(b"MATLAB") || (extension == "mat" && !is_text(start)) {
         format!("a MATLAB file (.mat) without the head of version 5, which is not read: {matlab}")

@@ -254,3 +254,10 @@ fn sizes_beyond_the_file_are_refused() {
     }
     std::fs::remove_file(path).unwrap();
 }
+
+#[cfg(not(feature = "hdf5"))]
+#[test]
+fn a_matlab_file_of_version_7_3_names_the_feature_that_reads_it() {
+    let message = read(&data("version73.mat")).unwrap_err().to_string();
+    assert!(message.contains("7.3") && message.contains("feature hdf5"), "{message}");
+}
