@@ -26,7 +26,6 @@ class _BranchChildren(_Owner):
     _living: Any
     _parent: Optional[Branch] = None  # a child's, which frees it
     message: str
-    status: Any
 
     @property
     def children(self) -> list[Branch]:
@@ -53,7 +52,8 @@ class _BranchChildren(_Owner):
             self._living.add(child)
             found.append(child)  # type: ignore[arg-type]
             descent = child.descent
-            child.message = _sentence(child.status) if child.status else ""
+            status = _call("hbvib_branch_status", child.handle)
+            child.message = _sentence(status) if status else ""
             child._at = np.asarray(self._at) / descent.periods
             # The model of another period is that of longer_period.
             child._origin = self._origin if descent.periods == 1 else None

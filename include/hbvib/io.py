@@ -136,7 +136,8 @@ def _load() -> ctypes.CDLL:
     lib.hbvib_io_results_new.argtypes = [ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     lib.hbvib_io_results_add_shape.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double, ctypes.c_int64,
                                                ctypes.c_void_p, ctypes.c_void_p]
-    lib.hbvib_io_results_add_function.argtypes = [ctypes.c_void_p, ctypes.c_char_p] + [ctypes.c_int64] * 3 + [ctypes.c_void_p] * 2
+    lib.hbvib_io_results_add_function.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64,
+                                                  ctypes.c_void_p, ctypes.c_void_p]
     lib.hbvib_io_results_write.argtypes = [ctypes.c_void_p, ctypes.c_char_p]
     lib.hbvib_io_results_free.restype = None
     lib.hbvib_io_last_error.restype = ctypes.c_char_p

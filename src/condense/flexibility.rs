@@ -4,19 +4,14 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, fill_slope, multiply};
+use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products::multiply_adjoint;
-use crate::linalg::inner;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
-const CONTEXT: &str = "the contact flexibility";
-
-/// Columns of Z′ Z⁻¹ B at a time.
-const PRODUCTS: usize = 8;
+pub(super) const CONTEXT: &str = "the contact flexibility";
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
 /// the unit force of contact j, the last one the excitation; the last row is the response degree
@@ -62,22 +57,22 @@ pub(super) enum Slopes {
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct Workspace {
     /// Made, as the columns, when a factorisation first needs it: where all tables are from modes none does.
-    dynamic: Option<Box<DynamicStiffness>>,
-    damping: f64,
+    pub(super) dynamic: Option<Box<DynamicStiffness>>,
+    pub(super) damping: f64,
     /// Row of the response degree of freedom per harmonic, empty without one.
-    responses: Vec<MotionRow>,
+    pub(super) responses: Vec<MotionRow>,
     /// Z⁻¹ B, ndof rows.
-    columns: Vec<Complex64>,
+    pub(super) columns: Vec<Complex64>,
     /// Z⁻ᵀ Rᵀ, ndof rows.
-    rows: Vec<Complex64>,
+    pub(super) rows: Vec<Complex64>,
     /// Z′ Z⁻¹ B, some columns at a time.
-    products: Vec<Complex64>,
+    pub(super) products: Vec<Complex64>,
     /// Entries of Z′, made when slopes are first wanted.
-    slope: Vec<Complex64>,
-    load: Vec<Complex64>,
+    pub(super) slope: Vec<Complex64>,
+    pub(super) load: Vec<Complex64>,
     /// A motion and its change, made when they are first wanted.
-    motion: Vec<Complex64>,
-    table: Table,
+    pub(super) motion: Vec<Complex64>,
+    pub(super) table: Table,
 }
 
 impl Workspace {
@@ -176,112 +171,12 @@ impl Workspace {
         for (column, table) in self.columns.chunks_exact(n).zip(tables) {
             read(rows.clone(), column, table);
         }
-        if slopes != Slopes::All {
-            self.table.slope.fill(Complex64::ZERO);
-            if slopes == Slopes::OfResponse {
-                self.fill_slopes_of_response(condensed, (i, omega), interrupt)?;
-            }
-            return Ok(&self.table);
-        }
-        if self.rows.is_empty() {
-            self.rows = try_vec(self.columns.len(), Complex64::ZERO, CONTEXT)?;
-            self.products = try_vec(n * PRODUCTS.min(outputs), Complex64::ZERO, CONTEXT)?;
-        }
-        self.rows.fill(Complex64::ZERO);
-        for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
-            for &(p, a) in row.terms() {
-                column[p] += a;
-            }
-        }
-        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
-        let entries = block.reference.values.len();
-        if self.slope.len() < entries {
-            self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
-        }
-        fill_slope(block, (omega, self.damping), &mut self.slope[..entries]);
-        // −Rᵀ as the adjoint of −conj R.
-        for z in &mut self.rows {
-            *z = -z.conj();
-        }
-        let columns = self.columns.chunks(PRODUCTS * n);
-        for (columns, table) in columns.zip(self.table.slope.chunks_mut(PRODUCTS * outputs)) {
-            interrupt.check_before(8 * (outputs * columns.len()) as u64)?;
-            let products = &mut self.products[..columns.len()];
-            for (column, product) in columns.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
-                multiply(block, &self.slope[..entries], column, product);
-            }
-            multiply_adjoint(&self.rows, products, table, n);
-        }
-        if let Some(unbalance) = &block.unbalance {
-            // The last column is that of the excitation, whose own derivative is 2ω times the unbalance.
-            let last = self.table.slope.len() - outputs;
-            for (slope, solved) in self.table.slope[last..].iter_mut().zip(self.rows.chunks_exact(n)) {
-                *slope -= 2.0 * omega * inner(solved, unbalance);
-            }
+        match slopes {
+            Slopes::None => self.table.slope.fill(Complex64::ZERO),
+            Slopes::OfResponse => self.fill_slopes_of_response(condensed, (i, omega), interrupt)?,
+            Slopes::All => self.fill_all_slopes(condensed, (i, omega), interrupt)?,
         }
         Ok(&self.table)
-    }
-
-    /// The last row of ∂H/∂ω = −rᵀ Z′ Z⁻¹ B with r = Z⁻ᵀ Rᵀ of the response, with the current factors and columns.
-    fn fill_slopes_of_response(
-        &mut self,
-        condensed: &Condensed,
-        (i, omega): (usize, f64),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
-        let n = condensed.ndof();
-        let outputs = condensed.coordinates() + 1;
-        self.load.fill(Complex64::ZERO);
-        for &(p, a) in self.responses[i].terms() {
-            self.load[p] += a;
-        }
-        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.load, true, interrupt)?;
-        if self.products.len() < n {
-            self.products = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        }
-        let at = (omega.into(), self.damping);
-        let moved = &mut self.products[..n];
-        moved.fill(Complex64::ZERO);
-        add_slope_product(condensed, i, at, Variable::Omega, true, &self.load, moved);
-        let product = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<Complex64>();
-        let slopes = self.table.slope.chunks_exact_mut(outputs);
-        for (column, slopes) in self.columns.chunks_exact(n).zip(slopes) {
-            slopes[outputs - 1] = -product(moved, column);
-        }
-        if let (Some(unbalance), Some(last)) = (&condensed.blocks()[i].unbalance, self.table.slope.last_mut()) {
-            *last += 2.0 * omega * product(&self.load, unbalance);
-        }
-        Ok(())
-    }
-
-    /// The change R ∂x/∂ω of the motion x under the excitation and contact forces that do not change, `contact_force` being that of
-    /// [`Self::recover`], in the i-th carried harmonic at `omega`.
-    ///
-    /// # Errors
-    /// As [`Self::evaluate`].
-    pub(super) fn slope_along(
-        &mut self,
-        condensed: &Condensed,
-        (i, omega): (usize, f64),
-        contact_force: &[Complex64],
-        change: &mut [Complex64],
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
-        let n = condensed.ndof();
-        if self.motion.is_empty() {
-            self.motion = try_vec(2 * n, Complex64::ZERO, CONTEXT)?;
-        }
-        let mut motion = core::mem::take(&mut self.motion);
-        let (x, dx) = motion.split_at_mut(n);
-        let recovered = self.recover(condensed, i, omega, contact_force, x, interrupt);
-        let found = recovered.and_then(|()| self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt));
-        read(
-            condensed.blocks()[i].rows.iter().chain([&self.responses[i]]),
-            dx,
-            change,
-        );
-        self.motion = motion;
-        found
     }
 
     /// The k-th column of H and of its slope after [`Self::evaluate`], improved until only the rounding of the matrices is left; the
@@ -456,7 +351,10 @@ impl Workspace {
 }
 
 /// The matrix of the current harmonic with its factors.
-fn made<'a>(dynamic: &'a mut Option<Box<DynamicStiffness>>, condensed: &Condensed) -> Result<&'a mut DynamicStiffness> {
+pub(super) fn made<'a>(
+    dynamic: &'a mut Option<Box<DynamicStiffness>>,
+    condensed: &Condensed,
+) -> Result<&'a mut DynamicStiffness> {
     let known = match dynamic.take() {
         Some(known) => known,
         None => boxed(|| DynamicStiffness::new(condensed, condensed.coordinates() + 1))?,
@@ -476,7 +374,7 @@ fn fill_load(block: &HarmonicBlock, k: usize, omega: f64, load: &mut [Complex64]
 }
 
 /// R x, a column of the table.
-fn read<'r>(rows: impl Iterator<Item = &'r MotionRow>, x: &[Complex64], table: &mut [Complex64]) {
+pub(super) fn read<'r>(rows: impl Iterator<Item = &'r MotionRow>, x: &[Complex64], table: &mut [Complex64]) {
     for (value, row) in table.iter_mut().zip(rows) {
         *value = row.along(x);
     }

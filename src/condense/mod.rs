@@ -8,6 +8,7 @@ pub mod dynamic_stiffness;
 pub mod exchange;
 mod exchanged_motions;
 pub mod flexibility;
+mod flexibility_slopes;
 mod flexibility_way;
 pub mod frequency_cache;
 pub mod harmonic_block;

@@ -551,3 +551,7 @@ impl Problem for HarmonicBalance<'_> {
         self.tables.set_factorised(factorised);
     }
 }
+
+#[cfg(test)]
+#[path = "harmonic_balance_tests.rs"]
+mod tests;

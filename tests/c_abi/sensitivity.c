@@ -133,8 +133,8 @@ int main(void)
     REFUSED("direction", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "no matrix");
     q = parameter(HBVIB_PARAMETER_KT, -2);
     REFUSED("contact", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_INDEX, 5, "contact = -2");
-    q = parameter(10, -1);
-    REFUSED("kind", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "kind = 10");
+    q = parameter(12, -1);
+    REFUSED("kind", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "kind = 12");
 
     if (hbvib_hooks_init(&hooks, sizeof hooks) != HBVIB_OK) abort();
     hooks.phase = stop;

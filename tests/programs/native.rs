@@ -70,6 +70,7 @@ fn cpp_feels_native() {
 }
 
 #[test]
+#[ignore = "compiles all programs once more; tests/deep.sh runs it"]
 fn cpp_is_cpp_20_as_well() {
     let options = cpp_options("c++20");
     let options: Vec<&str> = options.iter().map(String::as_str).collect();

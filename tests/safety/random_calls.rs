@@ -28,7 +28,7 @@ fn calls(test: &str, seed: usize, seconds: usize, most: usize) {
 fn random_calls_do_no_harm() {
     // `a_million_random_calls_do_no_harm` goes on where this ends.
     two_at_a_time(&[1, 2], |&seed| {
-        calls(&format!("random_calls_{seed}"), seed, 12, usize::MAX >> 1);
+        calls(&format!("random_calls_{seed}"), seed, 8, usize::MAX >> 1);
     });
 }
 

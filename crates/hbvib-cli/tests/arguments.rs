@@ -1,8 +1,6 @@
 //! Arguments of the command: help and version of all verbs, mistakes with exit code 1, completions that shells take, the manual page,
 //! and lines of JSON for each event.
 
-mod common;
-
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -108,13 +106,13 @@ fn job() -> String {
     format!(
         "{}[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5\n[[force]]\ndof = 0\nvalue = 5.0\n\
          [forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = 3\n[output]\ncsv = 'response.csv'\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     )
 }
 
 #[test]
 fn a_job_alone_is_run() {
-    let (output, folder) = common::hbvib("run", ("arguments", "alone"), &job());
+    let (output, folder) = crate::common::hbvib("run", ("arguments", "alone"), &job());
     std::fs::remove_file(folder.join("response.csv")).unwrap();
     let alone = hbvib(&[folder.join("job.toml").to_str().unwrap()]);
     assert!(alone.status.success(), "{}", text(&alone.stderr));
@@ -124,7 +122,7 @@ fn a_job_alone_is_run() {
 
 #[test]
 fn every_event_is_a_line_of_json() {
-    let (plain, folder) = common::hbvib("run", ("arguments", "json"), &job());
+    let (plain, folder) = crate::common::hbvib("run", ("arguments", "json"), &job());
     let path = folder.join("job.toml");
     let output = hbvib(&["run", "--log", "json", path.to_str().unwrap()]);
     assert!(output.status.success());
@@ -180,11 +178,11 @@ fn every_event_is_a_line_of_json() {
 #[test]
 fn modes_and_check_need_no_analysis() {
     let job = job().replace("[forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = 3\n", "");
-    let (output, _) = common::hbvib("modes", ("arguments", "modes"), &job);
+    let (output, _) = crate::common::hbvib("modes", ("arguments", "modes"), &job);
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(text(&output.stdout).lines().count(), 1 + 13 * 4);
-    let (output, _) = common::hbvib("check", ("arguments", "check"), &job);
+    let (output, _) = crate::common::hbvib("check", ("arguments", "check"), &job);
     assert!(output.status.success() && text(&output.stdout).contains("names no analysis"));
-    let (output, _) = common::hbvib("run", ("arguments", "run"), &job);
+    let (output, _) = crate::common::hbvib("run", ("arguments", "run"), &job);
     assert!(output.status.code() == Some(1) && text(&output.stderr).contains("names no analysis"));
 }

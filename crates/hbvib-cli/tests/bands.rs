@@ -1,14 +1,12 @@
 //! A job with `[band]`: the curves are those of the library's own calls, in the table and the figure, and what cannot be computed is
 //! refused with the place in the job.
 
-mod common;
-
 use std::fmt::Write;
 use std::fs;
 
 /// A wedge damper between a platform and a blade, and a part of the job.
 fn run(name: &str, part: &str) -> (std::process::Output, std::path::PathBuf) {
-    let matrices = common::empty_folder("bands", &format!("{name}_matrices"));
+    let matrices = crate::common::empty_folder("bands", &format!("{name}_matrices"));
     let mut job = String::new();
     for (key, blade, damper) in [("mass", 1.0, 0.01), ("damping", 0.04, 0.004), ("stiffness", 1.0, 1e-3)] {
         let path = matrices.join(format!("{key}.mtx"));
@@ -29,14 +27,17 @@ fn run(name: &str, part: &str) -> (std::process::Output, std::path::PathBuf) {
         );
     }
     job += "[[force]]\ndof = 2\nharmonic = 0\nvalue = 1.0\n[[force]]\ndof = 0\nvalue = 0.02\n";
-    common::hbvib("run", ("bands", name), &(job + part))
+    crate::common::hbvib("run", ("bands", name), &(job + part))
 }
 
 #[test]
 fn a_band_has_its_curves_and_that_of_the_peak() {
     let part = "[band]\nfrom_hz = 0.196\nto_hz = 0.2005\nharmonics = 5\ncsv = 'band.csv'\nfigure = 'band.svg'\n";
     let (output, folder) = run("curves", part);
-    let (text, errors) = (common::printed(&output.stdout), common::printed(&output.stderr));
+    let (text, errors) = (
+        crate::common::printed(&output.stdout),
+        crate::common::printed(&output.stderr),
+    );
     assert!(output.status.success(), "{text}{errors}");
     assert!(
         text.contains("1 slider free") && text.contains("band of it from 1.7"),
@@ -67,12 +68,12 @@ fn a_band_that_cannot_be_computed_is_refused_by_its_part() {
         "[band]\nfrom_hz = 0.19\nto_hz = 0.2\nharmonics = 3\nstarts = 0\n",
     );
     assert!(!output.status.success());
-    assert!(common::printed(&output.stderr).contains("[band]: starts = 0"));
+    assert!(crate::common::printed(&output.stderr).contains("[band]: starts = 0"));
 }
 
 #[test]
 fn the_wedge_dampers_of_the_examples_are_checked() {
-    let job = common::root().join("examples/jobs/wedge_damper/job.toml");
-    let output = common::command(&["check", job.to_str().unwrap()], &common::root());
-    assert!(output.status.success(), "{}", common::printed(&output.stderr));
+    let job = crate::common::root().join("examples/jobs/wedge_damper/job.toml");
+    let output = crate::common::command(&["check", job.to_str().unwrap()], &crate::common::root());
+    assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
 }

@@ -1,9 +1,7 @@
 //! From a mesh to a response: CalculiX assembles the sector of the book, and its own frequencies of the wheel are those of
 //! `hbvib`; faces and degrees of freedom by names of nodes are those by numbers.
 
-mod common;
-
-use common::{printed, root, run};
+use crate::common::{printed, root, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -94,7 +92,7 @@ fn two_bricks(verb: &str, name: &str, faces: &str, rest: &str) -> Output {
         "model.matrices = '{data}/sector.sti'\nmodel.mesh = '{data}/sector.inp'\nmodel.engine_order = 3\n{faces}\n\
          [[force]]\nvalue = 1.0\n{rest}\n[forced]\nfrom_hz = 1.0\nto_hz = 2.0\n"
     );
-    common::hbvib(verb, ("calculix_faces", name), &job).0
+    crate::common::hbvib(verb, ("calculix_faces", name), &job).0
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! Campbell and interference diagrams of a job.
 
-mod common;
-
 use std::f64::consts::TAU;
 use std::fs;
 
@@ -37,7 +35,7 @@ fn a_rotor_has_its_frequencies_and_one_forward_critical_speed() {
         "frequencies",
         &format!("from_rpm = 0\nto_rpm = {to:?}\npoints = 21\ncount = 4\ncsv = 'a.csv'\nfigure = 'a.svg'\n"),
     );
-    let (output, folder) = common::hbvib("run", ("campbell", "rotor"), &job);
+    let (output, folder) = crate::common::hbvib("run", ("campbell", "rotor"), &job);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let forward: Vec<&str> = text.lines().filter(|line| line.ends_with("forward")).collect();
@@ -56,10 +54,10 @@ fn a_rotor_has_its_frequencies_and_one_forward_critical_speed() {
 
 #[test]
 fn a_wheel_has_an_interference_diagram_and_a_plain_structure_none() {
-    let model = common::ring_damper();
+    let model = crate::common::ring_damper();
     let campbell =
         "[campbell]\nfrom_rpm = 1000\nto_rpm = 3000\npoints = 3\ncount = 3\ninterference_figure = 'safe.svg'\n";
-    let (output, folder) = common::hbvib("run", ("campbell", "wheel"), &format!("{model}{campbell}"));
+    let (output, folder) = crate::common::hbvib("run", ("campbell", "wheel"), &format!("{model}{campbell}"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let figure = fs::read_to_string(folder.join("safe.svg")).unwrap();
     assert!(figure.contains("nodal diameter") && figure.contains("3000 rpm"));
@@ -74,7 +72,7 @@ fn a_wheel_has_an_interference_diagram_and_a_plain_structure_none() {
             "engine_orders[0] = 0",
         ),
     ] {
-        let (output, _) = common::hbvib("run", ("campbell", "wrong"), &rotor("wrong", wrong));
+        let (output, _) = crate::common::hbvib("run", ("campbell", "wrong"), &rotor("wrong", wrong));
         assert!(!output.status.success());
         let text = String::from_utf8(output.stderr).unwrap();
         assert!(text.contains(words), "{text}");
@@ -122,7 +120,7 @@ fn engine_orders_of_a_rotating_wheel_meet_the_waves_of_their_own_sense() {
                  csv = 'a.csv'\nfigure = 'a.svg'\ninterference_figure = 'safe.svg'\ninterference_rpm = 48\n"
             );
             let job = coriolis_wheel("wheel_of_orders", 1, &part);
-            let (output, folder) = common::hbvib("run", ("campbell", "senses"), &job);
+            let (output, folder) = crate::common::hbvib("run", ("campbell", "senses"), &job);
             let text = String::from_utf8(output.stdout).unwrap();
             assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
             let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("EO")).collect();
@@ -151,7 +149,7 @@ fn modes_of_a_rotating_wheel_are_listed_in_both_senses() {
             1,
             &format!("speed = {speed:?}\n[campbell]\nfrom_rpm = 0\nto_rpm = 9\n"),
         );
-        let (output, _) = common::hbvib("modes", ("campbell", "both"), &job);
+        let (output, _) = crate::common::hbvib("modes", ("campbell", "both"), &job);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = String::from_utf8(output.stdout).unwrap();
         assert_eq!(text.lines().count(), 1 + 2 * rows, "{text}");

@@ -1,7 +1,5 @@
 //! Hysteresis loops and slip fractions of a job, against the closed form of a Jenkins contact under a sine.
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -16,9 +14,9 @@ fn run(name: &str, contacts: &str, outputs: &str) -> (Output, PathBuf) {
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n\
          [forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = 1\n\
          [output]\ncsv = 'response.csv'\n{outputs}\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
-    common::hbvib("run", ("contact_outputs", name), &job)
+    crate::common::hbvib("run", ("contact_outputs", name), &job)
 }
 
 fn errors(output: &Output) -> String {

@@ -1,9 +1,6 @@
 //! A job in a locale with a decimal comma has the outputs of one without it, to the byte.
 
-mod common;
-#[path = "../../../tests/common/decimal_comma.rs"]
-mod decimal_comma;
-
+use crate::comma_locale;
 use std::path::Path;
 use std::process::Command;
 
@@ -11,12 +8,12 @@ use std::process::Command;
 fn a_decimal_comma_changes_no_table_and_no_figure() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("decimal_comma");
     let _ = std::fs::remove_dir_all(&folder);
-    let locales = decimal_comma::locale(&folder);
-    let job = common::ring_damper()
+    let locales = comma_locale::locale(&folder);
+    let job = crate::common::ring_damper()
         + "[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5\n\
            [[force]]\ndof = 0\nvalue = 5.0\n[forced]\nfrom_hz = 207.0\nto_hz = 211.0\n\
            [output]\ncsv = 'response.csv'\nfigure = 'response.svg'\n";
-    let outputs = ["C", decimal_comma::NAME].map(|name| {
+    let outputs = ["C", comma_locale::NAME].map(|name| {
         let own = folder.join(name);
         std::fs::create_dir_all(&own).unwrap();
         std::fs::write(own.join("job.toml"), &job).unwrap();

@@ -1,8 +1,6 @@
 //! Jobs whose words have two meanings are refused, or told: nodes without rows, rows of one node and direction, pairs that the right
 //! face repeats, normals that the gaps contradict, files without the right names, values other than expected.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -19,7 +17,7 @@ fn printed(bytes: &[u8]) -> String {
 
 /// Exit code, standard output and errors.
 fn hbvib(verb: &str, name: &str, job: &str) -> (i32, String, String) {
-    let (output, _) = common::hbvib(verb, ("doubtful", name), job);
+    let (output, _) = crate::common::hbvib(verb, ("doubtful", name), job);
     (
         output.status.code().unwrap(),
         printed(&output.stdout),

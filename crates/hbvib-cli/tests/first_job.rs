@@ -1,9 +1,7 @@
 //! Jobs that `init` writes: they run without a change, from matrices and from a mesh of gmsh's kind, and `convert` brings matrices from
 //! one format to another.
 
-mod common;
-
-use common::{command, empty_folder, printed, root};
+use crate::common::{command, empty_folder, printed, root};
 use std::path::Path;
 use std::process::Command;
 

@@ -1,7 +1,5 @@
 //! The report of a run: one page without links to other places, whose figures and tables are those of the run.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -36,7 +34,7 @@ print(len(figures), reader.count['table'], reader.count['h2'])
 ";
 
 fn run(name: &str, job: &str) -> (String, String, PathBuf) {
-    let (output, folder) = common::hbvib("run", ("html_reports", name), job);
+    let (output, folder) = crate::common::hbvib("run", ("html_reports", name), job);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{errors}");
     let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
@@ -57,7 +55,7 @@ fn the_report_holds_the_run_in_one_page() {
         "# <a job> & its \"report\"\n{}[[contact]]\nname = '<ring>'\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5\n\
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n\
          [forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = 3\nat_hz = [208.0]\n[output]\nreport = 'report.html'\ncsv = 'a.csv'\nunits.length = 'm'\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
     let (page, counts, folder) = run("ring", &job);
     // Response, slip and one loop; points and contacts; without a mesh there is no picture of it.

@@ -3,8 +3,6 @@
 
 #![cfg(unix)]
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -15,7 +13,7 @@ fn printed(bytes: &[u8]) -> String {
 
 /// A sweep of the ring damper that takes seconds.
 fn sweep(outputs: &str) -> String {
-    let model = common::ring_damper();
+    let model = crate::common::ring_damper();
     format!(
         "{model}[[contact]]\nname = 'ring'\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5\n\
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n\

@@ -1,8 +1,6 @@
 //! Jobs with `[map]` and `[tornado]`: peaks and changes are those of the library's own calls, in tables, NPZ and figures, and
 //! what cannot be computed is refused with the place in the job.
 
-mod common;
-
 use hbvib::{
     BatchOptions, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, Part, Quantity,
     SolverOptions, Speed, Storage, Values, batch, forced_response, sensitivity,
@@ -20,9 +18,9 @@ fn run(verb: &str, name: &str, parts: &str) -> (Output, std::path::PathBuf) {
     let job = format!(
         "{}model.speed = {SPEED}\n[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 100.0\n\
          per_speed2 = {PER_SPEED2}\n[[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n{parts}\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
-    common::hbvib(verb, ("map_and_tornado", name), &job)
+    crate::common::hbvib(verb, ("map_and_tornado", name), &job)
 }
 
 /// The same by the library.

@@ -1,8 +1,6 @@
 //! The report of `check` as text and JSON: mass and its centre, rows without mass, rigid motions, frequencies, faces, and contacts at
 //! rest against closed forms.
 
-mod common;
-
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -23,7 +21,7 @@ fn near(value: &Value, expected: f64, relative: f64) {
 
 /// The report of a job as text and as JSON.
 fn reports(name: &str, job: &str) -> (String, Value) {
-    let (plain, folder) = common::hbvib("check", ("model_reports", name), job);
+    let (plain, folder) = crate::common::hbvib("check", ("model_reports", name), job);
     assert!(plain.status.success(), "{}", text(&plain.stderr));
     let path = folder.join("job.toml");
     let output: Output = Command::new(env!("CARGO_BIN_EXE_hbvib"))
@@ -156,7 +154,7 @@ fn rigid_motions_and_warnings_are_counted() {
     // The ring damper of diameter 0 has a disk that turns on nothing but the contact.
     let job = format!(
         "{}model.expected.first_hz = 1.0\n[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
     let (plain, json) = reports("ring", &job);
     assert_eq!(json["frequencies"][0]["rigid_motions"], 1);
@@ -164,7 +162,7 @@ fn rigid_motions_and_warnings_are_counted() {
     assert!(json["warnings"].as_array().unwrap().len() == 1, "{json}");
     assert!(json["centre_of_mass"].is_null() && json["mass"].is_null());
     near(&json["contacts"][0]["pairs"][0]["normal_force"], 488.5, 1e-12);
-    let (output, _) = common::hbvib("check", ("model_reports", "ring"), &job);
+    let (output, _) = crate::common::hbvib("check", ("model_reports", "ring"), &job);
     assert!(output.status.success());
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("model_reports/ring/job.toml");
     let strict = Command::new(env!("CARGO_BIN_EXE_hbvib"))

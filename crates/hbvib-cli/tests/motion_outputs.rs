@@ -1,9 +1,7 @@
 //! Motion of the mesh in VTU, UFF, NetCDF and .frd: other programs read the harmonics of the run back; jobs that cannot have them are
 //! refused before anything is computed.
 
-mod common;
-
-use common::{printed, root, run};
+use crate::common::{printed, root, run};
 use std::path::Path;
 
 #[test]
@@ -49,7 +47,7 @@ fn jobs_without_a_mesh_are_refused_before_they_run() {
     let job = |output: &str| {
         format!(
             "{}[[force]]\ndof = 0\nvalue = 5.0\n[forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = 1\n[output]\n{output}\n",
-            common::ring_damper()
+            crate::common::ring_damper()
         )
     };
     for (name, output, words) in [
@@ -59,7 +57,7 @@ fn jobs_without_a_mesh_are_refused_before_they_run() {
         ("wheel", "motion.wheel = true", "needs a sector with [model.faces]"),
         ("points", "motion.points = 'some'", "unknown variant `some`"),
     ] {
-        let (output, folder) = common::hbvib("run", ("motion_outputs_refused", name), &job(output));
+        let (output, folder) = crate::common::hbvib("run", ("motion_outputs_refused", name), &job(output));
         let errors = printed(&output.stderr);
         assert!(
             output.status.code() == Some(1) && errors.contains(words),
@@ -68,7 +66,7 @@ fn jobs_without_a_mesh_are_refused_before_they_run() {
         assert_eq!(std::fs::read_dir(folder).unwrap().count(), 1, "{name}");
     }
     // Rows without names have numbers in NetCDF, and one response in UFF.
-    let (output, folder) = common::hbvib(
+    let (output, folder) = crate::common::hbvib(
         "run",
         ("motion_outputs_refused", "rows"),
         &job("netcdf = 'a.nc'\nuff = 'a.uff'"),

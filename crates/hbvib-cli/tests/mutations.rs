@@ -1,8 +1,6 @@
 //! Real pairs of matrices pass `check --strict` without a warning, and each damage to one of them is refused or told: cut, exchanged,
 //! shuffled, of another model, scaled, with a row removed, an entry of the wrong sign, and so on.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,5 @@
 //! Contacts from two lists of nodes give those of the same pairs by hand, and nodes that do not match are named.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -10,7 +8,7 @@ fn data() -> PathBuf {
 }
 
 fn hbvib(verb: &str, name: &str, job: &str) -> Output {
-    common::hbvib(verb, ("node_lists", name), job).0
+    crate::common::hbvib(verb, ("node_lists", name), job).0
 }
 
 fn printed(bytes: &[u8]) -> String {
@@ -19,7 +17,7 @@ fn printed(bytes: &[u8]) -> String {
 
 /// The ring damper with these contacts instead of its own.
 fn ring_damper(contacts: &str) -> String {
-    let model = common::ring_damper();
+    let model = crate::common::ring_damper();
     format!(
         "{model}{contacts}\n[[force]]\ndof = 0\nvalue = 5.0\n[forced]\nfrom_hz = 205.0\nto_hz = 225.0\nharmonics = 5\n"
     )

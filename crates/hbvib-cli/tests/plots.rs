@@ -1,7 +1,5 @@
 //! Figures of stored responses: their points, axes, harmonics and labels, and files that have none of these.
 
-mod common;
-
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -37,9 +35,9 @@ fn a_stored_response_is_drawn_on_either_axis() {
         "{}[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5\n[[force]]\ndof = 0\nvalue = 5.0\n\
          [[response]]\ndofs = [0]\n[[response]]\ndofs = [3]\nmeasure = 'peak'\n[forced]\nfrom_hz = 205.0\nto_hz = 212.0\nharmonics = 3\n\
          [output]\nnpz = 'a.npz'\ncsv = 'a.csv'\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
-    let (output, folder) = common::hbvib("run", ("plots", "response"), &job);
+    let (output, folder) = crate::common::hbvib("run", ("plots", "response"), &job);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let drawn = |arguments: &[&str]| -> String {
         let output = plot(&folder, &[&["a.npz", "--output", "a.svg"], arguments].concat());

@@ -1,9 +1,7 @@
 //! Matrices under the loads of a static step of CalculiX: natural frequencies are those of CalculiX with the same stresses, contacts have
 //! its pressures and gaps, and the stiffness over speed is that between two speeds.
 
-mod common;
-
-use common::{command, empty_folder, printed, root, run};
+use crate::common::{command, empty_folder, printed, root, run};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;

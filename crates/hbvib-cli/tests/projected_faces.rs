@@ -1,11 +1,7 @@
 //! Faces of a sector whose meshes differ, and nodes on the axis: frequencies are those of the whole wheel, assembled with the motion of
 //! each node of the finer face as the mean of its neighbours.
 
-#[path = "../../hbvib-io/tests/meshes/brick.rs"]
-mod brick;
-mod common;
-
-use brick::brick;
+use crate::brick::brick;
 use hbvib::{ContactState, MatrixKind, MatrixView, Model};
 use hbvib_io::{Format, Matrices, Matrix, Symmetry, write};
 use std::f64::consts::TAU;
@@ -201,10 +197,14 @@ const FACES: &str = "left = 'LEFT'\nright = 'RIGHT'\nmatching = 'projected'";
 
 /// Frequencies in rad per time unit of all waves, ascending.
 fn of_waves(name: &str, job: &str) -> Vec<f64> {
-    let (output, _) = common::hbvib("modes", ("projected_faces", name), job);
-    assert!(output.status.success(), "{name}: {}", common::printed(&output.stderr));
+    let (output, _) = crate::common::hbvib("modes", ("projected_faces", name), job);
+    assert!(
+        output.status.success(),
+        "{name}: {}",
+        crate::common::printed(&output.stderr)
+    );
     let mut all = Vec::new();
-    for line in common::printed(&output.stdout).lines().skip(1) {
+    for line in crate::common::printed(&output.stdout).lines().skip(1) {
         let row: Vec<f64> = line.split(',').map(|word| word.parse().unwrap()).collect();
         let diameter = row[0] as usize;
         let senses = if diameter == 0 || 2 * diameter == SECTORS { 1 } else { 2 };
@@ -235,8 +235,8 @@ fn a_wheel_with_different_faces_and_an_axis_has_the_frequencies_of_its_assembly(
             );
         }
     }
-    let (output, _) = common::hbvib("check", ("projected_faces", "check"), &job(&folder, FACES));
-    let text = common::printed(&output.stdout);
+    let (output, _) = crate::common::hbvib("check", ("projected_faces", "check"), &job(&folder, FACES));
+    let text = crate::common::printed(&output.stdout);
     assert!(
         text.contains("2 nodes on the axis, which move along it in diameter 0"),
         "{text}"
@@ -254,8 +254,8 @@ fn nodes_of_the_finer_face_move_with_the_next_sector() {
     let job = job(&folder, FACES)
         + "[[force]]\ndof = '5.1'\nvalue = 1.0\n[[force]]\ndof = '8.3'\nvalue = 0.5\n[forced]\nfrom_hz = 2.0\nto_hz = 2.0\nharmonics = 1\n\
            response_dof = '5.1'\n[output]\nuff = 'shape.uff'\n";
-    let (output, place) = common::hbvib("run", ("projected_faces", "response"), &job);
-    assert!(output.status.success(), "{}", common::printed(&output.stderr));
+    let (output, place) = crate::common::hbvib("run", ("projected_faces", "response"), &job);
+    assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
     let shapes = hbvib_io::read_universal(&place.join("shape.uff")).unwrap().shapes;
     let shape = shapes.last().unwrap();
     let motion = |node: i64| -> Vec<(f64, f64)> {
@@ -307,8 +307,8 @@ fn faces_that_cannot_be_projected_are_refused() {
         ("dofs", FACES.replace("'LEFT'", "[[0, 1, 2]]"), "needs numbers of nodes"),
         ("word", FACES.replace("projected", "project"), "project"),
     ] {
-        let (output, _) = common::hbvib("check", ("projected_faces", name), &job(&folder, &faces));
-        let errors = common::printed(&output.stderr);
+        let (output, _) = crate::common::hbvib("check", ("projected_faces", name), &job(&folder, &faces));
+        let errors = crate::common::printed(&output.stderr);
         assert!(!output.status.success() && errors.contains(words), "{name}: {errors}");
     }
     // Right nodes that lie a little off: another distance takes them.
@@ -321,21 +321,21 @@ fn faces_that_cannot_be_projected_are_refused() {
         1,
     );
     std::fs::write(folder.join("mesh.inp"), off).unwrap();
-    let (output, _) = common::hbvib("check", ("projected_faces", "off"), &job(&folder, FACES));
-    let errors = common::printed(&output.stderr);
+    let (output, _) = crate::common::hbvib("check", ("projected_faces", "off"), &job(&folder, FACES));
+    let errors = crate::common::printed(&output.stderr);
     assert!(
         errors.contains("node 7 is not within") && errors.contains("tolerance sets another distance"),
         "{errors}"
     );
-    let (output, _) = common::hbvib(
+    let (output, _) = crate::common::hbvib(
         "check",
         ("projected_faces", "near"),
         &job(&folder, &format!("{FACES}\ntolerance = 0.01")),
     );
-    let text = common::printed(&output.stdout);
+    let text = crate::common::printed(&output.stdout);
     assert!(
         text.contains("at most 2.000e-3 away"),
         "{text}{}",
-        common::printed(&output.stderr)
+        crate::common::printed(&output.stderr)
     );
 }

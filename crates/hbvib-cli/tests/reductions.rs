@@ -1,9 +1,7 @@
 //! Craig-Bampton models of `reduce`: natural frequencies against an independent reduction, the response of the wheel against the whole
 //! model, and the error that is told.
 
-mod common;
-
-use common::{command, empty_folder, printed, root};
+use crate::common::{command, empty_folder, printed, root};
 use std::path::Path;
 use std::process::Command;
 
@@ -188,7 +186,7 @@ fn models_that_are_not_reduced_are_refused() {
     let job = std::fs::read_to_string(folder.join("job.toml")).unwrap();
     let bare = job.split("[[contact]]").next().unwrap();
     std::fs::write(folder.join("bare.toml"), bare).unwrap();
-    std::fs::write(folder.join("ring.toml"), common::ring_damper()).unwrap();
+    std::fs::write(folder.join("ring.toml"), crate::common::ring_damper()).unwrap();
     for (arguments, words) in [
         (
             &["reduce", "bare.toml", "--output", "a.npz"][..],

@@ -1,8 +1,6 @@
 //! A job with `[[response]]`: its table and summary have the responses of the library, and mistakes are told.
 
-mod common;
-
-use common::{hbvib, ring_damper};
+use crate::common::{hbvib, ring_damper};
 
 /// A job on the ring damper, with further tables and an analysis.
 fn job(responses: &str, analysis: &str) -> String {

@@ -1,8 +1,6 @@
 //! A run that was stopped goes on from its stored response: peaks, folds and requested frequencies are those of the run that was not
 //! stopped, wherever it was stopped on a curve that folds.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -18,7 +16,7 @@ fn job(harmonics: usize, at: &[String], restart: &str) -> String {
          [forced]\nfrom_hz = 205.0\nto_hz = 232.0\nharmonics = {harmonics}\nat_hz = [{}]\n\
          [[response]]\ndofs = [0]\n[[response]]\ndofs = [2]\nmeasure = 'rms'\n\
          [output]\ncsv = 'curve.csv'\nnpz = 'curve.npz'\nnetcdf = 'curve.nc'\nfigure = 'curve.svg'\nslip_csv = 'slip.csv'\n",
-        common::ring_damper(),
+        crate::common::ring_damper(),
         at.join(", ")
     )
 }
@@ -220,7 +218,7 @@ fn files_of_other_jobs_are_refused() {
 fn a_mode_has_no_run_to_go_on_from() {
     let job = format!(
         "{}[mode]\nlog10_from = -6\nlog10_to = -3\n[restart]\nfrom = 'curve.npz'\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
     let output = run(&folder("mode"), &job);
     assert!(output.status.code() == Some(1) && text(&output.stderr).contains("[restart] needs [forced]"));

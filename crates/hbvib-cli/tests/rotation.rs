@@ -1,8 +1,6 @@
 //! Jobs with every key of damping and rotation: their results are those of the same model built in Rust, and each key
 //! has an effect.
 
-mod common;
-
 use hbvib::{
     Contact, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions, Speed,
     campbell, forced_response, nonlinear_mode,
@@ -187,7 +185,7 @@ impl Case {
 
 /// Columns of the tables that a job wrote.
 fn run(name: &str, job: &str, csv: &str) -> Vec<Vec<f64>> {
-    let (output, folder) = common::hbvib("run", ("rotation", name), job);
+    let (output, folder) = crate::common::hbvib("run", ("rotation", name), job);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = fs::read_to_string(folder.join(csv)).unwrap();
     let row = |line: &str| line.split(',').map(|x| x.parse().unwrap()).collect();
@@ -430,7 +428,7 @@ fn jobs_with_wrong_damping_or_rotation_are_refused_in_words() {
             vec!["no causal law", "viscous equivalent"],
         ),
     ] {
-        let (output, _) = common::hbvib("run", ("rotation", "wrong"), &job);
+        let (output, _) = crate::common::hbvib("run", ("rotation", "wrong"), &job);
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(1), "{words:?}: {text}");
         for word in words {

@@ -1,8 +1,6 @@
 //! A job with `[solutions]`: a mass against a stop moves with the double period beyond a frequency, in the table, the summary and the
 //! figure.
 
-mod common;
-
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -23,7 +21,7 @@ fn the_motion_of_the_double_period_is_in_every_output() {
         2.3 / TAU,
         2.45 / TAU
     );
-    let (output, folder) = common::hbvib("run", ("solutions", "doubled"), &job);
+    let (output, folder) = crate::common::hbvib("run", ("solutions", "doubled"), &job);
     let screen = String::from_utf8_lossy(&output.stdout);
     assert!(
         output.status.success(),

@@ -1,7 +1,5 @@
 //! A job with `stability`: a Duffing oscillator is unstable between its folds, in the table, the summary and the figure.
 
-mod common;
-
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +27,7 @@ fn run(name: &str, stability: &str) -> (std::process::Output, PathBuf) {
         0.9 / TAU,
         1.3 / TAU
     );
-    common::hbvib("run", ("stability", name), &job)
+    crate::common::hbvib("run", ("stability", name), &job)
 }
 
 fn text(bytes: &[u8]) -> String {

@@ -1,15 +1,13 @@
 //! A job with `[study]`: the peak of the ring damper over the normal load has the optimum of the reference, in the summary,
 //! the table and the figure.
 
-mod common;
-
 fn run(name: &str, study: &str) -> (std::process::Output, std::path::PathBuf) {
     let job = format!(
         "{}[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 300.0\n\
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n[study]\n{study}\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
-    common::hbvib("run", ("study", name), &job)
+    crate::common::hbvib("run", ("study", name), &job)
 }
 
 #[test]

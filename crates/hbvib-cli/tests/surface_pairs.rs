@@ -1,10 +1,6 @@
 //! Contacts between surfaces of a sector: equal to pairs of nodes where the meshes match, and near where they do not.
 
-#[path = "../../hbvib-io/tests/meshes/brick.rs"]
-mod brick;
-mod common;
-
-use brick::brick;
+use crate::brick::brick;
 use hbvib_io::{Format, Matrices, Matrix, Symmetry, write};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -202,7 +198,7 @@ fn folder(name: &str) -> std::path::PathBuf {
 }
 
 fn printed(verb: &str, name: &str, job: &str) -> String {
-    let (output, _) = common::hbvib(verb, ("surface_pairs", name), job);
+    let (output, _) = crate::common::hbvib(verb, ("surface_pairs", name), job);
     assert!(
         output.status.success(),
         "{name}: {}",
@@ -283,7 +279,7 @@ fn the_response_with_slip_is_that_of_pairs() {
     );
     let runs = [("pairs_run", by_hand(&rings)), ("surfaces_run", surfaces(""))].map(|(name, contacts)| {
         let job = format!("{model}{contacts}{rest}[output]\nuff = 'shape.uff'\n");
-        let (output, place) = common::hbvib("run", ("surface_pairs", name), &job);
+        let (output, place) = crate::common::hbvib("run", ("surface_pairs", name), &job);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = String::from_utf8(output.stdout).unwrap();
         let peak = text.lines().find(|line| line.contains("peak")).unwrap().to_owned();
@@ -330,7 +326,7 @@ fn surfaces_that_cannot_be_are_refused() {
         ),
         ("key", surfaces("methods = 'mortar'\n"), "methods"),
     ] {
-        let (output, _) = common::hbvib("check", ("surface_pairs", name), &(model.clone() + &contact));
+        let (output, _) = crate::common::hbvib("check", ("surface_pairs", name), &(model.clone() + &contact));
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(!output.status.success() && errors.contains(words), "{name}: {errors}");
     }
@@ -339,7 +335,7 @@ fn surfaces_that_cannot_be_are_refused() {
         "{model}{}[[force]]\ndof = '{on_ring}.1'\nvalue = 1.0\n[forced]\nfrom_hz = 1.0\nto_hz = 2.0\nresponse_dof = '{on_ring}.1'\n",
         surfaces("")
     );
-    let (output, _) = common::hbvib("run", ("surface_pairs", "response"), &response);
+    let (output, _) = crate::common::hbvib("run", ("surface_pairs", "response"), &response);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(errors.contains("moves relative to side b"), "{errors}");
 }
@@ -350,7 +346,7 @@ fn distances_of_the_faces_are_added_to_the_gap() {
     let rings = Rings::new(8, 9);
     let model = rings.written(&folder("gaps"));
     let contact = surfaces("mesh_gaps = true\n").replace("preload = 0.05", "gap = 0.01");
-    let (output, _) = common::hbvib("check", ("surface_pairs", "gaps"), &(model.clone() + &contact));
+    let (output, _) = crate::common::hbvib("check", ("surface_pairs", "gaps"), &(model.clone() + &contact));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let job = Path::new(env!("CARGO_TARGET_TMPDIR")).join("surface_pairs/gaps/job.toml");
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_hbvib"))

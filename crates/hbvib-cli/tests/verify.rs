@@ -1,8 +1,6 @@
 //! A job that compares its peak with integration in time: with enough harmonics both are the same, and with few, which
 //! miss the resonances of the light ring among the high ones, the peak is further away.
 
-mod common;
-
 use std::process::Output;
 
 fn printed(bytes: &[u8]) -> String {
@@ -16,9 +14,9 @@ fn run(name: &str, harmonics: usize, more: &str) -> (Output, String) {
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n\
          [forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = {harmonics}\n\
          [verify]\ncsv = 'verify.csv'\n{more}\n",
-        common::ring_damper()
+        crate::common::ring_damper()
     );
-    let (output, folder) = common::hbvib("run", ("verify", name), &job);
+    let (output, folder) = crate::common::hbvib("run", ("verify", name), &job);
     let csv = std::fs::read_to_string(folder.join("verify.csv")).unwrap_or_default();
     (output, csv)
 }

@@ -1,0 +1,131 @@
+//! Derivatives of the flexibility by the frequency, by factorisation.
+//!
+//! Where contacts are few the whole table ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B is made. Where they are many a residual takes its product with one
+//! vector of forces only, R ∂x/∂ω of the motion x under them, and the response its last row.
+
+use crate::condense::Condensed;
+use crate::condense::dynamic_stiffness::{Variable, add_slope_product, fill_slope, multiply};
+use crate::condense::flexibility::{CONTEXT, Workspace, made, read};
+use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::complex_products::multiply_adjoint;
+use crate::linalg::inner;
+use num_complex::Complex64;
+
+/// Columns of Z′ Z⁻¹ B at a time.
+const PRODUCTS: usize = 8;
+
+impl Workspace {
+    /// ∂H/∂ω with the current factors and columns.
+    pub(super) fn fill_all_slopes(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let block = &condensed.blocks()[i];
+        let n = condensed.ndof();
+        let outputs = condensed.coordinates() + 1;
+        if self.rows.is_empty() {
+            self.rows = try_vec(self.columns.len(), Complex64::ZERO, CONTEXT)?;
+            self.products = try_vec(n * PRODUCTS.min(outputs), Complex64::ZERO, CONTEXT)?;
+        }
+        self.rows.fill(Complex64::ZERO);
+        let rows = block.rows.iter().chain([&self.responses[i]]);
+        for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
+            for &(p, a) in row.terms() {
+                column[p] += a;
+            }
+        }
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
+        let entries = block.reference.values.len();
+        if self.slope.len() < entries {
+            self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
+        }
+        fill_slope(block, (omega, self.damping), &mut self.slope[..entries]);
+        // −Rᵀ as the adjoint of −conj R.
+        for z in &mut self.rows {
+            *z = -z.conj();
+        }
+        let columns = self.columns.chunks(PRODUCTS * n);
+        for (columns, table) in columns.zip(self.table.slope.chunks_mut(PRODUCTS * outputs)) {
+            interrupt.check_before(8 * (outputs * columns.len()) as u64)?;
+            let products = &mut self.products[..columns.len()];
+            for (column, product) in columns.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
+                multiply(block, &self.slope[..entries], column, product);
+            }
+            multiply_adjoint(&self.rows, products, table, n);
+        }
+        if let Some(unbalance) = &block.unbalance {
+            // The last column is that of the excitation, whose own derivative is 2ω times the unbalance.
+            let last = self.table.slope.len() - outputs;
+            for (slope, solved) in self.table.slope[last..].iter_mut().zip(self.rows.chunks_exact(n)) {
+                *slope -= 2.0 * omega * inner(solved, unbalance);
+            }
+        }
+        Ok(())
+    }
+
+    /// The last row of ∂H/∂ω = −rᵀ Z′ Z⁻¹ B with r = Z⁻ᵀ Rᵀ of the response, with the current factors and columns.
+    pub(super) fn fill_slopes_of_response(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = condensed.ndof();
+        let outputs = condensed.coordinates() + 1;
+        self.table.slope.fill(Complex64::ZERO);
+        self.load.fill(Complex64::ZERO);
+        for &(p, a) in self.responses[i].terms() {
+            self.load[p] += a;
+        }
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.load, true, interrupt)?;
+        if self.products.len() < n {
+            self.products = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        }
+        let at = (omega.into(), self.damping);
+        let moved = &mut self.products[..n];
+        moved.fill(Complex64::ZERO);
+        add_slope_product(condensed, i, at, Variable::Omega, true, &self.load, moved);
+        let product = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<Complex64>();
+        let slopes = self.table.slope.chunks_exact_mut(outputs);
+        for (column, slopes) in self.columns.chunks_exact(n).zip(slopes) {
+            slopes[outputs - 1] = -product(moved, column);
+        }
+        if let (Some(unbalance), Some(last)) = (&condensed.blocks()[i].unbalance, self.table.slope.last_mut()) {
+            *last += 2.0 * omega * product(&self.load, unbalance);
+        }
+        Ok(())
+    }
+
+    /// The change R ∂x/∂ω of the motion x under the excitation and contact forces that do not change, `contact_force` being that of
+    /// [`Self::recover`], in the i-th carried harmonic at `omega`.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn slope_along(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        contact_force: &[Complex64],
+        change: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = condensed.ndof();
+        if self.motion.is_empty() {
+            self.motion = try_vec(2 * n, Complex64::ZERO, CONTEXT)?;
+        }
+        let mut motion = core::mem::take(&mut self.motion);
+        let (x, dx) = motion.split_at_mut(n);
+        let recovered = self.recover(condensed, i, omega, contact_force, x, interrupt);
+        let found = recovered.and_then(|()| self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt));
+        read(
+            condensed.blocks()[i].rows.iter().chain([&self.responses[i]]),
+            dx,
+            change,
+        );
+        self.motion = motion;
+        found
+    }
+}

@@ -1,0 +1,76 @@
+//! Derivatives by the frequency against differences where contacts are so many that their slopes are made along the motion.
+
+use super::*;
+use crate::contact::Contact;
+use crate::linalg::matrix_view::MatrixView;
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use crate::options::SolverOptions;
+
+const N: usize = 90;
+
+/// A chain with a dashpot, so that factors make its flexibility, with a slider on each of the first masses.
+fn chain(sliders: usize) -> Model {
+    let mut model = Model::new(N).unwrap();
+    let (mut m, mut c, mut k) = (vec![0.0; N * N], vec![0.0; N * N], vec![0.0; N * N]);
+    for i in 0..N {
+        m[i * N + i] = 1.0 + 0.3 * (i as f64).sin();
+        c[i * N + i] = if i == 40 { 0.5 } else { 0.01 };
+        k[i * N + i] = 8.0;
+        if i > 0 {
+            k[i * N + i - 1] = -3.9;
+            k[(i - 1) * N + i] = -3.9;
+        }
+    }
+    for (kind, values) in [
+        (MatrixKind::Mass, &m),
+        (MatrixKind::Damping, &c),
+        (MatrixKind::Stiffness, &k),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(N, values)).unwrap();
+    }
+    for dof in 0..sliders {
+        model.add_contact(&Contact::jenkins(dof, None, 1.0, 0.3, 0.5)).unwrap();
+    }
+    model.add_force(85, 1, Complex64::new(0.7, -0.2)).unwrap();
+    model
+}
+
+#[test]
+fn derivatives_by_the_frequency_are_differences_for_few_contacts_and_for_many() {
+    let interrupt = Interrupt::none();
+    let (range, omega) = ((1.0, 2.0), 1.37);
+    for sliders in [3, 63, 64, 65, 80] {
+        let model = chain(sliders);
+        let options = SolverOptions {
+            harmonics: 3,
+            ..SolverOptions::default()
+        };
+        let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 88, range, 0, None, &interrupt).unwrap();
+        let n = problem.unknowns();
+        let u: Vec<f64> = (0..n).map(|i| 0.4 * (0.37 * (i * 13) as f64).sin()).collect();
+        let mut direction = vec![0.0; n + 1];
+        direction[n] = 1.0;
+        let mut at = |omega: f64| {
+            let mut out = Residual::new(n).unwrap();
+            problem.evaluate(&u, omega, &mut out).unwrap();
+            let (z, dz) = problem.observe(&u, &direction);
+            assert_eq!(problem.tables.lacks_slopes(), sliders > 64, "{sliders}");
+            (out.values, out.d_parameter, z, dz)
+        };
+        let h = 1e-5;
+        let (here, below, above) = (at(omega), at(omega - h), at(omega + h));
+        let size = here.1.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+        for (d, (a, b)) in here.1.iter().zip(below.0.iter().zip(&above.0)) {
+            let difference = (b - a) / (2.0 * h);
+            assert!((d - difference).abs() < 1e-7 * size, "{sliders}: {d} {difference}");
+        }
+        let difference = (above.2 - below.2) / (2.0 * h);
+        assert!(
+            (here.3 - difference).norm() < 1e-7 * here.3.norm(),
+            "{sliders}: {}",
+            here.3
+        );
+    }
+}
