@@ -2,6 +2,8 @@
 # Checks that take too long for every change, on one thread. Run after tests/run.sh has passed.
 set -eu
 cd "$(dirname "$0")/.."
+# Unit tests inside the library.
+cargo test --release --lib
 cargo test --release --tests -- --ignored --test-threads=1
 cargo test --release -p hbvib-cli --bin hbvib -- --ignored
 # MATLAB files of version 7.3, whose crate takes a minute to compile.

@@ -62,7 +62,8 @@ cargo fetch --quiet
 # The libraries first: the programs link against them; and the examples that tests run. Lints compile the others.
 cargo build --release --lib --example ring_damper --example flutter --example campbell
 cargo build --release --lib --bins -p hbvib-io -p hbvib-cli
-cargo test --release --lib --tests
+# Unit tests inside the library, which is compiled once more for them, are in tests/deep.sh.
+cargo test --release --test '*'
 # Examples in the documentation of the Rust interface.
 cargo test --release --doc -p hbvib
 # The readers of files, a library of their own, and the command.
