@@ -2,10 +2,13 @@
 # Checks that take too long for every change, on one thread. Run after tests/run.sh has passed.
 set -eu
 cd "$(dirname "$0")/.."
-# Unit tests inside the library.
+# Unit tests inside libraries and the command, which are compiled once more for them.
 cargo test --release --lib
+cargo test --release -p hbvib-io --lib
 cargo test --release --tests -- --ignored --test-threads=1
-cargo test --release -p hbvib-cli --bin hbvib -- --ignored
+cargo test --release -p hbvib-cli --bin hbvib -- --include-ignored
+# Lints of tests, examples and benches.
+cargo clippy --release --workspace --all-targets --features hbvib/bindings -- -D warnings
 # MATLAB files of version 7.3, whose crate takes a minute to compile.
 cargo test --release -p hbvib-io --features hdf5 --test matlab_hdf5
 

@@ -59,15 +59,13 @@ fi
 # The crates of all platforms: a build takes those of its own, but a new project of a user is resolved with all.
 cargo fetch --quiet
 
-# The libraries first: the programs link against them; and the examples that tests run. Lints compile the others.
+# The libraries first: the programs link against them; and the examples that tests run. Lints of tests/deep.sh compile the others.
 cargo build --release --lib --example ring_damper --example flutter --example campbell
 cargo build --release --lib --bins -p hbvib-io -p hbvib-cli
-# Unit tests inside the library, which is compiled once more for them, are in tests/deep.sh.
+# Unit tests inside libraries and the command, which are compiled once more for them, are in tests/deep.sh.
 cargo test --release --test '*'
 # Examples in the documentation of the Rust interface.
 cargo test --release --doc -p hbvib
 # The readers of files, a library of their own, and the command.
-cargo test --release -p hbvib-io --lib --tests
-cargo test --release -p hbvib-cli
-# One analysis under valgrind.
-sh tests/sanitisers.sh valgrind short
+cargo test --release -p hbvib-io --test '*'
+cargo test --release -p hbvib-cli --test command

@@ -219,6 +219,7 @@ fn peaks_of_the_full_and_the_reduced_sector_agree_at_a_fifth_of_a_newton() {
 }
 
 #[test]
+#[ignore = "half a minute long; tests/deep.sh runs it"]
 fn peaks_of_the_full_and_the_reduced_sector_agree_at_two_newtons() {
     peaks_agree_at(2.0);
 }
