@@ -19,9 +19,9 @@ macro_rules! point {
 
 pub const ROWS: &[Row] = &[
     point!("rod of 32, 1 slider, H 3, a point", 32, 161.0),
-    point!("rod of 101, 1 slider, H 3, a point", 101, 828.0),
-    point!("rod of 390, 1 slider, H 3, a point", 390, 33_900.0),
-    point!("rod of 610, 1 slider, H 3, a point", 610, 3_830.0),
+    point!("rod of 101, 1 slider, H 3, a point", 101, 173.0),
+    point!("rod of 390, 1 slider, H 3, a point", 390, 223.0),
+    point!("rod of 610, 1 slider, H 3, a point", 610, 245.0),
     Row {
         name: "linear chain of 101, all resonances",
         unit: Unit::Lu11,
