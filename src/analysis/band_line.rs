@@ -1,8 +1,7 @@
 //! The band of one free slider: solutions from one limit of its friction to the other, with every extremum between.
 
 use crate::analysis::held_sliders::{HeldSliders, HeldState};
-use crate::analysis::slip_margins::Margin;
-use crate::error::{Error, Result, Status, try_push};
+use crate::error::{Result, try_push};
 
 const CONTEXT: &str = "the states of a band";
 
@@ -52,14 +51,8 @@ fn distance(state: &HeldState, sign: f64) -> f64 {
 
 /// The place at which the least margin vanishes, by its slope.
 fn limit_place(state: &HeldState) -> Option<f64> {
-    let share = |m: &Margin| m.value / m.limit.abs().max(f64::MIN_POSITIVE);
-    let least = state.margins.iter().min_by(|a, b| share(a).total_cmp(&share(b)))?;
+    let least = state.margins.iter().min_by(|a, b| a.share().total_cmp(&b.share()))?;
     Some(state.places[0] - least.value / least.gradient[0])
-}
-
-/// Whether an error leaves a band that ends early.
-pub(super) fn ends_early(e: &Error) -> bool {
-    e.recoverable || matches!(e.status, Status::NoConvergence | Status::Singular)
 }
 
 /// The states from the one limit to the other through a first one within them.
@@ -102,11 +95,7 @@ struct Walk<'h, 'a> {
 impl Walk<'_, '_> {
     fn solve(&mut self, place: f64, from: &HeldState) -> Result<Option<HeldState>> {
         self.solved += 1;
-        match self.held.solve(&[place], from) {
-            Ok(state) => Ok(Some(state)),
-            Err(e) if ends_early(&e) => Ok(None),
-            Err(e) => Err(e),
-        }
+        self.held.find(&[place], from)
     }
 
     /// A state that rounding has left beyond a limit, at that limit.

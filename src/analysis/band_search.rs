@@ -4,7 +4,6 @@
 //! the half-spaces gᵢ + ∇gᵢ·d ≥ 0 and a box. It is taken where result and margins together gain what the linear model foretells;
 //! a bound that is found is one that a motion attains.
 
-use crate::analysis::band_line::ends_early;
 use crate::analysis::held_sliders::{HeldSliders, HeldState};
 use crate::error::{Result, try_copy, try_push, try_vec};
 
@@ -51,11 +50,7 @@ pub(super) struct Search<'h, 'a> {
 impl Search<'_, '_> {
     fn solve(&mut self, places: &[f64], from: &HeldState) -> Result<Option<HeldState>> {
         self.solved += 1;
-        match self.held.solve(places, from) {
-            Ok(state) => Ok(Some(state)),
-            Err(e) if ends_early(&e) => Ok(None),
-            Err(e) => Err(e),
-        }
+        self.held.find(places, from)
     }
 
     /// The step from a state that the linear model finds best: the objective's gradient times `sign`, or with `sign` = 0 the
@@ -179,14 +174,14 @@ fn project(step: &mut [f64], state: &HeldState, units: &[f64], radius: f64) -> R
     for margin in &state.margins {
         let mut normal = try_copy(&margin.gradient, CONTEXT)?;
         for (x, unit) in normal.iter_mut().zip(units) {
-            *x *= unit / margin.limit.abs().max(f64::MIN_POSITIVE);
+            *x *= unit / margin.size();
         }
         let square = normal.iter().map(|x| x * x).sum::<f64>();
         if square > 0.0 {
             let half = Half {
                 normal,
                 square,
-                level: -margin.value / margin.limit.abs().max(f64::MIN_POSITIVE),
+                level: -margin.share(),
                 multiplier: 0.0,
             };
             try_push(&mut halves, half, CONTEXT)?;

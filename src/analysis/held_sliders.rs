@@ -10,7 +10,7 @@ use crate::analysis::slip_margins::{Held, Margin};
 use crate::analysis::stuck_contacts::StuckSlider;
 use crate::condense::{Condensed, Reference};
 use crate::contact::force_derivative::Constant;
-use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
@@ -88,11 +88,7 @@ pub(super) struct HeldSolution {
 impl HeldSolution {
     /// The least margin over the mean limit of its contact.
     pub fn least_margin(&self) -> f64 {
-        let shares = self
-            .margins
-            .iter()
-            .map(|m| m.value / m.limit.abs().max(f64::MIN_POSITIVE));
-        shares.fold(f64::INFINITY, f64::min)
+        self.margins.iter().map(Margin::share).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -152,6 +148,18 @@ impl<'a> HeldSliders<'a> {
             try_push(&mut places, slider.place, CONTEXT)?;
         }
         self.solution(&places, (set, motion, omega))
+    }
+
+    /// The solution of [`Self::solve`]; `None` where it is not found.
+    ///
+    /// # Errors
+    /// Its other ones.
+    pub fn find(&self, places: &[f64], from: &HeldState) -> Result<Option<HeldState>> {
+        match self.solve(places, from) {
+            Ok(state) => Ok(Some(state)),
+            Err(e) if e.recoverable || matches!(e.status, Status::NoConvergence | Status::Singular) => Ok(None),
+            Err(e) => Err(e),
+        }
     }
 
     /// The solution at other places, from one nearby.

@@ -33,6 +33,18 @@ pub(super) struct Margin {
     pub limit: f64,
 }
 
+impl Margin {
+    /// The size of the limit, which may vanish.
+    pub fn size(&self) -> f64 {
+        self.limit.abs().max(f64::MIN_POSITIVE)
+    }
+
+    /// The margin over its limit.
+    pub fn share(&self) -> f64 {
+        self.value / self.size()
+    }
+}
+
 /// A solution with held sliders.
 #[derive(Clone, Copy)]
 pub(super) struct Held<'a> {

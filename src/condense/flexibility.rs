@@ -303,6 +303,19 @@ impl Workspace {
         x: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
+        self.solve_under(condensed, (i, omega), contact_force, x, interrupt)?;
+        made(&mut self.dynamic, condensed)?.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)
+    }
+
+    /// The same with the digits of a factorisation.
+    pub(super) fn solve_under(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        contact_force: &[Complex64],
+        x: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let dynamic = made(&mut self.dynamic, condensed)?;
         dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         let block = &condensed.blocks()[i];
@@ -312,10 +325,8 @@ impl Workspace {
                 self.load[p] -= a.conj() * w;
             }
         }
-        let at = (omega, self.damping);
         x.copy_from_slice(&self.load);
-        dynamic.solve(condensed, i, omega, x, false, interrupt)?;
-        dynamic.refine(condensed, i, at, &self.load, x, interrupt)
+        dynamic.solve(condensed, i, omega, x, false, interrupt)
     }
 
     /// The change of a motion x that was recovered last, dx = Z_κ⁻¹(∂F/∂ω dω − Wᴴ dw − ∂Z_κ/∂ω x dω), in the i-th carried

@@ -118,8 +118,8 @@ impl Workspace {
         }
         let mut motion = core::mem::take(&mut self.motion);
         let (x, dx) = motion.split_at_mut(n);
-        let recovered = self.recover(condensed, i, omega, contact_force, x, interrupt);
-        let found = recovered.and_then(|()| self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt));
+        let solved = self.solve_under(condensed, (i, omega), contact_force, x, interrupt);
+        let found = solved.and_then(|()| self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt));
         read(
             condensed.blocks()[i].rows.iter().chain([&self.responses[i]]),
             dx,

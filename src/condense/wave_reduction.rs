@@ -37,7 +37,8 @@ const SHARE: usize = 20;
 /// The same over all columns: a sweep past more resonances than that is left to all modes, or to factors.
 const SHARE_OF_BASIS: usize = 3;
 
-/// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed.
+/// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed: by times of
+/// chains of 101 to 600 degrees of freedom with 1 to 10 contacts.
 const OF_MODES: f64 = 20.0;
 const OF_BASIS: f64 = 480.0;
 
@@ -59,6 +60,16 @@ pub(super) struct Request<'a> {
     pub sweep: Sweep,
 }
 
+impl Request<'_> {
+    fn is_forced(&self) -> bool {
+        self.options.flexibility == Flexibility::Krylov
+    }
+
+    fn ndof(&self) -> usize {
+        self.model.structure().ndof()
+    }
+}
+
 /// A wave with the harmonics that belong to it.
 struct Group {
     key: WaveKey,
@@ -78,12 +89,10 @@ pub(super) fn reduced_blocks(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Vec<HarmonicBlock>, f64)>> {
     let (model, options) = (request.model, request.options);
-    let n = model.structure().ndof();
-    if options.flexibility == Flexibility::Direct || (options.flexibility == Flexibility::Automatic && n <= EXACT_UP_TO)
-    {
+    let (n, forced) = (request.ndof(), request.is_forced());
+    if options.flexibility == Flexibility::Direct || (!forced && n <= EXACT_UP_TO) {
         return Ok(None);
     }
-    let forced = options.flexibility == Flexibility::Krylov;
     let structure = model.structure();
     // A basis knows mass, viscous damping, stiffness and its loss factor, and forces of one size.
     if structure.has_structural_matrix()
@@ -133,19 +142,17 @@ pub(super) fn reduced_blocks(
 /// Largest error by motions that a basis lacks. Where all modes are an alternative, it is as exact as they are.
 fn limit(request: &Request<'_>) -> f64 {
     let asked = request.options.certificate;
-    let has_alternative =
-        request.options.flexibility == Flexibility::Automatic && request.model.structure().ndof() <= ALL_UP_TO;
-    if has_alternative {
-        asked.min(OF_ALL_MODES)
-    } else {
+    if request.is_forced() || request.ndof() > ALL_UP_TO {
         asked
+    } else {
+        asked.min(OF_ALL_MODES)
     }
 }
 
 /// Whether a basis takes less time than all modes, where these are an alternative. Estimates of errors need so many harmonics that
 /// they take the modes.
 fn pays(request: &Request<'_>, groups: &[Group]) -> bool {
-    let n = request.model.structure().ndof();
+    let n = request.ndof();
     if n > ALL_UP_TO {
         return true;
     }
@@ -176,10 +183,12 @@ fn wave_of(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
     let limit = limit(request);
-    let is_forced = request.options.flexibility == Flexibility::Krylov;
-    let share = request.model.structure().ndof() / SHARE_OF_BASIS;
     let most = MOST_COLUMNS.max(MOST_BLOCKS * group.inputs.len());
-    let most = if is_forced { most } else { most.min(share) };
+    let most = if request.is_forced() {
+        most
+    } else {
+        most.min(request.ndof() / SHARE_OF_BASIS)
+    };
     let error = |wave: &Arc<ReducedWave>, enough: f64| certificate_of(request, group, (wave, enough), kappa, interrupt);
     let mut inputs = Vec::new();
     for input in &group.inputs {
