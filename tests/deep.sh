@@ -2,9 +2,6 @@
 # Checks that take too long for every change, on one thread. Run after tests/run.sh has passed.
 set -eu
 cd "$(dirname "$0")/.."
-# Unit tests inside libraries and the command, which are compiled once more for them.
-cargo test --release --lib
-cargo test --release -p hbvib-io --lib
 cargo test --release --tests -- --ignored --test-threads=1
 cargo test --release -p hbvib-cli --bin hbvib -- --include-ignored
 # Lints of tests, examples and benches.
