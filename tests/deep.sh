@@ -14,6 +14,11 @@ for tool in address thread valgrind; do
     sh tests/sanitisers.sh $tool
 done
 
+# The oldest Rust that Cargo.toml names.
+oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+rustup toolchain install "$oldest" --profile minimal
+cargo "+$oldest" check --release --workspace
+
 # Windows is not tested, but it compiles.
 rustup target add x86_64-pc-windows-gnu
 cargo check --target x86_64-pc-windows-gnu -p hbvib -p hbvib-c -p hbvib-io -p hbvib-cli
