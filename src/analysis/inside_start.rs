@@ -58,7 +58,7 @@ pub(super) struct Net<'n> {
 }
 
 /// Amplitudes and number of phases of a net.
-const AMPLITUDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+const INSIDE_START_AMPLITUDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 const PHASES: usize = 8;
 
 /// Share of a subharmonic motion outside the multiples of its order.
@@ -193,7 +193,7 @@ impl Inside<'_> {
             response.packed(&motion)
         };
         let axes = [turned(Complex64::ONE)?, turned(Complex64::I)?];
-        for amplitude in AMPLITUDES {
+        for amplitude in INSIDE_START_AMPLITUDES {
             for phase in 0..PHASES {
                 // Shifted by a period of the force the motion is the same.
                 let angle = core::f64::consts::TAU * phase as f64 / (PHASES * net.order) as f64;
