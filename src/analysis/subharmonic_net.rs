@@ -6,7 +6,8 @@
 //! multiples of the order is a point of a subharmonic curve.
 
 use crate::analysis::branch_switching::{Found, Place, Tree};
-use crate::analysis::inside_start::{Inside, Net};
+use crate::analysis::inside_start::Inside;
+use crate::analysis::start_net::Net;
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::linear_modes::ContactState;
