@@ -3,9 +3,8 @@
 //! Small matrices use plain loops, which the compiler vectorises and which need no set-up; larger ones use the
 //! blocked kernels of faer, and large ones panels between which a caller may interrupt.
 
-#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
-
 mod panels;
+mod scalar;
 mod small;
 mod substitution;
 
@@ -15,64 +14,11 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Conj, MatMut, MatRef, Par};
-use nalgebra::ComplexField;
-use num_complex::Complex64;
 use pulp::Arch;
-use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use small::{Columns, Factorisation};
 use substitution::Substitution;
 
-/// Scalars of the matrices: `f64` and [`Complex64`].
-pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + Copy {
-    /// |re| + |im|: as good as the modulus for choosing a pivot, and cheaper.
-    fn size(self) -> f64;
-
-    /// i times the number; for a real one, which needs none, itself.
-    #[must_use]
-    fn turned(self) -> Self;
-
-    /// y ← y − x l, with `turned`, i x: products of real numbers as they lie in memory, with the digits of complex ones.
-    fn subtract(y: &mut [Self], x: &[Self], turned: &[Self], l: Self);
-}
-
-impl Scalar for f64 {
-    #[inline]
-    fn size(self) -> f64 {
-        self.abs()
-    }
-
-    #[inline(always)]
-    fn turned(self) -> Self {
-        self
-    }
-
-    #[inline(always)]
-    fn subtract(y: &mut [Self], x: &[Self], _turned: &[Self], l: Self) {
-        for (y, x) in y.iter_mut().zip(x) {
-            *y -= x * l;
-        }
-    }
-}
-
-impl Scalar for Complex64 {
-    #[inline]
-    fn size(self) -> f64 {
-        self.re.abs() + self.im.abs()
-    }
-
-    #[inline(always)]
-    fn turned(self) -> Self {
-        Self::new(-self.im, self.re)
-    }
-
-    #[inline(always)]
-    fn subtract(y: &mut [Self], x: &[Self], turned: &[Self], l: Self) {
-        let (y, x): (&mut [f64], &[f64]) = (cast_slice_mut(y), cast_slice(x));
-        for ((y, x), turned) in y.iter_mut().zip(x).zip(cast_slice::<_, f64>(turned)) {
-            *y -= x * l.re + turned * l.im;
-        }
-    }
-}
+pub use scalar::Scalar;
 
 /// Order above which the blocked kernels are quicker.
 const BLOCKED_ABOVE: usize = 32;
@@ -356,6 +302,7 @@ impl Lu<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use num_complex::Complex64;
 
     #[test]
     fn solves_a_system_and_its_transpose_by_either_kernel() {

@@ -4,7 +4,7 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::linalg::lu::Scalar;
+use crate::linalg::lu::scalar::Scalar;
 use nalgebra::ComplexField;
 use pulp::{Simd, WithSimd};
 
