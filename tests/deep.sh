@@ -2,9 +2,6 @@
 # Checks that take too long for every change, on one thread. Run after tests/run.sh has passed.
 set -eu
 cd "$(dirname "$0")/.."
-# Unit tests inside libraries and the command, which are compiled once more for them.
-cargo test --release --lib
-cargo test --release -p hbvib-io --lib
 cargo test --release --tests -- --ignored --test-threads=1
 cargo test --release -p hbvib-cli --bin hbvib -- --include-ignored
 # Lints of tests, examples and benches.
@@ -16,6 +13,11 @@ cargo test --release -p hbvib-io --features hdf5 --test matlab_hdf5
 for tool in address thread valgrind; do
     sh tests/sanitisers.sh $tool
 done
+
+# The oldest Rust that Cargo.toml names.
+oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+rustup toolchain install "$oldest" --profile minimal
+cargo "+$oldest" check --release --workspace
 
 # Windows is not tested, but it compiles.
 rustup target add x86_64-pc-windows-gnu

@@ -1,7 +1,7 @@
 #!/bin/sh
 # All tests: the Rust ones, and the C, C++, Fortran and Python programs that they build and run.
 # Installs compilers and tools where it may (apt as root) and Python packages in .venv; else says what
-# is missing and fails.
+# is missing and fails. `sh tests/run.sh build` only compiles what the tests need. Checks that take longer: tests/deep.sh.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -59,13 +59,27 @@ fi
 # The crates of all platforms: a build takes those of its own, but a new project of a user is resolved with all.
 cargo fetch --quiet
 
-# The libraries first: the programs link against them; and the examples that tests run. Lints of tests/deep.sh compile the others.
-cargo build --release --lib --example ring_damper --example flutter --example campbell
-cargo build --release --lib --bins -p hbvib-io -p hbvib-cli
-# Unit tests inside libraries and the command, which are compiled once more for them, are in tests/deep.sh.
-cargo test --release --test '*'
+# Does a step, and lists at the end how long each took.
+times=""
+step() { # name, command
+    name=$1
+    shift
+    began=$(date +%s)
+    "$@"
+    times="$times$(printf '%6d s  %s' $(($(date +%s) - began)) "$name")
+"
+}
+# The libraries, which programs link against, all tests and the examples that some run, in one call, which keeps all cores busy; then the
+# command and the readers of files.
+step "compile the library and its tests" \
+    cargo build --release --lib --tests --example ring_damper --example flutter --example campbell
+step "compile the command and the readers of files" cargo build --release --lib --bins --tests -p hbvib-io -p hbvib-cli
+[ "${1:-}" != build ] || { printf '%s' "$times"; exit 0; }
+step "tests of claims, programs in five languages" cargo test --release --test '*'
+step "unit tests of the library" cargo test --release --lib
 # Examples in the documentation of the Rust interface.
-cargo test --release --doc -p hbvib
-# The readers of files, a library of their own, and the command.
-cargo test --release -p hbvib-io --test '*'
-cargo test --release -p hbvib-cli --test command
+step "examples of the Rust interface" cargo test --release --doc -p hbvib
+step "readers of files" cargo test --release -p hbvib-io --lib --test '*'
+step "the command" cargo test --release -p hbvib-cli --test command --bin hbvib
+printf '%s' "$times"
+echo "all tests passed; sanitisers, lints of tests, Windows, damaged input and what takes long are in tests/deep.sh"

@@ -15,10 +15,10 @@ use crate::results::{BifurcationKind, SpecialKind, Verdict};
 use num_complex::Complex64;
 
 /// Largest number of evaluations of one search, each with the multipliers of a motion.
-const MAX_EVALUATIONS: usize = 40;
+const BIFURCATIONS_MAX_EVALUATIONS: usize = 40;
 
 /// Width of the bracket, as a share of the step, and distance ln |μ| from the unit circle at which a search ends.
-const WIDTH: f64 = 1e-10;
+const BIFURCATIONS_WIDTH: f64 = 1e-10;
 const ON_CIRCLE: f64 = 1e-10;
 
 /// Distance ln |μ| from the unit circle above which the multiplier does not pass it, but jumps over it: where slip
@@ -27,7 +27,7 @@ const JUMP: f64 = 1e-5;
 
 /// Distance ln |μ| from the unit circle below which a root is interpolated where the motion in time is not found: next to
 /// a branch point it is one of several that differ little.
-const NEAR: f64 = 1e-2;
+const BIFURCATIONS_NEAR: f64 = 1e-2;
 
 /// A root between two points.
 struct Passage {
@@ -180,7 +180,7 @@ impl BranchTracer<'_> {
         let mut ends = [arc.verdicts.0, arc.verdicts.1].map(|v| (value(v), v.in_time));
         let mut locator = Locator::new(arc.ends.0.unknowns().len(), self.course.settings)?;
         let mut best: Option<(f64, Passage)> = None;
-        for _ in 0..MAX_EVALUATIONS {
+        for _ in 0..BIFURCATIONS_MAX_EVALUATIONS {
             let at = bracket.guess();
             let Some(point) = locator.between(analysis.problem(), arc.ends, at, self.interrupt)? else {
                 break;
@@ -195,7 +195,7 @@ impl BranchTracer<'_> {
                 ends[end] = ((growth, multiplier), true);
             } else if ends
                 .iter()
-                .all(|((growth, _), in_time)| *in_time && growth.abs() < NEAR)
+                .all(|((growth, _), in_time)| *in_time && growth.abs() < BIFURCATIONS_NEAR)
             {
                 let at = in_time.guess();
                 let [low, high] = ends.map(|((growth, multiplier), _)| (growth.abs(), multiplier));
@@ -206,7 +206,10 @@ impl BranchTracer<'_> {
             if best.as_ref().is_none_or(|(least, _)| growth.abs() < *least) {
                 best = Some((growth.abs(), Passage { at, point, multiplier }));
             }
-            if growth.abs() < ON_CIRCLE || bracket.width() < WIDTH || bracket.narrow(at, growth) < WIDTH {
+            if growth.abs() < ON_CIRCLE
+                || bracket.width() < BIFURCATIONS_WIDTH
+                || bracket.narrow(at, growth) < BIFURCATIONS_WIDTH
+            {
                 break;
             }
         }

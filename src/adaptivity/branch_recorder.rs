@@ -77,11 +77,11 @@ pub(crate) struct BranchRecorder<'a> {
 const SAMPLING: f64 = 3.0;
 
 /// Share of the tolerance that the error of sampling may take.
-const SHARE: f64 = 0.5;
+const BRANCH_RECORDER_SHARE: f64 = 0.5;
 
 /// Largest change of sampled forces with half the samples that meets a tolerance.
 pub fn largest_change(tolerance: f64) -> f64 {
-    SAMPLING * SHARE * tolerance
+    SAMPLING * BRANCH_RECORDER_SHARE * tolerance
 }
 
 impl<'a> BranchRecorder<'a> {

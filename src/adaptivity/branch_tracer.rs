@@ -18,7 +18,7 @@ use crate::linalg::norm;
 const MOST_BACKTRACKS: usize = 2;
 
 /// Number of points with linear contacts after an onset, beyond which the response is followed as a linear one again.
-const PATIENCE: usize = 3;
+const BRANCH_TRACER_PATIENCE: usize = 3;
 
 /// First step after an onset, as a share of the distance to a value at which a contact is known to have left its linear
 /// state.
@@ -159,7 +159,7 @@ impl<'a> BranchTracer<'a> {
                     }) => {
                         recent.go_on((before.as_ref(), &point), analysis.resolution())?;
                         continuation.start_at(point, ONSET_SHARE * distance)?;
-                        patience = PATIENCE;
+                        patience = BRANCH_TRACER_PATIENCE;
                     }
                     Some(Stretch::End(point, Status::StoppedLeftRange)) => {
                         match self.come_back(analysis, point, (&begin, began), hooks)? {

@@ -10,15 +10,15 @@ use crate::error::{Result, Status};
 use crate::interrupt::Phase;
 
 /// Most starts, each with at least twice the harmonics of the one before.
-const MOST_STARTS: usize = 3;
+const COLD_START_MOST_STARTS: usize = 3;
 
 /// Most points of a homotopy to such a start.
-const MOST_POINTS: usize = 100;
+const COLD_START_MOST_POINTS: usize = 100;
 
 /// Newton iterations that a start may take as a multiple of those of the one before, for which so many count at least: with
 /// twice the harmonics the path to a solution is about as long, and most of a path that is longer leads to none.
-const MULTIPLE: usize = 4;
-const LEAST: usize = 40;
+const COLD_START_MULTIPLE: usize = 4;
+const COLD_START_LEAST: usize = 40;
 
 impl BranchTracer<'_> {
     /// The first point with the harmonics that its error requires.
@@ -32,10 +32,10 @@ impl BranchTracer<'_> {
         };
         let Refined { mut point, mut stuck } = self.controller.refine(analysis, first, true, self.interrupt)?;
         let mut effort = Effort {
-            points: MOST_POINTS,
+            points: COLD_START_MOST_POINTS,
             iterations: usize::MAX,
         };
-        for _ in 0..MOST_STARTS {
+        for _ in 0..COLD_START_MOST_STARTS {
             let from = analysis.resolution();
             let levels = analysis.levels();
             let few = self.course.starts_again.is_some_and(|most| from <= levels.first(most));
@@ -50,7 +50,7 @@ impl BranchTracer<'_> {
             self.interrupt.phase(Phase::FirstPoint, 0.0)?;
             match initial_point::solve_within(analysis.problem(), &self.course.settings, effort, self.interrupt) {
                 Ok(start) => {
-                    effort.iterations = MULTIPLE * start.point.iterations.max(LEAST);
+                    effort.iterations = COLD_START_MULTIPLE * start.point.iterations.max(COLD_START_LEAST);
                     let refined = self.controller.refine(analysis, start.point, true, self.interrupt)?;
                     (point, stuck) = (refined.point, refined.stuck);
                 }

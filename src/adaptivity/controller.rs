@@ -33,11 +33,11 @@ const LOW: usize = 2;
 
 /// Number of points for which a branch is not coarsened to a level at which one missed the tolerance, and the most points
 /// where the error of one was unknown there time and again.
-const PATIENCE: usize = 10;
+const CONTROLLER_PATIENCE: usize = 10;
 const MOST_PATIENCE: usize = 80;
 
 /// Relative size of a harmonic that is round-off.
-const ROUND_OFF: f64 = 1e-13;
+const CONTROLLER_ROUND_OFF: f64 = 1e-13;
 
 /// Levels by which a point is refined if the next one was not found from it.
 const BACKTRACK: usize = 3;
@@ -208,10 +208,11 @@ impl AdaptivityController {
 
     /// Notes a point that misses the tolerance at a level, or whose error is unknown there.
     fn note_miss(&mut self, error: f64, level: usize) {
-        self.unknown = error
-            .is_nan()
-            .then(|| self.unknown.map_or(PATIENCE, |points| (2 * points).min(MOST_PATIENCE)));
-        self.floor = (level + 1, self.unknown.unwrap_or(PATIENCE));
+        self.unknown = error.is_nan().then(|| {
+            self.unknown
+                .map_or(CONTROLLER_PATIENCE, |points| (2 * points).min(MOST_PATIENCE))
+        });
+        self.floor = (level + 1, self.unknown.unwrap_or(CONTROLLER_PATIENCE));
     }
 
     /// Estimates the error of a point, and notes it for the spacing of the estimates.
@@ -349,7 +350,7 @@ impl AdaptivityController {
             // With fewer harmonics the error is larger than its estimate, as near a fold.
             equations.select(level)?;
             if tries {
-                self.floor = (level, PATIENCE);
+                self.floor = (level, CONTROLLER_PATIENCE);
             }
         }
         Ok(found.unwrap_or(point))
@@ -385,7 +386,7 @@ impl AdaptivityController {
         let bound = if found.error > 0.0 && left_out > 0.0 {
             aim * self.tolerance * left_out / (MARGIN * found.error)
         } else {
-            ROUND_OFF
+            CONTROLLER_ROUND_OFF
         };
         let corrected = &found.estimate.corrected;
         let set = &corrected.set;

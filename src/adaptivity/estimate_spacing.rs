@@ -20,20 +20,20 @@ const HOLDS: f64 = 2.0;
 
 /// Largest spacing, where errors are known and where they are not. With the fewest harmonics of a curve nothing is missed
 /// where an error is found to be low later.
-const MOST: usize = 4;
+const ESTIMATE_SPACING_MOST: usize = 4;
 const MOST_WITH_FEWEST: usize = 8;
 const MOST_UNKNOWN: usize = 32;
 
 /// Factor between a predicted error and the largest for which no estimate is made, at the first point after an estimate and
 /// farther on: one and a half times, and three times the factor of two within which the rule held.
-const SAFETY: (f64, f64) = (3.0, 6.0);
+const ESTIMATE_SPACING_SAFETY: (f64, f64) = (3.0, 6.0);
 
 /// Share of the largest error below which a prediction may be too large: estimates of so small errors differ by what they leave
 /// unfinished.
 const HARMLESS: f64 = 0.05;
 
 /// Ratio of the shares of two points beyond which nothing is predicted.
-const ALIKE: f64 = 5.0;
+const ESTIMATE_SPACING_ALIKE: f64 = 5.0;
 
 /// Ratio of two shares from which on the exponent follows from them, and its range.
 const DIFFERENT: f64 = 1.05;
@@ -141,8 +141,12 @@ impl EstimateSpacing {
             known.factor_to(signs)
         };
         let changed = signs.share / known.signs.share * signs.steeper_than(known.signs);
-        let alike = known.error.is_nan() || (1.0 / ALIKE..=ALIKE).contains(&changed);
-        let safety = if self.since == 0 { SAFETY.0 } else { SAFETY.1 };
+        let alike = known.error.is_nan() || (1.0 / ESTIMATE_SPACING_ALIKE..=ESTIMATE_SPACING_ALIKE).contains(&changed);
+        let safety = if self.since == 0 {
+            ESTIMATE_SPACING_SAFETY.0
+        } else {
+            ESTIMATE_SPACING_SAFETY.1
+        };
         // An error that seems to fall is not relied on.
         if !alike || safety * factor.max(1.0) * known.error > largest {
             return None;
@@ -154,7 +158,11 @@ impl EstimateSpacing {
     /// Notes an estimate: its error, NaN where it is unknown, and whether the curve may have fewer harmonics. Errors up to
     /// `allowed` meet the tolerance.
     pub fn note(&mut self, level: usize, signs: Signs, (error, allowed): (f64, f64), may_fall: bool) {
-        let largest = if may_fall { MOST } else { MOST_WITH_FEWEST };
+        let largest = if may_fall {
+            ESTIMATE_SPACING_MOST
+        } else {
+            MOST_WITH_FEWEST
+        };
         let before = self.known.filter(|known| known.level == level);
         let (holds, most) = match before {
             None => (false, largest),

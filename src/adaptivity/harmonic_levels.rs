@@ -12,16 +12,16 @@ use std::sync::Arc;
 const CONTEXT: &str = "the harmonics";
 
 /// Ratio of neighbouring levels.
-const RATIO: f64 = 1.25;
+const HARMONIC_LEVELS_RATIO: f64 = 1.25;
 
 /// Degrees of freedom above which a structure without modes of its waves is large.
-const LARGE: usize = 32;
+const HARMONIC_LEVELS_LARGE: usize = 32;
 
 /// Unknowns above which no level is refined: Newton's method factors dense matrices.
 const MOST_UNKNOWNS: usize = 3000;
 
 /// Unknowns up to which the work of a point hardly depends on their number.
-const SMALL: usize = 32;
+const HARMONIC_LEVELS_SMALL: usize = 32;
 
 /// Samples per harmonic where laws are sampled and the tolerance decides.
 const SAMPLES_PER_HARMONIC: usize = 8;
@@ -53,7 +53,7 @@ impl<'m> HarmonicLevels<'m> {
         condense: impl Fn(usize, Option<&Condensed>) -> Result<Condensed> + 'm,
     ) -> Result<Self> {
         let automatic = options.tolerance > 0.0;
-        let costly = automatic && model.ndof() > LARGE && !have_modes(model)?;
+        let costly = automatic && model.ndof() > HARMONIC_LEVELS_LARGE && !have_modes(model)?;
         let numbers = if automatic {
             automatic_numbers(options, forced)?
         } else {
@@ -121,7 +121,7 @@ impl<'m> HarmonicLevels<'m> {
     /// error changes, so that each point is estimated: that pays where the next level has many unknowns, and the estimates
     /// cost no factorisation.
     pub fn few(&self) -> usize {
-        let pays = |known: &Resolution| affordable(&known.condensed, SMALL) < self.models.highest(1);
+        let pays = |known: &Resolution| affordable(&known.condensed, HARMONIC_LEVELS_SMALL) < self.models.highest(1);
         usize::from(self.costly || self.count() < 2 || !self.models.any().is_some_and(pays))
     }
 
@@ -182,7 +182,7 @@ fn automatic_numbers(options: &SolverOptions, forced: &[usize]) -> Result<Vec<us
     let mut reduced = least.div_ceil(base);
     try_push(&mut numbers, least, CONTEXT)?;
     loop {
-        reduced = (reduced + 2).max(((reduced as f64 * RATIO) as usize) | 1);
+        reduced = (reduced + 2).max(((reduced as f64 * HARMONIC_LEVELS_RATIO) as usize) | 1);
         if reduced * base > most {
             break;
         }

@@ -15,15 +15,15 @@ use crate::linalg::norm;
 const CONTEXT: &str = "the end of a branch";
 
 /// Points of the curve before it may close.
-const LEAST: usize = 4;
+const INNER_ENDS_LEAST: usize = 4;
 
 /// Distance of the first point to an arc, over its chord, at which the curve closes there, and least cosine between their
 /// directions.
-const CLOSE: f64 = 0.1;
-const ALONG: f64 = 0.5;
+const INNER_ENDS_CLOSE: f64 = 0.1;
+const INNER_ENDS_ALONG: f64 = 0.5;
 
 /// Corrections of the place on an arc.
-const CORRECTIONS: usize = 8;
+const INNER_ENDS_CORRECTIONS: usize = 8;
 
 /// The harmonics that a symmetric motion does not have: those whose number over `base` has this remainder modulo 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl InnerEnds {
                 return Ok(Some(InnerEnd::Merged(at)));
             }
         }
-        if analysis.branch().points() < LEAST {
+        if analysis.branch().points() < INNER_ENDS_LEAST {
             return Ok(None);
         }
         let first = analysis.transfer(&self.first.0, self.first.1)?;
@@ -121,18 +121,18 @@ fn passes(first: &Point, (a, b): (&Point, &Point), metric: Metric, n: usize) -> 
     let length = square.sqrt();
     let along = metric.dot(&first.tangent, &chord) / (metric.norm(&first.tangent) * length);
     let share = metric.dot(&way, &chord) / square;
-    if !(along >= ALONG && share > 0.0 && share <= 1.0) {
+    if !(along >= INNER_ENDS_ALONG && share > 0.0 && share <= 1.0) {
         return Ok(false);
     }
     let cubic = Cubic::new(a, b, metric);
     let mut v = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut s = share;
-    for _ in 0..CORRECTIONS {
+    for _ in 0..INNER_ENDS_CORRECTIONS {
         cubic.place(s, &mut v);
         for i in 0..=n {
             way[i] = v[i] - a.v[i];
         }
         s = (s + share - metric.dot(&way, &chord) / square).clamp(0.0, 1.0);
     }
-    Ok(metric.distance(&v, &first.v) <= CLOSE * length)
+    Ok(metric.distance(&v, &first.v) <= INNER_ENDS_CLOSE * length)
 }

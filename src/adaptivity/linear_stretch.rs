@@ -22,16 +22,19 @@ enum Next {
 }
 
 /// Share of its linear range above which the motion of a contact may have a maximum beyond it between two values.
-const NEARLY: f64 = 0.7;
+const LINEAR_STRETCH_NEARLY: f64 = 0.7;
 
 /// Evaluations of a search for such a maximum.
 const GOLDEN_STEPS: usize = 16;
+
+/// Values that are tried by the secant in search of the end of a stretch, of about ten that suffice.
+const SECANT_TRIES: usize = 20;
 
 /// Ratio of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Relative width of an interval that is rounding.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const LINEAR_STRETCH_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Parts of the cubic between two neighbours in which peaks are searched.
 const PARTS: usize = 8;
@@ -40,7 +43,7 @@ const PARTS: usize = 8;
 const UNCERTAIN: f64 = 0.05;
 
 /// Largest number of evaluations of a root search.
-const MAX_EVALUATIONS: usize = 100;
+const LINEAR_STRETCH_MAX_EVALUATIONS: usize = 100;
 
 /// Half width of the first bracket around an approximate root, relative to the parameter, and the factor by which it
 /// widens.
@@ -142,7 +145,7 @@ impl BranchTracer<'_> {
         let shares = [here, &point].map(|p| analysis.linear_share(p));
         let [before, after] = shares;
         let largest = before?.max(after?);
-        if largest.is_nan() || largest <= NEARLY {
+        if largest.is_nan() || largest <= LINEAR_STRETCH_NEARLY {
             return Ok(Next::Reached(point));
         }
         // The share may have a maximum above 1 between two values.
@@ -190,15 +193,32 @@ impl BranchTracer<'_> {
         }
     }
 
-    /// The last point between `here` and a value beyond it at which every contact is linear, by bisection.
+    /// The last point between `here` and a value beyond it at which every contact is linear.
+    ///
+    /// The share of the linear range reaches 1 there. Its secant through the last two linear points tells where; a point is tried
+    /// before that value and one behind it in turn, as far from it as it moved last. Bisection where this does not narrow.
     fn onset(&self, analysis: &mut dyn Traceable, here: &Point, beyond: f64) -> Result<Next> {
         let mut inside = here.try_clone()?;
         let mut outside = beyond;
-        while (outside - inside.parameter()).abs() > ROUNDING * outside.abs() {
-            let middle = 0.5 * (inside.parameter() + outside);
-            match analysis.linear_at(&inside, middle, self.interrupt)? {
-                Some(point) => inside = point,
-                None => outside = middle,
+        let mut share = analysis.linear_share(here)?;
+        let (mut predicted, mut error) = (f64::NAN, f64::NAN);
+        let mut tries = 0;
+        while (outside - inside.parameter()).abs() > LINEAR_STRETCH_ROUNDING * outside.abs() {
+            let (from, width) = (inside.parameter(), outside - inside.parameter());
+            let sign = if tries % 2 == 0 { -1.0 } else { 1.0 };
+            let margin = (2.0 * error).max(0.5 * LINEAR_STRETCH_ROUNDING * outside.abs());
+            let at = predicted + sign * margin * width.signum();
+            let is_tried = tries < SECANT_TRIES && (at - from) * width > 0.0 && (outside - at) * width > 0.0;
+            tries += usize::from(is_tried);
+            let at = if is_tried { at } else { from + 0.5 * width };
+            match analysis.linear_at(&inside, at, self.interrupt)? {
+                Some(point) => {
+                    let next = analysis.linear_share(&point)?;
+                    let value = at + (1.0 - next) * (at - from) / (next - share);
+                    error = (value - predicted).abs();
+                    (inside, share, predicted) = (point, next, value);
+                }
+                None => outside = at,
             }
         }
         Ok(Next::Onset(inside, beyond))
@@ -381,14 +401,14 @@ impl BranchTracer<'_> {
         let (mut a, mut b) = (low, high);
         let mut best = None;
         let mut side = 0;
-        for _ in 0..MAX_EVALUATIONS {
+        for _ in 0..LINEAR_STRETCH_MAX_EVALUATIONS {
             let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
             let at = if secant > a.0 && secant < b.0 {
                 secant
             } else {
                 0.5 * (a.0 + b.0)
             };
-            if b.0 - a.0 <= ROUNDING * b.0.abs() || at <= a.0 || at >= b.0 {
+            if b.0 - a.0 <= LINEAR_STRETCH_ROUNDING * b.0.abs() || at <= a.0 || at >= b.0 {
                 break;
             }
             let Some(point) = analysis.linear_at(near, at, self.interrupt)? else {
@@ -404,7 +424,7 @@ impl BranchTracer<'_> {
             } else {
                 (&mut b, &mut a, 1)
             };
-            let converged = (at - end.0).abs() <= ROUNDING * at.abs();
+            let converged = (at - end.0).abs() <= LINEAR_STRETCH_ROUNDING * at.abs();
             *end = (at, slope);
             if side == this {
                 other.1 *= 0.5;

@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::options::SolverOptions;
 
 /// Unknowns above which the dense matrices of a resolution are not kept when it is left.
-const MOST_KEPT: usize = 600;
+const RESOLUTIONS_MOST_KEPT: usize = 600;
 
 /// Equations of type E, one for each resolution.
 pub(crate) struct Resolutions<'a, E> {
@@ -60,7 +60,7 @@ impl<'a, E> Resolutions<'a, E> {
             let level = self.levels.at(index)?;
             boxed(|| make(level))?
         };
-        let keep = self.levels.at(self.index)?.condensed.unknowns() <= MOST_KEPT;
+        let keep = self.levels.at(self.index)?.condensed.unknowns() <= RESOLUTIONS_MOST_KEPT;
         let left = core::mem::replace(&mut self.current, selected);
         self.others[self.index] = keep.then_some(left);
         self.index = index;

@@ -14,7 +14,7 @@ use crate::model::linear_modes::ContactState;
 const MOST_DEGREES: usize = 16;
 
 /// Change of the frequency in a step within a band, as a share of the range: about that of the largest step of a curve.
-const SHARE: f64 = 0.05;
+const RESONANCE_BANDS_SHARE: f64 = 0.05;
 
 /// Share of the way to a band that one step goes.
 const APPROACH: f64 = 0.5;
@@ -60,7 +60,7 @@ impl ResonanceBands {
         }
         Ok(Self {
             bands,
-            within: SHARE * (range.1 - range.0).abs(),
+            within: RESONANCE_BANDS_SHARE * (range.1 - range.0).abs(),
         })
     }
 

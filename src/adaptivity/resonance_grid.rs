@@ -8,19 +8,19 @@ use crate::error::{Result, try_push};
 use crate::model::resonances::Resonance;
 
 /// Distances from a pole in half widths. Those of equidistant poles that overlap do not coincide.
-const NEAR: [f64; 5] = [0.0, 0.4, 1.0, 1.8, 5.0];
+const RESONANCE_GRID_NEAR: [f64; 5] = [0.0, 0.4, 1.0, 1.8, 5.0];
 
-/// Points beside a pole, from the last of [`NEAR`] to the middle between two poles.
-const BESIDE: usize = 5;
+/// Points beside a pole, from the last of [`RESONANCE_GRID_NEAR`] to the middle between two poles.
+const RESONANCE_GRID_BESIDE: usize = 5;
 
 /// Least ratio of the distances of two such points.
-const RATIO: f64 = 2.0;
+const RESONANCE_GRID_RATIO: f64 = 2.0;
 
 /// Equidistant points over the whole range.
 const BASE: usize = 36;
 
 /// Half width relative to the frequency that is assumed of an undamped resonance, so that it is passed at a distance.
-const UNDAMPED: f64 = 1e-4;
+const RESONANCE_GRID_UNDAMPED: f64 = 1e-4;
 
 const CONTEXT: &str = "the frequencies of a linear response";
 
@@ -76,7 +76,7 @@ fn values(resonances: &[Resonance], (low, high): (f64, f64)) -> Result<Vec<f64>>
     }
     for (i, pole) in resonances.iter().enumerate() {
         let (width, nearest) = if pole.is_undamped() {
-            (UNDAMPED * pole.omega, 1)
+            (RESONANCE_GRID_UNDAMPED * pole.omega, 1)
         } else {
             (pole.half_width, 0)
         };
@@ -85,16 +85,18 @@ fn values(resonances: &[Resonance], (low, high): (f64, f64)) -> Result<Vec<f64>>
         for (sense, bound) in [(-1.0, middle(before, low)), (1.0, middle(resonances.get(i + 1), high))] {
             // The middle itself serves both neighbours.
             let reach = sense * (bound - pole.omega);
-            for &x in NEAR[nearest.max(usize::from(sense > 0.0))..]
+            for &x in RESONANCE_GRID_NEAR[nearest.max(usize::from(sense > 0.0))..]
                 .iter()
                 .filter(|&&x| x * width <= reach)
             {
                 add(pole.omega + sense * x * width)?;
             }
-            let first = NEAR[NEAR.len() - 1] * width;
-            let ratio = (reach / first).powf(1.0 / BESIDE as f64).max(RATIO);
+            let first = RESONANCE_GRID_NEAR[RESONANCE_GRID_NEAR.len() - 1] * width;
+            let ratio = (reach / first)
+                .powf(1.0 / RESONANCE_GRID_BESIDE as f64)
+                .max(RESONANCE_GRID_RATIO);
             let mut distance = first * ratio;
-            for _ in 0..BESIDE {
+            for _ in 0..RESONANCE_GRID_BESIDE {
                 if distance >= reach / ratio.sqrt() {
                     break;
                 }

@@ -20,15 +20,15 @@ const CONTEXT: &str = "the last points of the branch";
 const KEPT: usize = 5;
 
 /// Distance of a point to the recorded curve, over that to the point before it, below which it may lie on the curve.
-const CLOSE: f64 = 0.2;
+const RETRACING_CLOSE: f64 = 0.2;
 
 /// Distance of two solutions that are one, over that step: at a corner the branch may come back at a small angle, so that
 /// its two sides are close to each other. The second one is for points whose sense is that of the recorded curve: a branch
 /// that comes back along its own points has the other one, unless rounding hides it.
-const SAME: (f64, f64) = (1e-2, 1e-3);
+const RETRACING_SAME: (f64, f64) = (1e-2, 1e-3);
 
 /// Bisections that find a parameter value on a cubic.
-const BISECTIONS: usize = 50;
+const RETRACING_BISECTIONS: usize = 50;
 
 /// The points recorded last, without a gap between them.
 pub(super) struct RecentPoints {
@@ -106,7 +106,11 @@ impl RecentPoints {
         let keeps_sense = [a, b]
             .iter()
             .all(|at| at.1 == current && at.0.positive == point.positive);
-        let same = if keeps_sense { SAME.1 } else { SAME.0 };
+        let same = if keeps_sense {
+            RETRACING_SAME.1
+        } else {
+            RETRACING_SAME.0
+        };
         let (a, b) = (analysis.transfer(&a.0, a.1)?, analysis.transfer(&b.0, b.1)?);
         let last = analysis.transfer(last, resolution)?;
         let metric = Metric::along(norm(point.unknowns()), settings);
@@ -115,7 +119,7 @@ impl RecentPoints {
             tangent: try_copy(&point.tangent, CONTEXT)?,
             ..*point
         };
-        if metric.distance(&near.v, &point.v) > CLOSE * metric.distance(&last.v, &point.v) {
+        if metric.distance(&near.v, &point.v) > RETRACING_CLOSE * metric.distance(&last.v, &point.v) {
             return Ok((false, false));
         }
         let Some(found) = analysis.resolve(&near, true, interrupt)? else {
@@ -196,7 +200,7 @@ fn on_cubic(a: &Point, b: &Point, metric: Metric, p: f64) -> Result<Vec<f64>> {
     let mut derivative = try_vec(a.v.len(), 0.0, CONTEXT)?;
     let (mut low, mut high) = (0.0, 1.0);
     let rises = b.parameter() > a.parameter();
-    for _ in 0..BISECTIONS {
+    for _ in 0..RETRACING_BISECTIONS {
         let middle = 0.5 * (low + high);
         cubic.at(middle, &mut v, &mut derivative);
         if (v[v.len() - 1] < p) == rises {

@@ -19,10 +19,10 @@ pub use crate::analysis::held_sliders::BandOf;
 const CONTEXT: &str = "the band of a response";
 
 /// Margin, over the mean limit, at which a contact is at its limit.
-const AT_LIMIT: f64 = 1e-6;
+const BAND_AT_LIMIT: f64 = 1e-6;
 
 /// Most starts of a search.
-const MOST_STARTS: usize = 1000;
+const BAND_MOST_STARTS: usize = 1000;
 
 /// Options of a band.
 #[derive(Clone, Copy, Debug)]
@@ -165,8 +165,8 @@ pub fn band(
 }
 
 fn check(model: &Model, branch: &Branch, point: usize, options: &BandOptions<'_>) -> Result<()> {
-    if options.starts == 0 || options.starts > MOST_STARTS {
-        return fail!(Argument, "starts = {}, needs 1 .. {MOST_STARTS}", options.starts);
+    if options.starts == 0 || options.starts > BAND_MOST_STARTS {
+        return fail!(Argument, "starts = {}, needs 1 .. {BAND_MOST_STARTS}", options.starts);
     }
     if let Some(contact) = options.contacts.iter().find(|c| **c >= model.contacts().len()) {
         return fail!(
@@ -293,7 +293,7 @@ fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<(
 fn attained(held: &HeldSliders<'_>, state: &HeldState, gain: f64, interrupt: &Interrupt<'_>) -> Result<BandEnd> {
     let mut at_limit: Vec<usize> = Vec::new();
     for margin in &state.margins {
-        if margin.value <= AT_LIMIT * margin.limit.abs() && !at_limit.contains(&margin.contact) {
+        if margin.value <= BAND_AT_LIMIT * margin.limit.abs() && !at_limit.contains(&margin.contact) {
             try_push(&mut at_limit, margin.contact, CONTEXT)?;
         }
     }

@@ -6,26 +6,26 @@ use crate::error::{Result, try_push};
 const CONTEXT: &str = "the states of a band";
 
 /// Steps over the width that the margins foretell at the first state.
-const STEPS: f64 = 12.0;
+const BAND_LINE_STEPS: f64 = 12.0;
 
 /// Smallest step, over that width.
 const SMALLEST: f64 = 1e-5;
 
 /// Margin, over the mean limit, of a slider at its limit.
-const AT_LIMIT: f64 = 1e-11;
+const BAND_LINE_AT_LIMIT: f64 = 1e-11;
 
 /// Steps of the search for a limit, of that for an extremum, and states in one direction.
 const MOST_SECANTS: usize = 30;
 const MOST_STATES: usize = 400;
 
 /// Change of the place of an extremum, over the width, at which it is found.
-const SETTLED: f64 = 1e-8;
+const BAND_LINE_SETTLED: f64 = 1e-8;
 
 /// Slope, as a relative change of the result over the width, that is rounding.
 const FLAT: f64 = 1e-9;
 
 /// Halvings of an interval whose cubic has extrema between its ends.
-const HALVINGS: usize = 5;
+const BAND_LINE_HALVINGS: usize = 5;
 
 /// States in the order of the place of the slider.
 pub(super) struct Line {
@@ -76,7 +76,7 @@ pub(super) fn line(held: &HeldSliders<'_>, first: HeldState) -> Result<Line> {
     let (mut above, reached_above) = walk.up_to_limit(&first, 1.0)?;
     below.reverse();
     let mut states = below;
-    if first.least_margin() >= -AT_LIMIT || states.is_empty() {
+    if first.least_margin() >= -BAND_LINE_AT_LIMIT || states.is_empty() {
         try_push(&mut states, first, CONTEXT)?;
     }
     states.append(&mut above);
@@ -101,7 +101,7 @@ impl Walk<'_, '_> {
     /// A state that rounding has left beyond a limit, at that limit.
     fn within(&mut self, mut state: HeldState) -> Result<HeldState> {
         for _ in 0..MOST_SECANTS {
-            if state.least_margin() >= -0.5 * AT_LIMIT {
+            if state.least_margin() >= -0.5 * BAND_LINE_AT_LIMIT {
                 break;
             }
             let Some(place) = limit_place(&state) else { break };
@@ -116,10 +116,10 @@ impl Walk<'_, '_> {
     /// The states behind the first one up to the limit in one direction, and whether that was reached.
     fn up_to_limit(&mut self, first: &HeldState, sign: f64) -> Result<(Vec<HeldState>, bool)> {
         let mut states: Vec<HeldState> = Vec::new();
-        let mut step = self.width / STEPS;
+        let mut step = self.width / BAND_LINE_STEPS;
         let mut last = first.clone();
         while states.len() < MOST_STATES {
-            if last.least_margin() <= AT_LIMIT && distance(&last, sign) <= SETTLED * self.width {
+            if last.least_margin() <= BAND_LINE_AT_LIMIT && distance(&last, sign) <= BAND_LINE_SETTLED * self.width {
                 return Ok((states, true));
             }
             let Some(next) = self.solve(last.places[0] + sign * step, &last)? else {
@@ -141,7 +141,7 @@ impl Walk<'_, '_> {
                 }
                 continue;
             }
-            step = (1.5 * step).min(self.width / STEPS);
+            step = (1.5 * step).min(self.width / BAND_LINE_STEPS);
             try_push(&mut states, next.clone(), CONTEXT)?;
             last = next;
         }
@@ -154,7 +154,7 @@ impl Walk<'_, '_> {
         let mut guess = high.clone();
         for _ in 0..MOST_SECANTS {
             let margin = guess.least_margin();
-            if margin.abs() <= AT_LIMIT {
+            if margin.abs() <= BAND_LINE_AT_LIMIT {
                 return Ok(Some(guess));
             }
             if margin > 0.0 {
@@ -185,7 +185,7 @@ impl Walk<'_, '_> {
         let mut all: Vec<HeldState> = Vec::new();
         for state in states {
             if let Some(last) = all.last().cloned() {
-                self.between(&last, &state, HALVINGS, &mut all)?;
+                self.between(&last, &state, BAND_LINE_HALVINGS, &mut all)?;
             }
             try_push(&mut all, state, CONTEXT)?;
         }
@@ -194,7 +194,7 @@ impl Walk<'_, '_> {
 
     fn between(&mut self, a: &HeldState, b: &HeldState, halvings: usize, all: &mut Vec<HeldState>) -> Result<()> {
         let length = b.places[0] - a.places[0];
-        if length.abs() <= SETTLED * self.width {
+        if length.abs() <= BAND_LINE_SETTLED * self.width {
             return Ok(());
         }
         // A result that does not depend on the place has slopes of rounding.
@@ -239,7 +239,7 @@ impl Walk<'_, '_> {
                 return Ok(found);
             };
             let slope = next.gradient[0];
-            let settled = (place - from.places[0]).abs() <= SETTLED * self.width || slope == 0.0;
+            let settled = (place - from.places[0]).abs() <= BAND_LINE_SETTLED * self.width || slope == 0.0;
             if slope * high.1 < 0.0 {
                 low = high;
             } else {

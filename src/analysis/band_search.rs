@@ -10,26 +10,26 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 const CONTEXT: &str = "the search of a band";
 
 /// First radius of a step, its largest, and the smallest, which ends the search; in units of the sliders' distances.
-const FIRST: f64 = 0.3;
-const LARGEST: f64 = 1.0;
+const BAND_SEARCH_FIRST: f64 = 0.3;
+const BAND_SEARCH_LARGEST: f64 = 1.0;
 const SMALLEST: f64 = 1e-5;
 
 /// Share of the foretold gain that is enough, growth after success and shrinking after failure.
-const ENOUGH: f64 = 0.1;
-const GROWTH: f64 = 2.0;
+const BAND_SEARCH_ENOUGH: f64 = 0.1;
+const BAND_SEARCH_GROWTH: f64 = 2.0;
 const SHRINKING: f64 = 0.35;
 
 /// Steps of one search.
-const MOST_STEPS: usize = 80;
+const BAND_SEARCH_MOST_STEPS: usize = 80;
 
 /// Foretold gain, relative to the result, that ends a search.
-const SETTLED: f64 = 1e-9;
+const BAND_SEARCH_SETTLED: f64 = 1e-9;
 
 /// Beyond a limit, over its mean, that counts as within: rounding of a solution.
 const WITHIN: f64 = 1e-10;
 
 /// Rounds of the projection.
-const ROUNDS: usize = 400;
+const BAND_SEARCH_ROUNDS: usize = 400;
 
 /// An end that was found.
 pub(super) struct Found {
@@ -92,7 +92,7 @@ impl Search<'_, '_> {
             if state.least_margin() >= -WITHIN {
                 return Ok(Some(state));
             }
-            let step = self.step(&state, 0.0, LARGEST)?;
+            let step = self.step(&state, 0.0, BAND_SEARCH_LARGEST)?;
             let Some(next) = self.solve(&self.moved(&state, &step)?, &state)? else {
                 return Ok(None);
             };
@@ -118,13 +118,13 @@ impl Search<'_, '_> {
     /// The largest (`sign` 1) or smallest (−1) result that is found from a start within the limits.
     pub fn climb(&mut self, start: HeldState, sign: f64) -> Result<Found> {
         let mut state = start;
-        let mut radius = FIRST;
+        let mut radius = BAND_SEARCH_FIRST;
         let mut best = state.clone();
-        for _ in 0..MOST_STEPS {
+        for _ in 0..BAND_SEARCH_MOST_STEPS {
             let step = self.step(&state, sign, radius)?;
             let foretold = self.foretold(&state, sign, &step);
             let violated = (-state.least_margin()).max(0.0);
-            if radius < SMALLEST || (foretold < SETTLED * state.value.abs() && violated < WITHIN) {
+            if radius < SMALLEST || (foretold < BAND_SEARCH_SETTLED * state.value.abs() && violated < WITHIN) {
                 break;
             }
             let next = self.solve(&self.moved(&state, &step)?, &state)?;
@@ -143,13 +143,13 @@ impl Search<'_, '_> {
                 continue;
             };
             let gain = sign * (next.value - state.value);
-            if gain < ENOUGH * foretold {
+            if gain < BAND_SEARCH_ENOUGH * foretold {
                 radius *= SHRINKING;
                 if gain > 0.0 {
                     state = next;
                 }
             } else {
-                radius = (GROWTH * radius).min(LARGEST);
+                radius = (BAND_SEARCH_GROWTH * radius).min(BAND_SEARCH_LARGEST);
                 state = next;
             }
             if sign * (state.value - best.value) > 0.0 {
@@ -188,7 +188,7 @@ fn project(step: &mut [f64], state: &HeldState, units: &[f64], radius: f64) -> R
         }
     }
     let mut of_box = try_vec(step.len(), 0.0, CONTEXT)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..BAND_SEARCH_ROUNDS {
         let mut change = 0.0_f64;
         for half in &mut halves {
             let along = half.normal.iter().zip(&*step).map(|(n, d)| n * d).sum::<f64>();

@@ -30,7 +30,7 @@ const MAY_HAVE_BASIS: usize = 100;
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Checks of a design between two of the caller's hooks.
-const BETWEEN_CHECKS: usize = 16;
+const BATCH_BETWEEN_CHECKS: usize = 16;
 
 /// Runs the work of a thread in the surroundings that its caller wants; false: the thread cannot work, and others do it all.
 pub type Surroundings<'a> = dyn Fn(&mut dyn FnMut()) -> bool + Sync + 'a;
@@ -142,7 +142,7 @@ impl Work<'_> {
             let cancelled = || {
                 asked.set(asked.get() + 1);
                 self.stop.load(Ordering::Relaxed)
-                    || (asked.get().is_multiple_of(BETWEEN_CHECKS) && interrupt.check().is_err())
+                    || (asked.get().is_multiple_of(BATCH_BETWEEN_CHECKS) && interrupt.check().is_err())
             };
             let mut own = Hooks {
                 cancelled: Some(&cancelled),

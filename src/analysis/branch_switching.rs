@@ -22,7 +22,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the branches that branch off";
 
 /// Distance of a bifurcation to the end of a known child, over the range, at which that child ends there.
-const SAME: f64 = 2e-2;
+const BRANCH_SWITCHING_SAME: f64 = 2e-2;
 
 /// Share of the harmonics that a branch does not have in a motion that is one of it.
 const AT_START: f64 = 1e-3;
@@ -156,7 +156,9 @@ impl Tree<'_> {
         let others = all.iter().enumerate().filter(|(i, b)| *i != own && b.kind == from.kind);
         let distance = |b: &Bifurcation| (b.omega - omega).abs();
         let nearest = others.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
-        Ok(nearest.filter(|(_, b)| distance(b) <= SAME * width).map(|(i, _)| i))
+        Ok(nearest
+            .filter(|(_, b)| distance(b) <= BRANCH_SWITCHING_SAME * width)
+            .map(|(i, _)| i))
     }
 
     /// The child at a bifurcation.

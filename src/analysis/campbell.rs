@@ -9,16 +9,16 @@ use crate::model::Model;
 use crate::model::speed::Speed;
 
 /// Relative accuracy of a crossing.
-const TOLERANCE: f64 = 1e-13;
+const CAMPBELL_TOLERANCE: f64 = 1e-13;
 
 /// Largest number of steps towards a crossing.
-const MAX_STEPS: usize = 200;
+const CAMPBELL_MAX_STEPS: usize = 200;
 
 /// Distance of a frequency from EO·Ω, relative, at which both are one.
 const MET: f64 = 1e-9;
 
 /// Number of halvings of the interval in which a mode ceases to oscillate.
-const MAX_HALVINGS: usize = 40;
+const CAMPBELL_MAX_HALVINGS: usize = 40;
 
 const CONTEXT: &str = "the Campbell diagram";
 
@@ -290,7 +290,7 @@ fn divide(
             try_push(parts, stretch, CONTEXT)?;
             continue;
         }
-        if halvings == MAX_HALVINGS {
+        if halvings == CAMPBELL_MAX_HALVINGS {
             continue;
         }
         interrupt.check()?;
@@ -391,7 +391,7 @@ fn meet(
     }
     let mut side = 0;
     let mut best = None;
-    for _ in 0..MAX_STEPS {
+    for _ in 0..CAMPBELL_MAX_STEPS {
         interrupt.check()?;
         let speed = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
         let modes = at(speed)?;
@@ -399,7 +399,8 @@ fn meet(
             return Ok(None);
         }
         let gap = modes.omega(k) - order * speed;
-        let done = gap.abs() <= TOLERANCE * modes.omega(k) || (b.0 - a.0).abs() <= TOLERANCE * speed.abs();
+        let done =
+            gap.abs() <= CAMPBELL_TOLERANCE * modes.omega(k) || (b.0 - a.0).abs() <= CAMPBELL_TOLERANCE * speed.abs();
         best = Some((speed, modes));
         if done {
             break;

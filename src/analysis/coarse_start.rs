@@ -17,10 +17,10 @@ use crate::problem::InitialGuess;
 use crate::problem::harmonic_balance::HarmonicBalance;
 
 /// Highest harmonic up to which the first point is solved at once.
-const AT_ONCE: usize = 12;
+const COARSE_START_AT_ONCE: usize = 12;
 
 /// Degrees of freedom above which another number of harmonics costs more than it saves.
-const LARGE: usize = 1000;
+const COARSE_START_LARGE: usize = 1000;
 
 /// Bound of a homotopy with few harmonics.
 const EFFORT: Effort = Effort {
@@ -60,7 +60,7 @@ impl CoarseStart {
         // Springs with several solutions might lead to another one than with all harmonics.
         let is_friction = |contact: &Contact| contact.may_stick() && contact.normal_direction().is_none();
         let is_friction = model.contacts().iter().all(is_friction);
-        if solver.harmonics <= AT_ONCE.max(least) || model.ndof() > LARGE || !is_friction {
+        if solver.harmonics <= COARSE_START_AT_ONCE.max(least) || model.ndof() > COARSE_START_LARGE || !is_friction {
             return Ok(None);
         }
         while 2 * highest <= solver.harmonics {

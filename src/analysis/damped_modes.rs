@@ -16,7 +16,7 @@ use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Relative distance of two eigenvalues that count as one.
-const EQUAL: f64 = 1e-7;
+const DAMPED_MODES_EQUAL: f64 = 1e-7;
 
 /// Change of the frequency with the speed, over the size of its terms, that is rounding.
 const NO_CHANGE: f64 = 1e-9;
@@ -28,7 +28,7 @@ const UNTOUCHED: f64 = 1e-10;
 const EQUAL_MATRICES: f64 = 4e-15;
 
 /// Relative distance of the shift from an eigenvalue.
-const OFFSET: f64 = 1e-8;
+const DAMPED_MODES_OFFSET: f64 = 1e-8;
 
 /// Damping ratio below which a mode grows; above it is rounding.
 pub(super) const GROWS: f64 = -1e-12;
@@ -137,7 +137,9 @@ pub(super) fn of_wave(
     let mut found = DampedModes::default();
     for (k, (eigenvalue, shape)) in pairs.iter().enumerate().take(count) {
         interrupt.check()?;
-        let near = |other: &(Complex64, Vec<Complex64>)| (other.0 - eigenvalue).norm() <= EQUAL * eigenvalue.norm();
+        let near = |other: &(Complex64, Vec<Complex64>)| {
+            (other.0 - eigenvalue).norm() <= DAMPED_MODES_EQUAL * eigenvalue.norm()
+        };
         let is_alone = !pairs.iter().enumerate().any(|(l, other)| l != k && near(other));
         let direction = if is_alone && !gyroscopic.is_empty() {
             direction(&problem, &gyroscopic, (*eigenvalue, shape), interrupt)?
@@ -224,7 +226,7 @@ fn direction(
     (eigenvalue, x): (Complex64, &[Complex64]),
     interrupt: &Interrupt<'_>,
 ) -> Result<i64> {
-    let shifted = problem.matrix(eigenvalue * (1.0 + OFFSET))?;
+    let shifted = problem.matrix(eigenvalue * (1.0 + DAMPED_MODES_OFFSET))?;
     let mut factor = Factor::new(&shifted, 1)?;
     factor.factor(&shifted, interrupt)?;
     // yᴴ A = 0 is Aᵀ conj(y) = 0.

@@ -21,17 +21,17 @@ use core::cell::Cell;
 const CONTEXT: &str = "the detached curves";
 
 /// Most linear modes whose nonlinear ones are followed.
-const MOST_MODES: usize = 16;
+const DETACHED_CURVES_MOST_MODES: usize = 16;
 
 /// Frequencies of these modes, as factors of the ends of the range: contacts soften or stiffen the structure.
 const FREQUENCIES: (f64, f64) = (0.5, 2.0);
 
 /// Range of the modal amplitude, in log₁₀ about the largest one of the branch in the motion of the mode.
-const AMPLITUDES: (f64, f64) = (2.0, 2.0);
+const DETACHED_CURVES_AMPLITUDES: (f64, f64) = (2.0, 2.0);
 
 /// Harmonics of the modes, which are starts alone, and most of their points.
 const HARMONICS: usize = 5;
-const MOST_POINTS: usize = 2_000;
+const DETACHED_CURVES_MOST_POINTS: usize = 2_000;
 
 impl Tree<'_> {
     /// Adds the detached curves beside a branch, with their children down to `depth`.
@@ -50,7 +50,7 @@ impl Tree<'_> {
         let (low, high) = self.ends();
         let wave = self.model.structure().engine_order();
         let interrupt = hooks.interrupt();
-        let count = MOST_MODES.min(self.model.structure().degrees().independent());
+        let count = DETACHED_CURVES_MOST_MODES.min(self.model.structure().degrees().independent());
         let modes = match self
             .model
             .lowest_modes_with(wave, ContactState::Stuck, count, &interrupt)
@@ -65,7 +65,10 @@ impl Tree<'_> {
             let Some(amplitude) = largest_amplitude(branch, &modes, number, hooks)? else {
                 continue;
             };
-            let range = (amplitude.log10() - AMPLITUDES.0, amplitude.log10() + AMPLITUDES.1);
+            let range = (
+                amplitude.log10() - DETACHED_CURVES_AMPLITUDES.0,
+                amplitude.log10() + DETACHED_CURVES_AMPLITUDES.1,
+            );
             self.searched.modes += 1;
             let least = if self.searched.amplitudes.0 > 0.0 {
                 self.searched.amplitudes.0
@@ -97,7 +100,7 @@ impl Tree<'_> {
             harmonics: self.solver.harmonics.clamp(1, HARMONICS),
             max_harmonics: SolverOptions::default().max_harmonics,
             samples: 0,
-            max_points: self.solver.max_points.min(MOST_POINTS),
+            max_points: self.solver.max_points.min(DETACHED_CURVES_MOST_POINTS),
             stability: None,
             flexibility: Flexibility::Automatic,
             estimate_error: false,

@@ -21,7 +21,7 @@ use std::sync::Arc;
 const ON_ALL: f64 = 1e11;
 
 /// Smallest number of modes of a nodal diameter at which a search begins.
-const FIRST: usize = 4;
+const FLOQUET_ON_MODES_FIRST: usize = 4;
 
 /// Largest number of times that the modes are doubled for agreement.
 const DOUBLINGS: usize = 4;
@@ -33,10 +33,10 @@ const CUTOFF: f64 = 5.0;
 const AGREEMENT: f64 = 0.01;
 
 /// The same where the radius is next to 1.
-const LEAST: f64 = 1e-7;
+const FLOQUET_ON_MODES_LEAST: f64 = 1e-7;
 
 /// Share of the radius above which multipliers of two numbers of modes are compared.
-const LARGE: f64 = 0.5;
+const FLOQUET_ON_MODES_LARGE: f64 = 0.5;
 
 /// Shapes and small models that points of one branch share.
 #[derive(Default)]
@@ -185,7 +185,7 @@ fn agree(few: &Floquet, many: &Floquet) -> bool {
     if few.grazing.is_some() || many.grazing.is_some() {
         return few.grazing.is_some() == many.grazing.is_some();
     }
-    let allowed = LEAST.max(AGREEMENT * (1.0 - many.radius).abs());
+    let allowed = FLOQUET_ON_MODES_LEAST.max(AGREEMENT * (1.0 - many.radius).abs());
     few.unstable == many.unstable && (many.radius - few.radius).abs() <= allowed
 }
 
@@ -198,7 +198,7 @@ fn change(few: &Floquet, many: &Floquet) -> f64 {
     let ordinary = |m: &&Multiplier| m.class == MultiplierClass::Ordinary;
     let mut largest = (many.radius - few.radius).abs();
     for a in few.multipliers.iter().filter(ordinary) {
-        if a.value.norm() >= LARGE * few.radius {
+        if a.value.norm() >= FLOQUET_ON_MODES_LARGE * few.radius {
             let all = many.multipliers.iter().filter(ordinary);
             let next = all.map(|b| (a.value - b.value).norm()).fold(f64::INFINITY, f64::min);
             largest = largest.max(next);
@@ -223,7 +223,7 @@ fn first_number(
         .max()
         .unwrap_or(1);
     let cutoff = CUTOFF * omega * highest.max(1) as f64;
-    let mut modes = FIRST;
+    let mut modes = FLOQUET_ON_MODES_FIRST;
     loop {
         kept.on(model, 2 * modes, waves, interrupt)?;
         let Some(shapes) = &kept.shapes else { return Ok(modes) };
@@ -275,7 +275,7 @@ fn is_small(model: &Model, omega: f64, waves: Waves) -> Result<bool> {
     if whole.operations() <= ON_ALL {
         return Ok(true);
     }
-    let order = (degrees_of_contacts(model)?.len() + 2 * FIRST) as f64 * sectors;
+    let order = (degrees_of_contacts(model)?.len() + 2 * FLOQUET_ON_MODES_FIRST) as f64 * sectors;
     let least = Extent {
         order,
         entries: 3.0 * order * order,

@@ -19,7 +19,7 @@ use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};
 const CONTEXT: &str = "the freedom of a solution";
 
 /// Vibration that a change of the place makes, over that change, which is rounding.
-const ROUNDING: f64 = 1e-11;
+const FREEDOM_ROUNDING: f64 = 1e-11;
 
 /// A slider whose place is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +134,7 @@ pub(super) fn free_sliders(
         for slider in of_contact {
             let change = at.by_slider((slider.coordinate, slider.stiffness), omega)?;
             let mut vibrations = change.chunks_exact(m.max(1)).map(|y| norm(&y[mean..]));
-            changes |= vibrations.any(|y| y > ROUNDING);
+            changes |= vibrations.any(|y| y > FREEDOM_ROUNDING);
         }
         // In a plane the limit couples both directions.
         for slider in of_contact.iter().filter(|_| changes) {

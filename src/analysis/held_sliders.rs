@@ -25,18 +25,18 @@ const CONTEXT: &str = "a response with held sliders";
 pub(super) const HELD: f64 = 1e6;
 
 /// Newton iterations at one frequency, and corrections of the frequency of a peak.
-const ITERATIONS: usize = 15;
-const CORRECTIONS: usize = 12;
+const HELD_SLIDERS_ITERATIONS: usize = 15;
+const HELD_SLIDERS_CORRECTIONS: usize = 12;
 
 /// Residual, relative to the motion, of a solution.
 const RESIDUAL: f64 = 1e-13;
 
 /// Residual at which a solution without further progress counts.
-const ENOUGH: f64 = 1e-10;
+const HELD_SLIDERS_ENOUGH: f64 = 1e-10;
 
 /// Change of the frequency of a peak, relative to itself, that is rounding; and that which counts after all corrections.
-const SETTLED: f64 = 1e-13;
-const NEARLY: f64 = 1e-9;
+const HELD_SLIDERS_SETTLED: f64 = 1e-13;
+const HELD_SLIDERS_NEARLY: f64 = 1e-9;
 
 /// Result of a forced response that is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -287,10 +287,10 @@ fn adjoint_at(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64) -> Result<Adjo
 /// Newton's method at a fixed frequency; the adjoint of the solution.
 fn newton(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: f64) -> Result<Adjoint> {
     let mut last = f64::INFINITY;
-    for _ in 0..ITERATIONS {
+    for _ in 0..HELD_SLIDERS_ITERATIONS {
         let adjoint = adjoint_at(point, u, omega)?;
         let residual = norm(point.residual()) / point.scale();
-        if residual < RESIDUAL || (residual < ENOUGH && residual > 0.5 * last) {
+        if residual < RESIDUAL || (residual < HELD_SLIDERS_ENOUGH && residual > 0.5 * last) {
             return Ok(adjoint);
         }
         if !residual.is_finite() {
@@ -308,7 +308,7 @@ fn newton(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: f64) -> Result<Adjo
 fn to_peak(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: &mut f64, first: Adjoint) -> Result<Adjoint> {
     let mut adjoint = first;
     let mut settled = f64::INFINITY;
-    for _ in 0..CORRECTIONS {
+    for _ in 0..HELD_SLIDERS_CORRECTIONS {
         let (_, curvature) = peak_row(point, u, *omega, &adjoint)?;
         if curvature.is_nan() || curvature >= 0.0 {
             return fail!(NoConvergence, "the peak vanishes where a slider is held");
@@ -317,7 +317,7 @@ fn to_peak(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: &mut f64, first: A
         adjoint = adjoint_at(point, u, *omega)?;
         let change = -adjoint.by_omega / curvature;
         settled = (change / *omega).abs();
-        if settled < SETTLED {
+        if settled < HELD_SLIDERS_SETTLED {
             break;
         }
         let tangent = point.tangent(*omega)?;
@@ -327,7 +327,7 @@ fn to_peak(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: &mut f64, first: A
         *omega += change;
         adjoint = newton(point, u, *omega)?;
     }
-    if settled > NEARLY {
+    if settled > HELD_SLIDERS_NEARLY {
         return fail!(
             NoConvergence,
             "the frequency of the peak does not settle where a slider is held"

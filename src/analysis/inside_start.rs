@@ -7,8 +7,9 @@
 
 use crate::adaptivity::discretised::Discretised;
 use crate::adaptivity::inner_ends::Dropped;
-use crate::adaptivity::transfer::transferred;
 use crate::analysis::forced_discretised::ForcedDiscretised;
+use crate::analysis::known_curve::lies_on;
+use crate::analysis::start_net::Net;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
@@ -18,15 +19,11 @@ use crate::options::Content;
 use crate::results::Branch;
 use core::cell::Cell;
 use num_complex::Complex64;
-use std::sync::Arc;
 
 const CONTEXT: &str = "the start of a branch";
 
 /// Distances from the bifurcation, as shares of the motion, in the order in which they are tried.
 const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
-
-/// Distance of two solutions that are one, over their size.
-const ONE: f64 = 1e-6;
 
 /// Share of the motion in harmonics that it does not have.
 const ABSENT: f64 = 1e-8;
@@ -48,21 +45,6 @@ pub(super) struct Inside<'k> {
     /// Motions that are added to the guess, with amplitudes and phases of a net.
     pub net: Option<&'k Net<'k>>,
 }
-
-/// A net of starts.
-pub(super) struct Net<'n> {
-    /// A solution has other harmonics than multiples of this order.
-    pub order: usize,
-    /// Motion that is added, complex, (H + 1) × ndof, harmonic after harmonic.
-    pub added: &'n [Complex64],
-}
-
-/// Amplitudes and number of phases of a net.
-const AMPLITUDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
-const PHASES: usize = 8;
-
-/// Share of a subharmonic motion outside the multiples of its order.
-const SUBHARMONIC: f64 = 1e-3;
 
 /// The first point, oriented along the curve, and the harmonics that the branch does not have which it leaves.
 pub(super) struct Entered {
@@ -102,7 +84,7 @@ impl Inside<'_> {
             );
         };
         for known in self.known {
-            if lies_on(response, known, (&entered, self.periods), interrupt)? {
+            if lies_on(response, known, (&entered.point, self.periods), interrupt)? {
                 self.entry.set(Entry::Known);
                 return fail!(NoConvergence, "the curve at {} is known", self.omega);
             }
@@ -133,7 +115,8 @@ impl Inside<'_> {
         start.v[..n].copy_from_slice(guess);
         start.tangent[n] = 1.0;
         if let Some(net) = self.net {
-            return self.first_of_net(net, response, &start, interrupt);
+            let point = net.first_solution(response, &start, (self.known, self.periods), interrupt)?;
+            return Ok(point.map(|point| Entered { point, dropped: None }));
         }
         let Some(sense) = self.leaves else {
             let point = response.resolve(&start, true, interrupt)?;
@@ -171,132 +154,6 @@ impl Inside<'_> {
         }
         Ok(None)
     }
-}
-
-impl Inside<'_> {
-    /// The first solution of a net at the frequency of the guess that is subharmonic, and not known.
-    fn first_of_net(
-        &self,
-        net: &Net<'_>,
-        response: &mut ForcedDiscretised<'_>,
-        start: &Point,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Entered>> {
-        let level = response.resolution();
-        let to = Arc::clone(&response.levels().at(level)?.condensed);
-        let set = to.set();
-        let turned = |turn: Complex64| -> Result<Vec<f64>> {
-            let mut motion = try_vec(net.added.len(), Complex64::ZERO, CONTEXT)?;
-            for (x, added) in motion.iter_mut().zip(net.added) {
-                *x = added * turn;
-            }
-            response.packed(&motion)
-        };
-        let axes = [turned(Complex64::ONE)?, turned(Complex64::I)?];
-        for amplitude in AMPLITUDES {
-            for phase in 0..PHASES {
-                // Shifted by a period of the force the motion is the same.
-                let angle = core::f64::consts::TAU * phase as f64 / (PHASES * net.order) as f64;
-                let (sine, cosine) = angle.sin_cos();
-                let mut near = start.try_clone()?;
-                for ((v, x), y) in near.v.iter_mut().zip(&axes[0]).zip(&axes[1]) {
-                    *v += amplitude * (cosine * x + sine * y);
-                }
-                let Some(point) = response.solve_at(&near, interrupt)? else {
-                    continue;
-                };
-                if subharmonic_share(set, point.unknowns(), net.order) < SUBHARMONIC {
-                    continue;
-                }
-                let entered = Entered { point, dropped: None };
-                let mut is_known = false;
-                for known in self.known {
-                    is_known |= lies_on(response, known, (&entered, self.periods), interrupt)?;
-                }
-                if !is_known {
-                    return Ok(Some(entered));
-                }
-            }
-        }
-        Ok(None)
-    }
-}
-
-/// Share of the harmonics of a motion that are no multiples of an order.
-fn subharmonic_share(set: &HarmonicSet, motion: &[f64], order: usize) -> f64 {
-    let mut part = 0.0_f64;
-    for y in motion.chunks_exact(set.packed_len().max(1)) {
-        for (i, h) in set.numbers().iter().enumerate() {
-            if h % order != 0 {
-                part = part.hypot(set.get(y, i).norm());
-            }
-        }
-    }
-    part / norm(motion)
-}
-
-/// Whether a point lies on a branch, or its mirror image does: the solutions at its frequency between neighbours of the branch
-/// decide.
-fn lies_on(
-    response: &mut ForcedDiscretised<'_>,
-    known: &Branch,
-    (entered, periods): (&Entered, usize),
-    interrupt: &Interrupt<'_>,
-) -> Result<bool> {
-    let point = &entered.point;
-    let n = point.unknowns().len();
-    let level = response.resolution();
-    for (i, pair) in known.omega().windows(2).enumerate() {
-        let (a, b) = (pair[0], pair[1]);
-        let omega = point.parameter();
-        if omega < a.min(b) || omega > a.max(b) {
-            continue;
-        }
-        interrupt.check()?;
-        let to = Arc::clone(&response.levels().at(level)?.condensed);
-        let moved = |i: usize| {
-            let from = known.condensed_at(i);
-            let motion = known.motion_at(i).unwrap_or(&[]);
-            transferred(from, &to, motion, 0, from.length() / to.length())
-        };
-        let (first, second) = (moved(i)?, moved(i + 1)?);
-        let share = if (b - a).abs() > 0.0 {
-            (omega - a) / (b - a)
-        } else {
-            0.5
-        };
-        let mut near = point.try_clone()?;
-        for ((v, a), b) in near.v[..n].iter_mut().zip(&first).zip(&second) {
-            *v = a + share * (b - a);
-        }
-        let Some(found) = response.resolve(&near, true, interrupt)? else {
-            continue;
-        };
-        if is_one(&found, point, to.set(), periods) {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// Whether two solutions at one frequency are one, but for a shift by whole periods of the force, or by half a period with the
-/// opposite sign, under which an odd model has the same motions.
-fn is_one(a: &Point, b: &Point, set: &HarmonicSet, periods: usize) -> bool {
-    let (a, b) = (a.unknowns(), b.unknowns());
-    let bound = ONE * norm(b);
-    let m = set.packed_len().max(1);
-    (0..2 * periods).any(|half| {
-        let sign = if half % 2 == 0 { 1.0 } else { -1.0 };
-        let turn = core::f64::consts::PI * half as f64 / periods as f64;
-        let mut gap = 0.0_f64;
-        for (a, b) in a.chunks_exact(m).zip(b.chunks_exact(m)) {
-            for (i, h) in set.numbers().iter().enumerate() {
-                let shifted = set.get(a, i) * Complex64::cis(turn * *h as f64) * sign;
-                gap = gap.hypot((shifted - set.get(b, i)).norm());
-            }
-        }
-        gap <= bound
-    })
 }
 
 /// The settings in the sense of a point.

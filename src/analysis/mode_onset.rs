@@ -9,18 +9,18 @@ use crate::problem::epmc::Epmc;
 use crate::problem::{Problem, Residual};
 
 /// Width of log₁₀ of the amplitude to which an onset is located.
-const WIDTH: f64 = 1e-7;
+const MODE_ONSET_WIDTH: f64 = 1e-7;
 
 /// Share of the period that counts as slip or opening.
-const SHARE: f64 = 1e-9;
+const MODE_ONSET_SHARE: f64 = 1e-9;
 
 /// Number of kinds of onset: slip, lift-off.
-const KINDS: usize = 2;
+const MODE_ONSET_KINDS: usize = 2;
 
 /// Finds the onsets, as points are recorded one after the other.
 pub(super) struct OnsetSearch {
     /// log₁₀ of the amplitudes of slip and of lift-off, as far as known.
-    found: [Option<f64>; KINDS],
+    found: [Option<f64>; MODE_ONSET_KINDS],
     /// The point recorded last, with the index of its resolution.
     before: Option<(Point, usize)>,
 }
@@ -36,16 +36,16 @@ impl OnsetSearch {
     }
 
     /// log₁₀ of the amplitudes of slip and of lift-off; infinite where no point has any.
-    pub fn found(&self) -> [f64; KINDS] {
+    pub fn found(&self) -> [f64; MODE_ONSET_KINDS] {
         self.found.map(|a| a.unwrap_or(f64::INFINITY))
     }
 
     /// Kinds of onset that the problem shows at the point evaluated last.
-    fn shown(problem: &Epmc<'_>) -> [bool; KINDS] {
+    fn shown(problem: &Epmc<'_>) -> [bool; MODE_ONSET_KINDS] {
         let forces = problem.forces();
         [
-            forces.slip_fractions().iter().any(|&share| share > SHARE),
-            forces.lifted_shares().any(|share| share > SHARE),
+            forces.slip_fractions().iter().any(|&share| share > MODE_ONSET_SHARE),
+            forces.lifted_shares().any(|share| share > MODE_ONSET_SHARE),
         ]
     }
 
@@ -98,7 +98,7 @@ fn locate(
     let mut locator = Locator::new(a.unknowns().len(), *settings)?;
     let mut out = Residual::new(a.unknowns().len())?;
     let (mut low, mut high) = (a.parameter(), b.parameter());
-    while (high - low).abs() > WIDTH {
+    while (high - low).abs() > MODE_ONSET_WIDTH {
         let middle = 0.5 * (low + high);
         let Some(point) = locator.at_parameter(problem, a, b, middle, interrupt)? else {
             break;

@@ -10,7 +10,7 @@ use crate::results::Branch;
 use std::f64::consts::TAU;
 
 /// Difference of a force from the opposite one, over the largest force, that is rounding of a callback.
-const ROUNDING: f64 = 1e-6;
+const ODD_LAWS_ROUNDING: f64 = 1e-6;
 
 const CONTEXT: &str = "the check of an odd force";
 
@@ -75,7 +75,7 @@ fn compare(model: &Model, branch: &Branch) -> Result<()> {
         let opposite = forces(&*assembled.law, (omega, times), &u, &v).map_err(named)?;
         let size = there.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         for (at, (f, g)) in there.iter().zip(&opposite).enumerate() {
-            if (f + g).abs() > ROUNDING * size {
+            if (f + g).abs() > ODD_LAWS_ROUNDING * size {
                 let length = condensed.length();
                 return Err(Error::new(
                     Status::Argument,

@@ -18,13 +18,13 @@ use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
 /// Share of a frequency within which its peak or fold is sought.
-const NEAR: f64 = 0.1;
+const PARAMETER_RESPONSE_NEAR: f64 = 0.1;
 
 /// Ends of the sweeps in which it is sought, over the frequency, until one meets it: where several motions exist, the one that has it
 /// may be reached from one side only, and from afar.
 const WAYS: [(f64, f64); 4] = [
-    (1.0 - NEAR, 1.0 + NEAR),
-    (1.0 + NEAR, 1.0 - NEAR),
+    (1.0 - PARAMETER_RESPONSE_NEAR, 1.0 + PARAMETER_RESPONSE_NEAR),
+    (1.0 + PARAMETER_RESPONSE_NEAR, 1.0 - PARAMETER_RESPONSE_NEAR),
     (0.5, 1.2),
     (1.5, 0.8),
 ];
@@ -161,8 +161,8 @@ fn follow(
         return fail!(
             NoConvergence,
             "at the start of the range the response has no {name} within {} .. {}",
-            (1.0 - NEAR) * omega,
-            (1.0 + NEAR) * omega
+            (1.0 - PARAMETER_RESPONSE_NEAR) * omega,
+            (1.0 + PARAMETER_RESPONSE_NEAR) * omega
         );
     };
     let Some(omega) = branch.omega_at(point) else {
@@ -217,7 +217,7 @@ fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response
     }
 }
 
-/// The point of a kind that is nearest to a frequency; `None` where none is within [`NEAR`] of it.
+/// The point of a kind that is nearest to a frequency; `None` where none is within [`PARAMETER_RESPONSE_NEAR`] of it.
 fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize> {
     let list = match kind {
         ResponsePoint::Fixed => return (branch.points() > 0).then_some(0),
@@ -226,7 +226,7 @@ fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize
     };
     let distance = |s: &&Special| (s.omega - omega).abs();
     let near = list.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    (distance(&near) <= NEAR * omega.abs()).then_some(near.point)
+    (distance(&near) <= PARAMETER_RESPONSE_NEAR * omega.abs()).then_some(near.point)
 }
 
 /// Reason of a peak that vanished: the highest peak that the response shows a little beyond the last value, if it has one.

@@ -13,7 +13,7 @@ use crate::results::Branch;
 use num_complex::Complex64;
 
 /// Newton iterations by which the work is bounded: those of a point that is solved by homotopy.
-const ITERATIONS: usize = 200;
+const POINT_ERROR_ITERATIONS: usize = 200;
 
 /// Estimates the error of a stored point of a branch by the harmonics that it neglects. `model` and `solver` are
 /// those of the computation of the branch.
@@ -85,7 +85,7 @@ pub fn estimate_at_with(
         watched: &watched,
         together: branch.together(),
         sticks: None,
-        iterations: ITERATIONS,
+        iterations: POINT_ERROR_ITERATIONS,
     };
     let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {

@@ -17,13 +17,13 @@ use crate::options::SolverOptions;
 const CONTEXT: &str = "the static states of a load history";
 
 /// Halvings of a step at most.
-const HALVINGS: usize = 12;
+const STATIC_HISTORY_HALVINGS: usize = 12;
 
 /// Difference of the places of sliders, over the largest motion of a contact, at which the halves of a step agree.
 const AGREES: f64 = 1e-11;
 
 /// Most steps of a history.
-const MOST_STEPS: usize = 1_000_000;
+const STATIC_HISTORY_MOST_STEPS: usize = 1_000_000;
 
 /// A load history: values of each step, straight lines between them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,7 +80,7 @@ pub fn static_history(
         let step = match steps.last() {
             // The first load is reached at once.
             None => walk.state(load(0), &places)?,
-            Some(last) => walk.to((load(i - 1), &last.places), load(i), HALVINGS)?,
+            Some(last) => walk.to((load(i - 1), &last.places), load(i), STATIC_HISTORY_HALVINGS)?,
         };
         try_push(&mut steps, step, CONTEXT)?;
     }
@@ -90,8 +90,11 @@ pub fn static_history(
 fn check(history: &LoadHistory<'_>) -> Result<usize> {
     let [factors, speeds] = [history.factors.len(), history.speeds.len()];
     let count = factors.max(speeds);
-    if count == 0 || count > MOST_STEPS {
-        return fail!(Dimension, "{count} steps of a load history, needs 1 .. {MOST_STEPS}");
+    if count == 0 || count > STATIC_HISTORY_MOST_STEPS {
+        return fail!(
+            Dimension,
+            "{count} steps of a load history, needs 1 .. {STATIC_HISTORY_MOST_STEPS}"
+        );
     }
     if factors > 0 && speeds > 0 && factors != speeds {
         return fail!(

@@ -30,7 +30,7 @@ const CONTEXT: &str = "the static state";
 pub(super) const NEEDS_SPEED: &str = "a nonlinear mode about it needs one speed";
 
 /// Tolerance of the residual: an error of the static state is one of every amplitude.
-const TOLERANCE: f64 = 1e-13;
+const STATIC_SOLUTION_TOLERANCE: f64 = 1e-13;
 
 /// Residual at zero, relative to the motion under the forces with linear contacts, at which zero is the solution.
 const BALANCED: f64 = 1e-12;
@@ -104,7 +104,7 @@ fn solve(
     let settings = Settings {
         start: OMEGA,
         end: OMEGA,
-        tolerance: TOLERANCE,
+        tolerance: STATIC_SOLUTION_TOLERANCE,
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };

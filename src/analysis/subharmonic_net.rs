@@ -6,7 +6,8 @@
 //! multiples of the order is a point of a subharmonic curve.
 
 use crate::analysis::branch_switching::{Found, Place, Tree};
-use crate::analysis::inside_start::{Inside, Net};
+use crate::analysis::inside_start::Inside;
+use crate::analysis::start_net::Net;
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::linear_modes::ContactState;
@@ -24,8 +25,8 @@ const ORDERS: [usize; 2] = [2, 3];
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Most modes that are added, and their frequencies over the fraction of that of the response.
-const MOST_MODES: usize = 4;
-const NEAR: (f64, f64) = (0.3, 2.0);
+const SUBHARMONIC_NET_MOST_MODES: usize = 4;
+const SUBHARMONIC_NET_NEAR: (f64, f64) = (0.3, 2.0);
 
 impl Tree<'_> {
     /// Adds subharmonic curves, with their children down to `depth`.
@@ -34,7 +35,7 @@ impl Tree<'_> {
     /// `OutOfMemory`; `StoppedByCaller`; those of callbacks.
     pub fn add_subharmonics(&mut self, branch: &mut Branch, depth: usize, hooks: &mut Hooks<'_>) -> Result<()> {
         let interrupt = hooks.interrupt();
-        let count = MOST_MODES.min(self.model.structure().degrees().independent());
+        let count = SUBHARMONIC_NET_MOST_MODES.min(self.model.structure().degrees().independent());
         for order in ORDERS {
             let model = match self.model.with_longer_period(order) {
                 Ok(model) => model,
@@ -66,7 +67,7 @@ impl Tree<'_> {
                 let size = own.iter().fold(0.0_f64, |most, x| most.max(x.norm()));
                 for (number, shape) in modes.shapes.chunks_exact(ndof).enumerate() {
                     let ratio = modes.omega[number] / omega;
-                    if self.left == 0 || !(NEAR.0..=NEAR.1).contains(&ratio) {
+                    if self.left == 0 || !(SUBHARMONIC_NET_NEAR.0..=SUBHARMONIC_NET_NEAR.1).contains(&ratio) {
                         continue;
                     }
                     let largest = shape.iter().fold(0.0_f64, |most, x| most.max(x.norm()));

@@ -19,10 +19,10 @@ pub struct Onset {
 const BOTH: f64 = 1e-9;
 
 /// Points of the period between which the earliest slip in a plane is sought.
-const POINTS: usize = 256;
+const ONSET_POINTS: usize = 256;
 
 /// Bisections of the place of the earliest slip.
-const BISECTIONS: usize = 60;
+const ONSET_BISECTIONS: usize = 60;
 
 impl Onset {
     /// A law that is linear at every motion.
@@ -112,16 +112,16 @@ pub fn slider_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of
             f64::INFINITY
         }
     };
-    let step = TAU / POINTS as f64;
+    let step = TAU / ONSET_POINTS as f64;
     let mut least = (f64::INFINITY, 0.0);
-    for j in 0..POINTS {
+    for j in 0..ONSET_POINTS {
         let a = at(j as f64 * step);
         if a < least.0 {
             least = (a, j as f64 * step);
         }
     }
     let (mut low, mut high) = (least.1 - step, least.1 + step);
-    for _ in 0..BISECTIONS {
+    for _ in 0..ONSET_BISECTIONS {
         // Golden section.
         let (left, right) = (
             high - 0.618_033_988_75 * (high - low),

@@ -41,7 +41,7 @@ pub struct Frame {
 }
 
 /// Largest |t·n| of unit vectors that counts as orthogonal: the rounding of a mesh file.
-const SQUARE: f64 = 1e-6;
+const RELATIVE_MOTION_SQUARE: f64 = 1e-6;
 
 impl Frame {
     /// Directions from a normal and, if it matters, a first tangent; both of any length. Without a
@@ -55,10 +55,10 @@ impl Frame {
         let t = if let Some(tangent) = tangent {
             let t = unit("tangent", tangent)?;
             let skew = dot(t, n);
-            if skew.abs() > SQUARE {
+            if skew.abs() > RELATIVE_MOTION_SQUARE {
                 return fail!(
                     Argument,
-                    "tangent is not orthogonal to normal: cosine {skew:.3e}, needs at most {SQUARE:e}"
+                    "tangent is not orthogonal to normal: cosine {skew:.3e}, needs at most {RELATIVE_MOTION_SQUARE:e}"
                 );
             }
             t

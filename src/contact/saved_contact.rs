@@ -7,7 +7,7 @@ use crate::contact::relative_motion::Frame;
 use crate::error::{Result, try_push};
 
 /// Largest deviation of the products of the axes of a frame from those of unit vectors.
-const SQUARE: f64 = 1e-9;
+const SAVED_CONTACT_SQUARE: f64 = 1e-9;
 
 impl Contact {
     /// Bytes that a contact has at least: kind, sides, frame, offset, seven constants and the length of its list.
@@ -67,7 +67,7 @@ impl Contact {
             for x in axes.iter_mut().flatten() {
                 *x = input.finite()?;
             }
-            let Some(frame) = Frame::of_axes(axes, SQUARE) else {
+            let Some(frame) = Frame::of_axes(axes, SAVED_CONTACT_SQUARE) else {
                 return Err(input.damaged("the directions of a contact are not orthogonal"));
             };
             Some(frame)

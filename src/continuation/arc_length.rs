@@ -90,7 +90,7 @@ const FLOOR: f64 = 1e-2;
 
 /// Relative change of the parameter that is rounding, and the number of points in a row, no further apart, that show a branch
 /// which ends in rounding. An amplitude that grows without bound at a resonance would else be followed there by chance.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const ARC_LENGTH_ROUNDING: f64 = 64.0 * f64::EPSILON;
 const MOST_STATIONARY: usize = 32;
 
 /// Relative error of a prediction far below that which shortens steps.
@@ -293,7 +293,7 @@ impl Continuation {
         self.note_size(&point);
         self.left_surface &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
-        self.stationary = if change <= ROUNDING * point.parameter().abs() && point.step > TINY {
+        self.stationary = if change <= ARC_LENGTH_ROUNDING * point.parameter().abs() && point.step > TINY {
             self.stationary + 1
         } else {
             0

@@ -5,7 +5,7 @@ pub const WIDTH: f64 = 1e-11;
 
 /// Distance of a place found by interpolation from the one before it below which its error is less than [`WIDTH`]: the
 /// order of convergence is 1.8.
-const CLOSE: f64 = 1e-7;
+const BRACKET_CLOSE: f64 = 1e-7;
 
 /// Bracket of a root on an arc from 0 to 1, narrowed by inverse quadratic interpolation where the last three values lie on a
 /// monotonic curve, else by halving (Chandrupatla, Adv. Eng. Software 28, 1997, doi:10.1016/S0965-9978(96)00051-8); first by
@@ -20,7 +20,7 @@ pub struct Bracket {
 }
 
 /// Largest ratio of that distance to the one before where interpolation converges fast.
-const FAST: f64 = 1e-2;
+const BRACKET_FAST: f64 = 1e-2;
 
 impl Bracket {
     /// The whole arc with the values at its ends, of different signs.
@@ -65,7 +65,7 @@ impl Bracket {
     /// distance, is rounding. Beside a kink, where interpolation converges slowly, distances do not fall as fast.
     #[must_use]
     pub fn is_last(&self) -> bool {
-        self.is_last_within(CLOSE)
+        self.is_last_within(BRACKET_CLOSE)
     }
 
     /// The same for another distance, whose power 1.8 is the error that counts as rounding.
@@ -73,7 +73,7 @@ impl Bracket {
     pub fn is_last_within(&self, close: f64) -> bool {
         let guess = self.guess();
         let distance = (guess - self.last.0).abs();
-        let falls = |before: (f64, f64)| distance <= FAST * (self.last.0 - before.0).abs();
+        let falls = |before: (f64, f64)| distance <= BRACKET_FAST * (self.last.0 - before.0).abs();
         guess.to_bits() != self.middle().to_bits() && distance < close && self.before.is_some_and(falls)
     }
 

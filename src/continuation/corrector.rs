@@ -83,7 +83,7 @@ pub struct Corrector {
 }
 
 /// Relative size of a Newton step that is round-off: no further progress is possible.
-const ROUND_OFF: f64 = 1e-13;
+const CORRECTOR_ROUND_OFF: f64 = 1e-13;
 
 /// Largest relative Newton step from a solution. Where the equations are nearly singular, as at a resonance without
 /// damping, a point with a residual within the tolerance may be far from any solution: the last step shows that.
@@ -227,8 +227,8 @@ impl Corrector {
             }
             let (length, motion) = (self.step_length(metric), norm(&v[..n]));
             // The metric does not measure that: its unit may be far above unknowns that were large elsewhere on the branch.
-            let round_off =
-                length <= ROUND_OFF * motion && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p);
+            let round_off = length <= CORRECTOR_ROUND_OFF * motion
+                && self.step[n].abs() * metric.p <= CORRECTOR_ROUND_OFF * (v[n].abs() + metric.p);
             let near = length <= NEAR * motion;
             let sizes = [residual, length / motion];
             let foreseen = if iteration == 0 && residual > self.tolerance && !damped {

@@ -12,7 +12,7 @@
 use crate::continuation::{Metric, Point};
 
 /// Angle between two tangents, over 1 the difference of its cosine from 1, below which the branch is straight.
-const STRAIGHT: f64 = 1e-14;
+const CURVATURE_CIRCLE_STRAIGHT: f64 = 1e-14;
 
 /// φ at a point, and the factor that makes its tangent the derivative by φ.
 pub(super) type Place = (f64, f64);
@@ -51,7 +51,7 @@ impl CurvatureCircle {
             let unit = 1.0 / metric.norm(&before.tangent);
             let cosine = metric.dot(&here.tangent, &before.tangent) * circle.unit * unit;
             let chord = metric.distance(&here.v, &before.v);
-            if cosine > 0.0 && 1.0 - cosine > STRAIGHT && chord > 0.0 {
+            if cosine > 0.0 && 1.0 - cosine > CURVATURE_CIRCLE_STRAIGHT && chord > 0.0 {
                 // Twice the sine of half the angle.
                 let curvature = (2.0 * (1.0 - cosine)).sqrt() / chord;
                 circle.bend = Some(Bend {

@@ -79,7 +79,7 @@ const LONG_STEP: f64 = 0.1;
 
 /// Size of a motion, relative to that under linear contacts, beyond which the forces keep less than four digits in
 /// double precision.
-const FAR: f64 = 1e12;
+const INITIAL_POINT_FAR: f64 = 1e12;
 
 /// Residual, in units of the motion under linear contacts, above which the forces are unbalanced, even if it is small
 /// against a large motion.
@@ -302,7 +302,7 @@ fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result
         guess => matches!(guess, Ok(true)),
     };
     let (far, scale) = (norm(u), norm(&linear));
-    Ok(known && scale > 0.0 && (far > FAR * scale || residual * far > UNBALANCED * scale))
+    Ok(known && scale > 0.0 && (far > INITIAL_POINT_FAR * scale || residual * far > UNBALANCED * scale))
 }
 
 /// End of a homotopy path.

@@ -6,7 +6,7 @@ use crate::problem::End;
 use num_complex::Complex64;
 
 /// Relative change of a parameter that may be round-off of the correction.
-const ROUND_OFF: f64 = 1e-10;
+const POINT_ROUND_OFF: f64 = 1e-10;
 
 /// A point with the number of its resolution.
 pub type PointAt<'p> = (&'p Point, usize);
@@ -108,7 +108,9 @@ impl Point {
     pub fn skips_folds_from(&self, before: &Self) -> bool {
         let (p, from) = (self.parameter(), before.parameter());
         let against = |tangent: &[f64]| (p - from) * tangent[tangent.len() - 1] < 0.0;
-        (p - from).abs() > ROUND_OFF * p.abs().max(from.abs()) && against(&self.tangent) && against(&before.tangent)
+        (p - from).abs() > POINT_ROUND_OFF * p.abs().max(from.abs())
+            && against(&self.tangent)
+            && against(&before.tangent)
     }
 
     /// The same point, followed in the other sense.

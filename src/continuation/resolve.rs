@@ -8,7 +8,7 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Distance, relative to the unknowns, beyond which a solution is another one than requested.
-const NEAR: f64 = 0.3;
+const RESOLVE_NEAR: f64 = 0.3;
 
 /// Cosine of the angle between two lines that are one.
 const PARALLEL: f64 = 0.99;
@@ -43,7 +43,7 @@ pub fn resolve(
         v[n] = near.parameter();
     }
     let moved = v[..n].iter().zip(&near.v).fold(0.0_f64, |s, (a, b)| s.hypot(a - b));
-    if moved > NEAR * norm(near.unknowns()) {
+    if moved > RESOLVE_NEAR * norm(near.unknowns()) {
         return Ok(None);
     }
     let mut point = Point::new(v, corrected, near.step);

@@ -81,10 +81,10 @@ const CONTEXT: &str = "the search for special points";
 const CLOSE_FOR_RESPONSES: f64 = 1e-5;
 
 /// Maximum number of evaluations of one search.
-const MAX_EVALUATIONS: usize = 60;
+const SPECIAL_POINTS_MAX_EVALUATIONS: usize = 60;
 
 /// Maximum number of halvings of an arc in search of a parameter.
-const MAX_HALVINGS: usize = 12;
+const SPECIAL_POINTS_MAX_HALVINGS: usize = 12;
 
 /// Value of a function over the larger one at the ends that is that of a root.
 const VANISHING: f64 = 1e-6;
@@ -186,7 +186,7 @@ impl Locator {
             bracket = bracket.with_integral(integral / metric.distance(&a.v, &b.v));
         }
         let (mut best, mut last) = (None, f64::INFINITY);
-        for _ in 0..MAX_EVALUATIONS {
+        for _ in 0..SPECIAL_POINTS_MAX_EVALUATIONS {
             let (mut s, mut is_last) = (bracket.guess(), self.is_last(&bracket));
             let mut found = self.solve_between(problem, metric, (a, b), s, None, interrupt)?;
             if found.is_none() {
@@ -241,7 +241,7 @@ impl Locator {
         }
         // Where the cubic is too poor a guess, a point of the branch near `p` halves the arc.
         let mut arc = (a.try_clone()?, b.try_clone()?);
-        for _ in 0..MAX_HALVINGS {
+        for _ in 0..SPECIAL_POINTS_MAX_HALVINGS {
             let (a, b) = (&arc.0, &arc.1);
             let metric = self.metric(a, b);
             self.departure.clear();

@@ -56,8 +56,8 @@ pub struct StepControl {
 const MOST_TURN: f64 = 0.8;
 
 /// Largest growth of a step, and the share of it that the error allows.
-const GROWTH: f64 = 2.5;
-const SAFETY: f64 = 0.8;
+const STEP_CONTROL_GROWTH: f64 = 2.5;
+const STEP_CONTROL_SAFETY: f64 = 0.8;
 
 /// Iterations above which the step is reduced at any error.
 const MANY_ITERATIONS: usize = 6;
@@ -151,10 +151,10 @@ impl StepControl {
     /// `order`.
     pub fn accepted(&mut self, used: f64, error: f64, order: f64, iterations: usize) {
         let margin = self.detail.target() / error.max(1e-12);
-        let mut factor = if margin >= (GROWTH / SAFETY).powi(order as i32) {
-            GROWTH
+        let mut factor = if margin >= (STEP_CONTROL_GROWTH / STEP_CONTROL_SAFETY).powi(order as i32) {
+            STEP_CONTROL_GROWTH
         } else {
-            (SAFETY * margin.powf(1.0 / order)).clamp(0.3, GROWTH)
+            (STEP_CONTROL_SAFETY * margin.powf(1.0 / order)).clamp(0.3, STEP_CONTROL_GROWTH)
         };
         if iterations > MANY_ITERATIONS {
             factor = factor.min(0.7);

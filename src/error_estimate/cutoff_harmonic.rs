@@ -23,20 +23,20 @@ use std::sync::Arc;
 const COMPLIANT: f64 = 0.5;
 
 /// Degrees of freedom up to which every harmonic may be checked.
-const SMALL_UP_TO: usize = 32;
+const CUTOFF_HARMONIC_SMALL_UP_TO: usize = 32;
 
 /// Harmonics up to which a model carries all waves: those of a thousand sectors. The memory of a wheel of more sectors
 /// than any machine has must not follow from their number.
 const MOST_WAVES: usize = 2048;
 
 /// Ratio of neighbouring harmonics that are checked in a large structure.
-const RATIO: f64 = 1.25;
+const CUTOFF_HARMONIC_RATIO: f64 = 1.25;
 
 /// Relative distance within which the cut-off harmonic of a large structure is found.
 const FINE: f64 = 0.03;
 
 /// Relative change of frequency up to which a cut-off, as a frequency, is reused where harmonics are different waves.
-const NEAR: f64 = 0.01;
+const CUTOFF_HARMONIC_NEAR: f64 = 0.01;
 
 /// Iterations for the norm of a matrix.
 const NORM_ITERATIONS: usize = 8;
@@ -51,7 +51,7 @@ pub(crate) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
 
 /// Harmonics that a condensed model must carry so that the waves of all higher ones are among its own.
 pub(super) fn all_waves(condensed: &Condensed) -> usize {
-    if condensed.ndof() > SMALL_UP_TO {
+    if condensed.ndof() > CUTOFF_HARMONIC_SMALL_UP_TO {
         return 0;
     }
     let all = 2 * condensed.in_step() * condensed.set().base();
@@ -129,7 +129,11 @@ impl CutoffHarmonic {
     fn serves(&self, (_, near, searched_from): (f64, f64, usize), omega: f64, from: usize) -> bool {
         // Where all harmonics are one wave, G depends on hω alone.
         let one_wave = self.condensed.in_step() <= 1;
-        let width = if self.highest.is_some() { NEAR } else { FINE };
+        let width = if self.highest.is_some() {
+            CUTOFF_HARMONIC_NEAR
+        } else {
+            FINE
+        };
         from >= searched_from && (one_wave || (omega / near - 1.0).abs() <= width)
     }
 
@@ -192,7 +196,7 @@ impl CutoffHarmonic {
                 return Ok(above);
             }
             above = h;
-            h = ((h as f64 / RATIO) as usize).min(h - 1);
+            h = ((h as f64 / CUTOFF_HARMONIC_RATIO) as usize).min(h - 1);
         }
         Ok(from)
     }
@@ -272,7 +276,7 @@ fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
 /// Highest natural frequency over the waves of a small structure without its contacts; `None` if it is not known.
 fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result<Option<f64>> {
     let n = condensed.ndof();
-    if n > SMALL_UP_TO {
+    if n > CUTOFF_HARMONIC_SMALL_UP_TO {
         return Ok(None);
     }
     let mut highest = 0.0_f64;

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 
 /// The next change, relative to the whole, at which the response has settled, and at which it will do where no further
 /// extension is possible.
-const SETTLED: f64 = 0.2;
+const DOUBLING_SETTLED: f64 = 0.2;
 const SUFFICIENT: f64 = 0.6;
 
 /// Largest change, relative to the tolerance, that is harmless after one extension.
@@ -95,7 +95,7 @@ impl Doubling {
 
     /// Whether the response has settled.
     pub fn has_settled(&self) -> bool {
-        self.next() <= SETTLED
+        self.next() <= DOUBLING_SETTLED
     }
 
     /// Whether the whole change is known well enough where no further extension is possible.

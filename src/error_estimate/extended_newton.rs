@@ -8,17 +8,17 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Most Newton steps.
-const MOST_STEPS: usize = 24;
+const EXTENDED_NEWTON_MOST_STEPS: usize = 24;
 
 /// Relative size of a first step that suffices where the extended harmonics are weak.
 const SHORT: f64 = 0.1;
 
 /// Size of a first step, relative to the change, up to which a guess is as good as a point that a step has reached.
-const CLOSE: f64 = 0.3;
+const EXTENDED_NEWTON_CLOSE: f64 = 0.3;
 
 /// Share of the residual of the start above which the next step is not yet the last one, and need not be found exactly, and the
 /// damping factor up to which that is so: a shorter one changes the step too little.
-const FAR: f64 = 0.3;
+const EXTENDED_NEWTON_FAR: f64 = 0.3;
 const LONG: f64 = 0.25;
 
 /// Share of the residual before a step that shows it to be right, whatever the next one is: where a contact grazes, the matrix
@@ -30,7 +30,7 @@ const FALLEN: f64 = 0.25;
 const LEAST_DESCENT: f64 = 0.1;
 
 /// Damping factor below which a step is accepted without the monotonicity test.
-const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
+const EXTENDED_NEWTON_SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
 /// Whether a short first step is returned as δ, the next one being far shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,8 +108,8 @@ pub(super) fn extend<P: Problem>(
     let is_guess = start != point;
     let first = system.residual();
     let mut damping = 1.0_f64;
-    for steps in 1..=MOST_STEPS {
-        interrupt.part(Phase::Estimate, steps - 1, MOST_STEPS)?;
+    for steps in 1..=EXTENDED_NEWTON_MOST_STEPS {
+        interrupt.part(Phase::Estimate, steps - 1, EXTENDED_NEWTON_MOST_STEPS)?;
         let is_rough = steps == 1 && first_step == FirstStep::SufficesRoughly;
         if !system.factor(interrupt)? || !system.step(&mut step, is_rough, interrupt)? {
             return Ok(None);
@@ -128,7 +128,7 @@ pub(super) fn extend<P: Problem>(
         if is_guess && steps == 1 {
             next[..n].copy_from_slice(&step);
             change_from(point, (&z, &next), &mut change);
-            if size <= CLOSE * norm(&change) && enough(&system.problem, &z, &change, &next) {
+            if size <= EXTENDED_NEWTON_CLOSE * norm(&change) && enough(&system.problem, &z, &change, &next) {
                 return Ok(Some(ExtendedSolution {
                     at: z,
                     next,
@@ -144,9 +144,9 @@ pub(super) fn extend<P: Problem>(
             for ((t, z), d) in trial.iter_mut().zip(&z).zip(&step) {
                 *t = z + damping * d;
             }
-            let last = damping <= SMALLEST_DAMPING;
+            let last = damping <= EXTENDED_NEWTON_SMALLEST_DAMPING;
             if system.evaluate(&trial)? {
-                is_rough = damping >= LONG && system.iterates_long() && system.residual() > FAR * first;
+                is_rough = damping >= LONG && system.iterates_long() && system.residual() > EXTENDED_NEWTON_FAR * first;
                 if !system.step(&mut next[..n], is_rough, interrupt)? {
                     return Ok(None);
                 }
@@ -174,7 +174,7 @@ pub(super) fn extend<P: Problem>(
             change_from(point, (&z, &next), &mut change);
             certified = enough(&system.problem, &z, &change, &next);
         }
-        if certified || steps == MOST_STEPS {
+        if certified || steps == EXTENDED_NEWTON_MOST_STEPS {
             return Ok(Some(ExtendedSolution {
                 at: z,
                 next,

@@ -12,14 +12,14 @@ use crate::problem::{Problem, Residual};
 
 /// Residual of steps that are found by iteration over that of the point: a hundredth of the share that decides; and the same
 /// for a point that was extended before, whose further change is a part of the whole.
-const TOLERANCE: f64 = 1e-3;
+const EXTENDED_SYSTEM_TOLERANCE: f64 = 1e-3;
 const OF_EXTENDED: f64 = 1e-2;
 
 /// Largest residual of a step over that of its start.
-const COARSEST: f64 = 0.1;
+const EXTENDED_SYSTEM_COARSEST: f64 = 0.1;
 
 /// Unknowns up to which factoring the whole matrix is faster than iterating with factors of the compliant harmonics.
-const DENSE_UP_TO: usize = 24;
+const EXTENDED_SYSTEM_DENSE_UP_TO: usize = 24;
 
 /// Most products of an iteration.
 const MOST_PRODUCTS: usize = 240;
@@ -127,7 +127,11 @@ impl<P: Problem> ExtendedSystem<P> {
     /// Takes the residual evaluated last for that of the point, by which the following steps are measured: each later one is
     /// smaller, and need not be found to as many digits.
     pub fn measure_by_point(&mut self, extended_before: bool) {
-        let share = if extended_before { OF_EXTENDED } else { TOLERANCE };
+        let share = if extended_before {
+            OF_EXTENDED
+        } else {
+            EXTENDED_SYSTEM_TOLERANCE
+        };
         self.goal = share * self.residual();
     }
 
@@ -141,11 +145,11 @@ impl<P: Problem> ExtendedSystem<P> {
     pub fn step(&mut self, step: &mut [f64], roughly: bool, interrupt: &Interrupt<'_>) -> Result<bool> {
         // Where a step takes few products, digits that are left out save little.
         let tolerance = if !self.iterates_long() {
-            TOLERANCE
+            EXTENDED_SYSTEM_TOLERANCE
         } else if roughly {
-            COARSEST
+            EXTENDED_SYSTEM_COARSEST
         } else {
-            (self.goal / self.residual()).clamp(TOLERANCE, COARSEST)
+            (self.goal / self.residual()).clamp(EXTENDED_SYSTEM_TOLERANCE, EXTENDED_SYSTEM_COARSEST)
         };
         let n = step.len();
         let (packed, pairs) = self.factored_numbers();
@@ -173,7 +177,9 @@ impl<P: Problem> ExtendedSystem<P> {
             .limit_products(((self.work.left() / each) as usize).min(MOST_PRODUCTS));
         self.b[..n].copy_from_slice(b);
         self.b[n] = 0.0;
-        let solved = self.system.solve(&mut self.problem, COARSEST, &mut self.b, interrupt)?;
+        let solved = self
+            .system
+            .solve(&mut self.problem, EXTENDED_SYSTEM_COARSEST, &mut self.b, interrupt)?;
         x.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
@@ -225,7 +231,7 @@ impl<P: PackedHarmonics> ExtendedSystem<P> {
 /// All harmonics in one block for a small problem.
 fn factored_of(problem: &impl PackedHarmonics, factored: Factored) -> Factored {
     let whole = problem.harmonics().numbers().len();
-    if problem.size() <= DENSE_UP_TO {
+    if problem.size() <= EXTENDED_SYSTEM_DENSE_UP_TO {
         Factored {
             block: whole,
             each: whole,
@@ -249,7 +255,7 @@ fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<KrylovSy
 
 #[cfg(test)]
 mod tests {
-    use super::{DENSE_UP_TO, ExtendedSystem, Factored};
+    use super::{EXTENDED_SYSTEM_DENSE_UP_TO, ExtendedSystem, Factored};
     use crate::condense::Condensed;
     use crate::contact::Contact;
     use crate::error_estimate::work::{Sizes, Work};
@@ -290,7 +296,7 @@ mod tests {
         let most = bounded(usize::MAX);
         assert!(most > 63 && [31, 63, most, most + 1].map(bounded) == [31, 63, most, most]);
         let n = condensed.unknowns();
-        assert!(n > DENSE_UP_TO);
+        assert!(n > EXTENDED_SYSTEM_DENSE_UP_TO);
         let few = Factored { block: 4, each: 4 };
         let mut whole = ExtendedSystem::dense(problem(), omega, sizes, work).unwrap();
         let mut part = ExtendedSystem::iterative(problem(), omega, few, (sizes, work)).unwrap();

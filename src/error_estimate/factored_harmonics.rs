@@ -7,12 +7,12 @@ use crate::error_estimate::work::{Sizes, Work};
 const FACTORISATIONS: f64 = 5.0;
 
 /// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
-const BLOCK: f64 = 200.0;
+const FACTORED_HARMONICS_BLOCK: f64 = 200.0;
 
 /// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
 /// each by itself.
 pub(super) fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
-    within(sizes, compliant, BLOCK, work)
+    within(sizes, compliant, FACTORED_HARMONICS_BLOCK, work)
 }
 
 /// All harmonics in one block, if the work allows: where contacts are far stiffer than their reference stiffness, the

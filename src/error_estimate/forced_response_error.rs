@@ -29,10 +29,10 @@ const EVALUATIONS: f64 = 6.0;
 
 /// Flexibility tables by factorisation of a full matrix after which all modes of a structure are expected to pay: they cost about
 /// 24 of them.
-const TABLES: usize = 4;
+const FORCED_RESPONSE_ERROR_TABLES: usize = 4;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
-const SMALL: usize = 32;
+const FORCED_RESPONSE_ERROR_SMALL: usize = 32;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 const SHARED: f64 = 0.5;
@@ -42,7 +42,7 @@ const OF_TABLES: f64 = 1e-3;
 const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 
 /// Extended problems that are kept for the next point.
-const MOST_KEPT: usize = 3;
+const FORCED_RESPONSE_ERROR_MOST_KEPT: usize = 3;
 
 /// Relative error of tables for an estimate whose tolerance is given.
 pub(super) fn tables_within(tolerance: f64) -> f64 {
@@ -336,10 +336,10 @@ impl<'a> ForcedEstimator<'a> {
             .blocks()
             .first()
             .map_or(1, |block| block.reference.values.len());
-        let pay = self.tables > TABLES * (n * n / stored.max(1));
+        let pay = self.tables > FORCED_RESPONSE_ERROR_TABLES * (n * n / stored.max(1));
         match self.waves.some_have_modes() {
             // Few small factorisations cost no more.
-            Some(known) => known && (pay || condensed.ndof() > SMALL),
+            Some(known) => known && (pay || condensed.ndof() > FORCED_RESPONSE_ERROR_SMALL),
             None => pay,
         }
     }
@@ -471,7 +471,7 @@ impl<'a> ForcedEstimator<'a> {
             found = run(&mut system, &mut self.changes);
             left = system.work();
         }
-        if self.extended.len() == MOST_KEPT {
+        if self.extended.len() == FORCED_RESPONSE_ERROR_MOST_KEPT {
             self.extended.remove(0);
         }
         try_push(&mut self.extended, (slot, system), CONTEXT)?;

@@ -10,10 +10,10 @@ use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 
 /// Ratios of the sizes of two motions within which one serves for the other.
-const ALIKE: (f64, f64) = (0.5, 2.0);
+const KEPT_CHANGES_ALIKE: (f64, f64) = (0.5, 2.0);
 
 /// Most changes that are kept.
-const MOST: usize = 6;
+const KEPT_CHANGES_MOST: usize = 6;
 
 /// From what to what a motion was extended: its highest harmonic, and the slot of the extended model.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl KeptChanges {
         }
         let turn = product / square;
         let size = turn.norm();
-        if !(ALIKE.0..=ALIKE.1).contains(&size) {
+        if !(KEPT_CHANGES_ALIKE.0..=KEPT_CHANGES_ALIKE.1).contains(&size) {
             return Ok(None);
         }
         let mut guess = try_copy(motion, CONTEXT)?;
@@ -90,7 +90,7 @@ impl KeptChanges {
         for ((kept, to), from) in known.moved.iter_mut().zip(to).zip(from) {
             *kept = to - from;
         }
-        if self.changes.len() == MOST {
+        if self.changes.len() == KEPT_CHANGES_MOST {
             self.changes.remove(0);
         }
         try_push(&mut self.changes, known, CONTEXT)

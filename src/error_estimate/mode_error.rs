@@ -27,14 +27,14 @@ use std::sync::Arc;
 const EVALUATIONS: f64 = 6.0;
 
 /// Extended problems that are kept for the next point.
-const MOST_KEPT: usize = 3;
+const MODE_ERROR_MOST_KEPT: usize = 3;
 
 /// Change of frequency or damping ratio, relative to the tolerance, that does not matter.
 const NEGLIGIBLE_CHANGE: f64 = 0.1;
 
 /// Relative error of the damping ratio below which its last change need not be small against its whole change: along
 /// a backbone the latter passes through zero.
-const NEGLIGIBLE: f64 = 1e-3;
+const MODE_ERROR_NEGLIGIBLE: f64 = 1e-3;
 
 /// Damping ratio below which a mode has none but round-off, so that errors are not relative to it.
 pub const NO_DAMPING: f64 = 1e-8;
@@ -286,7 +286,7 @@ impl<'a> ModeEstimator<'a> {
             found = self.extended_with(&mut system, condensed, (solved, from), state, stage);
             left = system.work();
         }
-        while self.extended.len() >= MOST_KEPT
+        while self.extended.len() >= MODE_ERROR_MOST_KEPT
             || (!self.extended.is_empty()
                 && !left.fits(system.bytes() + self.extended.iter().map(|k| k.1.bytes()).sum::<f64>()))
         {
@@ -340,10 +340,10 @@ impl<'a> ModeEstimator<'a> {
                 let (moved, last) = (of_frequency(&change[..n]), of_frequency(&next[..n]));
                 return (last <= SHARE * moved || last <= most.max(ROUNDING))
                     && (left <= SHARE * changed
-                        || left <= (most * state.damping_unit).max(SHARE * NEGLIGIBLE * NO_DAMPING));
+                        || left <= (most * state.damping_unit).max(SHARE * MODE_ERROR_NEGLIGIBLE * NO_DAMPING));
             }
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
-                && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs().max(NO_DAMPING))
+                && (left <= SHARE * changed || left <= SHARE * MODE_ERROR_NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
         let Some(extended) = extend(system, (&start, &start), enough, FirstStep::Checked, self.interrupt)? else {
             return Ok(None);

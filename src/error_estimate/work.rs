@@ -22,13 +22,13 @@ pub(super) const OF_A_POINT: (usize, usize) = (32, 16);
 const EXTENSION: f64 = 12.0;
 
 /// Work of an estimate as a multiple of that of such a point.
-const MULTIPLE: f64 = 8.0;
+const WORK_MULTIPLE: f64 = 8.0;
 
 /// Operations that every estimate may take: about as many as the set-up of a small model.
-const LEAST: f64 = 6e6;
+const WORK_LEAST: f64 = 6e6;
 
 /// Share of the work that is small.
-const SMALL: f64 = 0.25;
+const WORK_SMALL: f64 = 0.25;
 
 /// Bytes that every estimate may take, and as a multiple of those of the point.
 const BYTES: (f64, f64) = (100e6, 4.0);
@@ -37,10 +37,10 @@ const BYTES: (f64, f64) = (100e6, 4.0);
 const OF_A_SAMPLE: f64 = 300.0;
 
 /// Tables of the flexibility, per harmonic, whose time the preparation and the solution of such a point take.
-const TABLES: f64 = 6.0;
+const WORK_TABLES: f64 = 6.0;
 
 /// Unknowns of a structure that one of them couples with in the factors.
-const WIDTH: f64 = 300.0;
+const WORK_WIDTH: f64 = 300.0;
 
 /// Operations of a law for each direction, for each number of its motion, and for each number of its Jacobian.
 const OF_LAW: (f64, f64, f64) = (8e3, 3e2, 12.0);
@@ -99,7 +99,7 @@ impl Sizes {
             tables = tables.max(d * count);
         }
         let (ndof, coordinates) = (condensed.ndof() as f64, condensed.coordinates() as f64);
-        let width = ndof.min(WIDTH);
+        let width = ndof.min(WORK_WIDTH);
         Self {
             coordinates,
             harmonics: (pairs + mean) as f64,
@@ -176,7 +176,7 @@ impl Sizes {
     /// Whether several Newton iterations with the whole matrix cost no more than any estimate may, or a small part of
     /// the work.
     pub fn is_cheap(&self, work: &Work) -> bool {
-        EXTENSION * self.iteration() <= LEAST.max(SMALL * work.operations)
+        EXTENSION * self.iteration() <= WORK_LEAST.max(WORK_SMALL * work.operations)
     }
 
     /// Bytes of the contact Jacobians, with their copies, of the tables of samples, and of the factors.
@@ -230,7 +230,8 @@ impl Work {
     pub fn of_point(point: &Sizes, iterations: usize, limit: usize) -> Self {
         let limit = if limit == 0 { f64::INFINITY } else { limit as f64 };
         Self {
-            operations: LEAST + MULTIPLE * (iterations as f64 * point.iteration() + TABLES * point.flexibility()),
+            operations: WORK_LEAST
+                + WORK_MULTIPLE * (iterations as f64 * point.iteration() + WORK_TABLES * point.flexibility()),
             bytes: (BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0)).min(limit),
         }
     }

@@ -6,10 +6,10 @@
 
 /// Factors of M w⁴ and M w³.
 const OF_VALUES: f64 = 1.0 / 384.0;
-const OF_SLOPES: f64 = 0.008_018_753_738_744_8;
+const CUBIC_CELL_OF_SLOPES: f64 = 0.008_018_753_738_744_8;
 
 /// Steps of Newton's method towards the root of the cubic: a guess.
-const STEPS: usize = 2;
+const CUBIC_CELL_STEPS: usize = 2;
 
 /// The cubic by the ordinates of its control points, between which it lies (Bernstein).
 pub(super) struct CubicCell {
@@ -43,7 +43,7 @@ impl CubicCell {
     pub fn is_monotone(&self, fourth: f64, noise: f64) -> bool {
         let [a, b, c, d] = self.control;
         let square = self.width * self.width;
-        let rest = OF_SLOPES / 3.0 * fourth * square * square + 2.0 * noise;
+        let rest = CUBIC_CELL_OF_SLOPES / 3.0 * fourth * square * square + 2.0 * noise;
         let rises = [b - a, c - b, d - c];
         rises.iter().all(|rise| *rise > rest) || rises.iter().all(|rise| *rise < -rest)
     }
@@ -54,7 +54,7 @@ impl CubicCell {
         // The cubic in powers of the share.
         let (first, second, third) = (3.0 * (b - a), 3.0 * (c - 2.0 * b + a), d - a + 3.0 * (b - c));
         let mut s = a / (a - d);
-        for _ in 0..STEPS {
+        for _ in 0..CUBIC_CELL_STEPS {
             let value = a + s * (first + s * (second + s * third));
             let slope = first + s * (2.0 * second + s * 3.0 * third);
             s -= value / slope;

@@ -95,10 +95,10 @@ impl<'a> Approach<'a> {
 
 /// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
 /// cube of the step.
-const LAST_STEP: f64 = 3e-6;
+const SERIES_LAST_STEP: f64 = 3e-6;
 
 fn last_step(set: &HarmonicSet) -> f64 {
-    LAST_STEP / set.highest_reduced().max(1) as f64
+    SERIES_LAST_STEP / set.highest_reduced().max(1) as f64
 }
 
 /// Values of a series that a crossing takes, about.

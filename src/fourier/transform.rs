@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Products (samples times harmonics) up to which a table is quicker than a transform, as measured.
-const TABLE_LIMIT: usize = 1 << 12;
+const TRANSFORM_TABLE_LIMIT: usize = 1 << 12;
 
 /// Relation of the second half of a turn to the first, where only the first is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Transform {
         // Half a turn determines every other harmonic only.
         let part = if half { 4 } else { 1 };
         let products = turn.saturating_mul(2 * set.highest_reduced() + 1) / part;
-        if products <= TABLE_LIMIT {
+        if products <= TRANSFORM_TABLE_LIMIT {
             Self::with_table(set, turn, half)
         } else {
             Self::fast(smooth_number(turn), half)

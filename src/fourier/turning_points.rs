@@ -24,10 +24,10 @@ pub struct Extremum {
 const VALUES_OF_A_ROOT: usize = 8;
 
 /// Grid points per period of the highest harmonic.
-const POINTS_PER_WAVE: usize = 8;
+const TURNING_POINTS_POINTS_PER_WAVE: usize = 8;
 
 /// Highest reduced harmonic up to which a table of sines is quicker than a transform.
-const TABLE_LIMIT: usize = 40;
+const TURNING_POINTS_TABLE_LIMIT: usize = 40;
 
 /// Finds every turning point of motions with one harmonic set: x′ and x″ on a grid, then roots of x′ in its cells, where it is
 /// nearly a cubic.
@@ -62,10 +62,10 @@ impl TurningPoints {
     pub fn new(set: &HarmonicSet) -> Result<Self> {
         let highest = set.highest_reduced().max(1);
         // A multiple of 4, so that half a turn is a whole number of cells.
-        let whole = (POINTS_PER_WAVE * highest).max(16).next_multiple_of(4);
+        let whole = (TURNING_POINTS_POINTS_PER_WAVE * highest).max(16).next_multiple_of(4);
         let points = if set.is_odd() { whole / 2 } else { whole };
         let spacing = TAU / whole as f64;
-        let kind = if highest <= TABLE_LIMIT {
+        let kind = if highest <= TURNING_POINTS_TABLE_LIMIT {
             let sines = Sines::new(whole);
             let mut table = try_vec(2 * set.oscillating() * points, 0.0, "a table of sines")?;
             for (k, rows) in table.chunks_exact_mut(2 * points).enumerate() {
@@ -156,13 +156,13 @@ impl TurningPoints {
         let (mut j, mut next_block) = (1, 1);
         while j <= n {
             if j >= next_block {
-                next_block = j + BLOCK;
+                next_block = j + TURNING_POINTS_BLOCK;
                 if next_block <= n
-                    && let Some(block) = self.slope[j..].first_chunk::<BLOCK>()
+                    && let Some(block) = self.slope[j..].first_chunk::<TURNING_POINTS_BLOCK>()
                     && is_far(left.value, block, far)
                 {
                     j = next_block;
-                    (left.tau, left.value) = ((j - 1) as f64 * self.spacing, block[BLOCK - 1]);
+                    (left.tau, left.value) = ((j - 1) as f64 * self.spacing, block[TURNING_POINTS_BLOCK - 1]);
                     left.turning = self.turning[j - 1];
                     continue;
                 }
@@ -236,11 +236,11 @@ impl TurningPoints {
 }
 
 /// Cells that are judged together.
-const BLOCK: usize = 4;
+const TURNING_POINTS_BLOCK: usize = 4;
 
 /// Whether a value and all that follow are farther from zero than `far`, on the same side.
 #[inline]
-fn is_far(first: f64, block: &[f64; BLOCK], far: f64) -> bool {
+fn is_far(first: f64, block: &[f64; TURNING_POINTS_BLOCK], far: f64) -> bool {
     let (mut low, mut high) = (first, first);
     for &value in block {
         low = if value < low { value } else { low };
@@ -252,15 +252,15 @@ fn is_far(first: f64, block: &[f64; BLOCK], far: f64) -> bool {
 /// Sines of the angles that divide a turn into equal parts, a multiple of 4.
 struct Sines {
     /// Those of the first quarter of the turn, and its parts.
-    first: [f64; 2 * TABLE_LIMIT + 1],
+    first: [f64; 2 * TURNING_POINTS_TABLE_LIMIT + 1],
     quarter: usize,
 }
 
 impl Sines {
-    /// For at most 8 `TABLE_LIMIT` parts.
+    /// For at most 8 `TURNING_POINTS_TABLE_LIMIT` parts.
     fn new(parts: usize) -> Self {
         let quarter = parts / 4;
-        let mut first = [0.0; 2 * TABLE_LIMIT + 1];
+        let mut first = [0.0; 2 * TURNING_POINTS_TABLE_LIMIT + 1];
         for (k, sine) in first[..=quarter].iter_mut().enumerate() {
             *sine = (TAU * k as f64 / parts as f64).sin();
         }

@@ -157,6 +157,7 @@ impl<T: Entry> BlockKrylov<T> {
 
     /// y = A x for columns of n numbers.
     fn weigh(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        /// Columns of one pass over the matrix.
         const AT_ONCE: usize = 4;
         self.stiffness.multiply(x, y, interrupt)?;
         let mut of_mass = try_vec(AT_ONCE * self.n, T::NONE, CONTEXT)?;

@@ -3,7 +3,10 @@
 //! Small matrices use plain loops, which the compiler vectorises and which need no set-up; larger ones use the
 //! blocked kernels of faer, and large ones panels between which a caller may interrupt.
 
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
 mod panels;
+mod small;
 mod substitution;
 
 use crate::error::{Error, Result, fail, try_vec};
@@ -15,12 +18,21 @@ use faer::{Conj, MatMut, MatRef, Par};
 use nalgebra::ComplexField;
 use num_complex::Complex64;
 use pulp::Arch;
+use pulp::bytemuck::{cast_slice, cast_slice_mut};
+use small::{Columns, Factorisation};
 use substitution::Substitution;
 
 /// Scalars of the matrices: `f64` and [`Complex64`].
 pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + Copy {
     /// |re| + |im|: as good as the modulus for choosing a pivot, and cheaper.
     fn size(self) -> f64;
+
+    /// i times the number; for a real one, which needs none, itself.
+    #[must_use]
+    fn turned(self) -> Self;
+
+    /// y ← y − x l, with `turned`, i x: products of real numbers as they lie in memory, with the digits of complex ones.
+    fn subtract(y: &mut [Self], x: &[Self], turned: &[Self], l: Self);
 }
 
 impl Scalar for f64 {
@@ -28,12 +40,37 @@ impl Scalar for f64 {
     fn size(self) -> f64 {
         self.abs()
     }
+
+    #[inline(always)]
+    fn turned(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn subtract(y: &mut [Self], x: &[Self], _turned: &[Self], l: Self) {
+        for (y, x) in y.iter_mut().zip(x) {
+            *y -= x * l;
+        }
+    }
 }
 
 impl Scalar for Complex64 {
     #[inline]
     fn size(self) -> f64 {
         self.re.abs() + self.im.abs()
+    }
+
+    #[inline(always)]
+    fn turned(self) -> Self {
+        Self::new(-self.im, self.re)
+    }
+
+    #[inline(always)]
+    fn subtract(y: &mut [Self], x: &[Self], turned: &[Self], l: Self) {
+        let (y, x): (&mut [f64], &[f64]) = (cast_slice_mut(y), cast_slice(x));
+        for ((y, x), turned) in y.iter_mut().zip(x).zip(cast_slice::<_, f64>(turned)) {
+            *y -= x * l.re + turned * l.im;
+        }
     }
 }
 
@@ -45,6 +82,9 @@ const PANELS_ABOVE: usize = 384;
 
 /// Numbers of right-hand sides times unknowns squared between two checks of the interrupt in a solution.
 const BETWEEN_CHECKS: usize = 1 << 23;
+
+/// Right sides from which small factors solve for all rows at once.
+const COLUMNS_AT_ONCE: usize = 4;
 
 const CONTEXT: &str = "an LU factorisation";
 
@@ -65,6 +105,8 @@ pub struct Lu<T> {
     a: Vec<T>,
     pivots: Vec<usize>,
     blocked: Option<Blocked>,
+    /// Memory of small matrices: a column, and all right sides with one row more.
+    small: Vec<T>,
 }
 
 impl<T: Scalar> Lu<T> {
@@ -78,6 +120,12 @@ impl<T: Scalar> Lu<T> {
             return fail!(OutOfMemory, "a dense factorisation of {n} unknowns cannot be stored");
         };
         let in_panels = if n > PANELS_ABOVE { n } else { 0 };
+        // A lower order may be set later.
+        let small = if n <= BLOCKED_ABOVE && columns >= COLUMNS_AT_ONCE {
+            (n + 1) * columns
+        } else {
+            n.min(BLOCKED_ABOVE)
+        };
         let blocked = if n > BLOCKED_ABOVE {
             let need = factor::lu_in_place_scratch::<usize, T>(n, n, Par::Seq, faer::Spec::default())
                 .or(solve::solve_in_place_scratch::<usize, T>(n, columns, Par::Seq))
@@ -102,6 +150,7 @@ impl<T: Scalar> Lu<T> {
             a: try_vec(nn, <T as nalgebra::ComplexField>::from_real(0.0), CONTEXT)?,
             pivots: try_vec(n, 0, CONTEXT)?,
             blocked,
+            small: try_vec(small, <T as nalgebra::ComplexField>::from_real(0.0), CONTEXT)?,
         })
     }
 
@@ -130,42 +179,14 @@ impl<T: Scalar> Lu<T> {
         if n > BLOCKED_ABOVE {
             return self.factor_blocked(interrupt);
         }
-        for k in 0..n {
-            let (left, right) = self.a.split_at_mut((k + 1) * n);
-            let column = &mut left[k * n..];
-            let mut pivot = k;
-            for i in k + 1..n {
-                if column[i].size() > column[pivot].size() {
-                    pivot = i;
-                }
-            }
-            let size = column[pivot].size();
-            if size == 0.0 || !size.is_finite() {
-                return singular(n, k, size);
-            }
-            self.pivots[k] = pivot;
-            let inverse = <T as nalgebra::ComplexField>::from_real(1.0) / column[pivot];
-            column.swap(k, pivot);
-            for c in &mut column[k + 1..] {
-                *c *= inverse;
-            }
-            let l = &column[k + 1..];
-            for column in right.chunks_exact_mut(n) {
-                column.swap(k, pivot);
-                let factor = column[k];
-                if factor.size() != 0.0 {
-                    for (c, &l) in column[k + 1..].iter_mut().zip(l) {
-                        *c -= factor * l;
-                    }
-                }
-            }
-            if pivot != k {
-                for column in left[..k * n].chunks_exact_mut(n) {
-                    column.swap(k, pivot);
-                }
-            }
-        }
-        Ok(())
+        let factorisation = Factorisation {
+            n,
+            a: &mut self.a[..n * n],
+            pivots: &mut self.pivots,
+            turned: &mut self.small,
+        };
+        let done = self.arch.dispatch(factorisation);
+        done.or_else(|(pivot, size)| singular(n, pivot, size))
     }
 
     fn factor_blocked(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
@@ -251,6 +272,17 @@ impl<T: Scalar> Lu<T> {
     pub fn solve_columns(&mut self, b: &mut [T], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let Some(blocked) = self.blocked.as_mut().filter(|_| n > BLOCKED_ABOVE) else {
+            let (columns, most) = (b.len() / n.max(1), self.small.len() / (n + 1));
+            if !transposed && columns >= COLUMNS_AT_ONCE && columns <= most && n > 1 {
+                self.arch.dispatch(Columns {
+                    n,
+                    factors: &self.a,
+                    pivots: &self.pivots,
+                    b,
+                    memory: &mut self.small,
+                });
+                return Ok(());
+            }
             for column in b.chunks_exact_mut(n.max(1)) {
                 if transposed {
                     self.solve_transposed(column);
@@ -347,6 +379,29 @@ mod tests {
             for i in 0..n {
                 for found in [b[i], bt[i], both[i], both[n + i], both_t[i], both_t[n + i]] {
                     assert!((found - x[i]).abs() < 1e-11, "n = {n}: {:e}", found - x[i]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn many_right_sides_of_small_factors_have_the_digits_of_single_ones() {
+        let entry = |k: usize| Complex64::new(((k * k + 3 * k + 2) as f64 * 0.37).sin(), (1.3 * k as f64).cos());
+        for (n, columns) in [(2, 4), (24, 25), (31, 7)] {
+            let mut lu = Lu::<Complex64>::new(n, columns).unwrap();
+            for (k, a) in lu.matrix().iter_mut().enumerate() {
+                *a = entry(k);
+            }
+            lu.factor(&Interrupt::none()).unwrap();
+            let b: Vec<Complex64> = (0..n * columns).map(|k| entry(k + 7)).collect();
+            let (mut at_once, mut alone) = (b.clone(), b.clone());
+            lu.solve_columns(&mut at_once, false, &Interrupt::none()).unwrap();
+            alone.chunks_exact_mut(n).for_each(|column| lu.solve(column));
+            assert_eq!(at_once, alone, "{n}");
+            for (x, b) in at_once.chunks_exact(n).zip(b.chunks_exact(n)) {
+                for i in 0..n {
+                    let sum: Complex64 = (0..n).map(|j| entry(j * n + i) * x[j]).sum();
+                    assert!((sum - b[i]).norm() < 1e-11, "{n}");
                 }
             }
         }

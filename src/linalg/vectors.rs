@@ -74,6 +74,7 @@ pub const COPIED_UP_TO: usize = 16 * 16 * 16;
 /// # Errors
 /// `OutOfMemory` for the matrices.
 pub fn first_product() -> Result<()> {
+    /// Order of the matrices, above which products keep memory.
     const ORDER: usize = 40;
     let mut out = try_vec(ORDER * ORDER, 0.0_f64, "a product")?;
     let one = try_vec(ORDER * ORDER, 1.0_f64, "a product")?;

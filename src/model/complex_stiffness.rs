@@ -11,7 +11,7 @@ use num_complex::Complex64;
 use std::borrow::Cow;
 
 /// Deviation from a symmetry, relative to the largest entry, that is rounding.
-const ROUNDING: f64 = 1e-10;
+const COMPLEX_STIFFNESS_ROUNDING: f64 = 1e-10;
 
 /// Factors c of (A + Bᴴ)/2 and (A − Bᴴ)/2i as cA + (cB)ᴴ.
 const HERMITIAN_PART: Complex64 = Complex64::new(0.5, 0.0);
@@ -27,7 +27,7 @@ impl Structure {
         if self.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
             return false;
         }
-        let has = |a: &KeptMatrix, symmetry| a.worst_pair(symmetry).2 <= ROUNDING * a.max_abs();
+        let has = |a: &KeptMatrix, symmetry| a.worst_pair(symmetry).2 <= COMPLEX_STIFFNESS_ROUNDING * a.max_abs();
         if !blocks.diameters.is_empty() {
             let given = blocks.diameters.iter().enumerate();
             let mut lossy = given
@@ -45,7 +45,7 @@ impl Structure {
         }
         let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
             (Some(next), Some(previous)) => {
-                let limit = ROUNDING * next.max_abs().max(previous.max_abs());
+                let limit = COMPLEX_STIFFNESS_ROUNDING * next.max_abs().max(previous.max_abs());
                 let near = |a: &KeptMatrix, b: &KeptMatrix| {
                     let entries = (0..a.order()).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
                     entries
@@ -151,7 +151,7 @@ fn combined<A: Columns>(a: &A, mirror: &A, factor: Complex64) -> Result<Csc> {
 
 /// Whether two matrices are the transposes of each other.
 fn are_transposed(a: &KeptMatrix, b: &KeptMatrix) -> bool {
-    let limit = ROUNDING * a.max_abs().max(b.max_abs());
+    let limit = COMPLEX_STIFFNESS_ROUNDING * a.max_abs().max(b.max_abs());
     let is_mirror = |a: &KeptMatrix, b: &KeptMatrix| {
         let mut columns = 0..a.order();
         columns.all(|j| a.column(j).all(|(i, v)| (v - b.get(j, i)).norm() <= limit))

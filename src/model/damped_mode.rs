@@ -32,17 +32,17 @@ pub struct DampedMode {
 
 /// Relative distance of the shift from the frequency. Each step gains the digits of this distance; with a shift at
 /// the frequency itself the factors would be singular.
-const OFFSET: f64 = 1e-8;
+const DAMPED_MODE_OFFSET: f64 = 1e-8;
 
 /// The same for repeated frequencies. A closer shift would mix modes that differ by rounding only, and lose the
 /// mixture of the initial mode.
 const OFFSET_REPEATED: f64 = 1e-5;
 
 /// Largest number of steps.
-const MAX_STEPS: usize = 30;
+const DAMPED_MODE_MAX_STEPS: usize = 30;
 
 /// Largest residual by rounding, relative to its terms.
-const ROUNDING: f64 = 1e-12;
+const DAMPED_MODE_ROUNDING: f64 = 1e-12;
 
 /// The same, relative to the inertia, for a mixture of modes whose frequencies are nearly equal.
 const NEARLY_EQUAL: f64 = 3e-8;
@@ -137,7 +137,7 @@ impl Model {
                 return Ok(mode);
             }
         }
-        let mode = problem.follow(&undamped, OFFSET, interrupt)?;
+        let mode = problem.follow(&undamped, DAMPED_MODE_OFFSET, interrupt)?;
         if problem.residual(&mode, false)? {
             return Ok(mode);
         }
@@ -234,7 +234,7 @@ impl Damped {
         let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
         let mut factor = Factor::new(&self.matrix(mode.omega, 0.0)?, 3)?;
         let mut last = f64::INFINITY;
-        for _ in 0..MAX_STEPS {
+        for _ in 0..DAMPED_MODE_MAX_STEPS {
             interrupt.check()?;
             factor.factor(&self.matrix(mode.omega * (1.0 + offset), mode.damping)?, interrupt)?;
             let mut z = self.columns(&mode)?;
@@ -295,7 +295,7 @@ impl Damped {
         self.mass
             .multiply_add((mode.omega * mode.omega).into(), &mode.shape, &mut inertia);
         let largest = |z: &[Complex64]| z.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
-        let mut allowed = ROUNDING * sizes.iter().fold(0.0_f64, |m, &s| m.max(s));
+        let mut allowed = DAMPED_MODE_ROUNDING * sizes.iter().fold(0.0_f64, |m, &s| m.max(s));
         if repeated {
             allowed = allowed.max(NEARLY_EQUAL * largest(&inertia));
         }

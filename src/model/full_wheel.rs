@@ -14,10 +14,10 @@ use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
-const ROUNDING: f64 = 1e-14;
+const FULL_WHEEL_ROUNDING: f64 = 1e-14;
 
 /// Operations, about, that an entry takes until it is placed and sorted.
-const OF_ONE_ENTRY: u64 = 20;
+const FULL_WHEEL_OF_ONE_ENTRY: u64 = 20;
 
 impl Structure {
     /// Number of sectors after which the wave repeats, in space: N / gcd(EO, N). 1 for a plain
@@ -122,7 +122,7 @@ impl Structure {
         let mut entries = Vec::new();
         let mut place = |a: &KeptMatrix, offset: usize, transposed: bool| -> Result<()> {
             for s in 0..sectors {
-                interrupt.check_before(OF_ONE_ENTRY * a.stored() as u64)?;
+                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.stored() as u64)?;
                 let (row, column) = (s * ndof, (s + offset) % sectors * ndof);
                 for j in 0..a.order() {
                     for (i, v) in a.column(j) {
@@ -167,17 +167,17 @@ impl Structure {
         for offset in 0..sectors {
             let mut terms = Vec::new();
             for (d, a) in waves.iter().enumerate() {
-                interrupt.check_before(OF_ONE_ENTRY * a.values.len() as u64)?;
+                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.values.len() as u64)?;
                 let turn = self.wave_phase((d * divisor) as i64, -(offset as i64));
                 try_push(&mut terms, (share * turn, a, Form::Plain), "the matrices of the wheel")?;
             }
             let block = Csc::sum(ndof, &terms)?;
             for j in 0..ndof {
                 for (i, mut v) in block.column(j) {
-                    if v.im.abs() <= ROUNDING * largest {
+                    if v.im.abs() <= FULL_WHEEL_ROUNDING * largest {
                         v.im = 0.0;
                     }
-                    if v.norm() <= ROUNDING * largest {
+                    if v.norm() <= FULL_WHEEL_ROUNDING * largest {
                         continue;
                     }
                     interrupt.check_before(sectors as u64)?;

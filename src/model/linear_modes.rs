@@ -44,7 +44,7 @@ pub struct LinearModes {
 
 /// Degrees of freedom up to which all modes are found by dense algebra. Its rounding is relative to the highest
 /// frequency, which on finer meshes is too inaccurate for the lowest frequencies.
-const DENSE_UP_TO: usize = 100;
+const LINEAR_MODES_DENSE_UP_TO: usize = 100;
 
 /// Rigid-body modes of a body in space.
 const RIGID_MODES: usize = 6;
@@ -53,10 +53,10 @@ const RIGID_MODES: usize = 6;
 const RIGID: f64 = 1e-10;
 
 /// 1/ω² relative to the largest, below which a motion has no inertia.
-const MASSLESS: f64 = 1e-13;
+const LINEAR_MODES_MASSLESS: f64 = 1e-13;
 
 /// Real part of an eigenvalue, relative to its modulus, beyond which an undamped motion grows.
-const GROWS: f64 = 1e-6;
+const LINEAR_MODES_GROWS: f64 = 1e-6;
 
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
@@ -281,7 +281,7 @@ impl Pencil {
     /// Whether a request for `count` modes is answered by dense algebra, which finds all.
     pub fn finds_all(&self, count: usize) -> bool {
         let n = self.mass.rows;
-        n <= DENSE_UP_TO || count > n / 4
+        n <= LINEAR_MODES_DENSE_UP_TO || count > n / 4
     }
 
     /// The `count` lowest modes, fewer if there are not so many.
@@ -390,7 +390,7 @@ impl Pencil {
         };
         let largest = pairs.values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         for (value, shape) in pairs.values.iter().zip(pairs.vectors.column_iter()).rev() {
-            if *value <= MASSLESS * largest {
+            if *value <= LINEAR_MODES_MASSLESS * largest {
                 continue;
             }
             let norm = quadratic(weight, shape.as_slice()).sqrt();
@@ -414,7 +414,13 @@ impl Pencil {
             shapes: Vec::new(),
         };
         let mut found = problem.lowest(count, interrupt)?;
-        let signed = |z: &Complex64| if z.re > GROWS * z.norm() { -z.re } else { z.im };
+        let signed = |z: &Complex64| {
+            if z.re > LINEAR_MODES_GROWS * z.norm() {
+                -z.re
+            } else {
+                z.im
+            }
+        };
         found.sort_by(|a, b| signed(&a.0).total_cmp(&signed(&b.0)));
         for (eigenvalue, shape) in found {
             try_push(&mut modes.omega, signed(&eigenvalue), CONTEXT)?;

@@ -12,10 +12,10 @@ use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the matrix, which has no zero entries, is affordable.
-const MOST: usize = 2000;
+const MODAL_DAMPING_MOST: usize = 2000;
 
 /// Entries of the matrix below this share of the largest are rounding.
-const ROUNDING: f64 = 1e-16;
+const MODAL_DAMPING_ROUNDING: f64 = 1e-16;
 
 const CONTEXT: &str = "the modal damping";
 
@@ -50,10 +50,10 @@ impl Model {
         let mut matrices = Vec::new();
         if !ratios.is_empty() {
             let n = self.structure().ndof();
-            if n > MOST {
+            if n > MODAL_DAMPING_MOST {
                 return fail!(
                     Unsupported,
-                    "modal damping of {n} degrees of freedom: its matrix is full, and needs at most {MOST}; use \
+                    "modal damping of {n} degrees of freedom: its matrix is full, and needs at most {MODAL_DAMPING_MOST}; use \
                      Rayleigh damping, a loss factor or a reduced model"
                 );
             }
@@ -124,7 +124,7 @@ impl Model {
                 v.im = 0.0;
             }
         }
-        entries.retain(|(.., v)| v.norm() > ROUNDING * largest);
+        entries.retain(|(.., v)| v.norm() > MODAL_DAMPING_ROUNDING * largest);
         KeptMatrix::new(Csc::from_triplets(n, n, entries)?)
     }
 }

@@ -36,7 +36,7 @@ pub struct SelectedMode {
 }
 
 /// Frequencies that differ by no more than this, relative, count as equal.
-const EQUAL: f64 = 1e-8;
+const MODE_SELECTION_EQUAL: f64 = 1e-8;
 
 /// Number of modes of a large structure with which a given shape is compared.
 const COMPARED: usize = 40;
@@ -201,7 +201,7 @@ impl<'a> KnownModes<'a> {
     /// The modes with the frequency of mode `k`.
     fn cluster(&self, k: usize) -> Range<usize> {
         let omega = &self.modes.omega;
-        let equal = |i: usize| omega[i + 1] - omega[i] <= EQUAL * omega[i + 1];
+        let equal = |i: usize| omega[i + 1] - omega[i] <= MODE_SELECTION_EQUAL * omega[i + 1];
         let (mut start, mut end) = (k, k + 1);
         while start > 0 && equal(start - 1) {
             start -= 1;

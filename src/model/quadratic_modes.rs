@@ -18,28 +18,28 @@ use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the projection is complete.
-const DENSE_UP_TO: usize = 100;
+const QUADRATIC_MODES_DENSE_UP_TO: usize = 100;
 
 /// Modes of the projection beyond twice the number that is requested.
 const SPARE: usize = 12;
 
 /// Most modes of the projection of a large structure.
-const MOST: usize = 200;
+const QUADRATIC_MODES_MOST: usize = 200;
 
 /// Iterations of Schur's form for each eigenvalue.
-const ITERATIONS: usize = 200;
+const QUADRATIC_MODES_ITERATIONS: usize = 200;
 
 /// Imaginary part over the modulus below which an eigenvalue is no vibration.
 const REAL: f64 = 1e-9;
 
 /// Relative distance of the shift from an eigenvalue in its correction.
-const OFFSET: f64 = 1e-7;
+const QUADRATIC_MODES_OFFSET: f64 = 1e-7;
 
 /// Largest number of corrections of an eigenvalue.
-const CORRECTIONS: usize = 20;
+const QUADRATIC_MODES_CORRECTIONS: usize = 20;
 
 /// Square matrices of the order 2r that Schur's form holds at a time.
-const COPIES: usize = 6;
+const QUADRATIC_MODES_COPIES: usize = 6;
 
 const CONTEXT: &str = "the damped modes";
 
@@ -79,13 +79,13 @@ impl Quadratic<'_> {
             return Ok(pairs);
         }
         let n = self.mass.rows;
-        let complete = n <= DENSE_UP_TO;
+        let complete = n <= QUADRATIC_MODES_DENSE_UP_TO;
         let basis = self.basis(
             &hermitian,
             if complete {
                 n
             } else {
-                (2 * count + SPARE).min(MOST).min(n)
+                (2 * count + SPARE).min(QUADRATIC_MODES_MOST).min(n)
             },
             interrupt,
         )?;
@@ -126,14 +126,14 @@ impl Quadratic<'_> {
         if count < n && count <= n / 2 {
             return Ok(lanczos::lowest(hermitian, self.mass, count, interrupt)?.vectors);
         }
-        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * COPIES), CONTEXT)?;
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * QUADRATIC_MODES_COPIES), CONTEXT)?;
         Ok(eigen::generalised(&dense(hermitian), &dense(self.mass), interrupt)?.vectors)
     }
 
     /// Eigenvalues and shapes of the projection on the columns of `basis`, which are orthonormal in M.
     fn projected(&self, basis: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
         let (n, r) = (basis.nrows(), basis.ncols());
-        check_memory::<Complex64>((4 * r * r).saturating_mul(COPIES), CONTEXT)?;
+        check_memory::<Complex64>((4 * r * r).saturating_mul(QUADRATIC_MODES_COPIES), CONTEXT)?;
         let project = |a: &Csc| -> Result<DMatrix<Complex64>> {
             let mut moved = DMatrix::zeros(n, r);
             for (from, mut to) in basis.column_iter().zip(moved.column_iter_mut()) {
@@ -156,7 +156,7 @@ impl Quadratic<'_> {
         companion
             .view_mut((r, r), (r, r))
             .copy_from(&(c * Complex64::from(-1.0 / unit)));
-        let Some(schur) = Schur::try_new(companion, f64::EPSILON, ITERATIONS * 2 * r) else {
+        let Some(schur) = Schur::try_new(companion, f64::EPSILON, QUADRATIC_MODES_ITERATIONS * 2 * r) else {
             return fail!(NoConvergence, "the eigenvalues of the damped structure were not found");
         };
         let (q, t) = schur.unpack();
@@ -239,9 +239,9 @@ impl Quadratic<'_> {
         let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
         let mut factor = Factor::new(&self.matrix(eigenvalue)?, 2)?;
         let mut last = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..QUADRATIC_MODES_CORRECTIONS {
             interrupt.check()?;
-            factor.factor(&self.matrix(eigenvalue * (1.0 + OFFSET))?, interrupt)?;
+            factor.factor(&self.matrix(eigenvalue * (1.0 + QUADRATIC_MODES_OFFSET))?, interrupt)?;
             let mut columns = try_vec(n, Complex64::ZERO, CONTEXT)?;
             self.matrix(eigenvalue)?.multiply_add(Complex64::ONE, &x, &mut columns);
             try_extend(&mut columns, &self.slope_times(eigenvalue, &x)?, CONTEXT)?;

@@ -25,18 +25,18 @@ pub struct Resonance {
 }
 
 /// Half width relative to the frequency below which a resonance is undamped up to rounding.
-const UNDAMPED: f64 = 1e-13;
+const RESONANCES_UNDAMPED: f64 = 1e-13;
 
 impl Resonance {
     /// Whether nothing but rounding damps it.
     #[must_use]
     pub fn is_undamped(&self) -> bool {
-        self.half_width <= UNDAMPED * self.omega
+        self.half_width <= RESONANCES_UNDAMPED * self.omega
     }
 }
 
 /// Degrees of freedom up to which all modes are found by dense algebra.
-const DENSE_UP_TO: usize = 100;
+const RESONANCES_DENSE_UP_TO: usize = 100;
 
 /// The same where a range has too many modes for a search.
 const DENSE_IF_MANY: usize = 600;
@@ -48,7 +48,7 @@ const FIRST_MODES: usize = 24;
 const AT_END: f64 = 1e-9;
 
 /// Largest number of modes of a search in the range.
-const MOST_MODES: usize = 500;
+const RESONANCES_MOST_MODES: usize = 500;
 
 /// Largest number of square matrices that the dense eigensolver holds at a time.
 const EIGEN_COPIES: usize = 8;
@@ -58,7 +58,7 @@ const EIGEN_COPIES: usize = 8;
 const COUPLED: f64 = 0.1;
 
 /// Most iterations of the eigenvalues of coupled modes.
-const MAX_ITERATIONS: usize = 10_000;
+const RESONANCES_MAX_ITERATIONS: usize = 10_000;
 
 const CONTEXT: &str = "the resonances";
 
@@ -204,14 +204,14 @@ fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt
         return pairs.map(|pairs| moving.expanded_pairs(pairs)).transpose();
     }
     let n = k.rows;
-    if n > DENSE_UP_TO {
+    if n > RESONANCES_DENSE_UP_TO {
         let pairs = lanczos::lowest(k, m, FIRST_MODES, interrupt)?;
         if pairs.values.len() < FIRST_MODES || pairs.values.last().is_some_and(|&x| x > high * high) {
             return Ok(Some(pairs));
         }
         // Rounding at an end loses no mode there.
         let interval = (low * low - AT_END * high * high, (1.0 + AT_END) * high * high);
-        if let Some(pairs) = lanczos::within((k, m), interval, MOST_MODES.min(n / 4), interrupt)? {
+        if let Some(pairs) = lanczos::within((k, m), interval, RESONANCES_MOST_MODES.min(n / 4), interrupt)? {
             return Ok(Some(pairs));
         }
         if n > DENSE_IF_MANY {
@@ -287,7 +287,7 @@ impl Widths {
             }
             matrix[(i, i)] += frequencies[i];
         }
-        let Some(schur) = Schur::try_new(matrix, f64::EPSILON, MAX_ITERATIONS) else {
+        let Some(schur) = Schur::try_new(matrix, f64::EPSILON, RESONANCES_MAX_ITERATIONS) else {
             return Err(Error::new(Status::NoConvergence, format_args!("coupled resonances")));
         };
         let (_, triangular) = schur.unpack();

@@ -33,7 +33,7 @@ pub struct SectorMotion {
 pub type Key = [Option<(usize, i64, u64)>; 6];
 
 /// Coefficients below this share of 1 are rounding.
-const ROUNDING: f64 = 1e-12;
+const SECTOR_MOTION_ROUNDING: f64 = 1e-12;
 
 impl SectorMotion {
     /// The terms, side a first.
@@ -79,7 +79,7 @@ impl SectorMotion {
     /// Removes what cancels to rounding.
     fn clean(&mut self) {
         for term in &mut self.terms {
-            *term = term.filter(|t| t.coefficient.abs() > ROUNDING);
+            *term = term.filter(|t| t.coefficient.abs() > SECTOR_MOTION_ROUNDING);
         }
     }
 
@@ -93,7 +93,7 @@ impl SectorMotion {
         let alike = |a: &Term, b: &Term| a.dof == b.dof && (a.sector - b.sector).rem_euclid(sectors as i64) == 0;
         self.terms().all(|t| {
             let sum: f64 = self.terms().filter(|u| alike(t, u)).map(|u| u.coefficient).sum();
-            sum.abs() <= ROUNDING
+            sum.abs() <= SECTOR_MOTION_ROUNDING
         })
     }
 }

@@ -43,13 +43,13 @@ pub struct Resonance {
 }
 
 /// Relative distance of the shift from the squared frequency.
-const SHIFT: f64 = 1e-8;
+const SLIP_CAPACITY_SHIFT: f64 = 1e-8;
 
-/// Number of steps of the inverse iteration, each of which gains the digits of [`SHIFT`].
-const MAX_STEPS: usize = 6;
+/// Number of steps of the inverse iteration, each of which gains the digits of [`SLIP_CAPACITY_SHIFT`].
+const SLIP_CAPACITY_MAX_STEPS: usize = 6;
 
 /// Rounding of the force and of the capacity, relative to the sizes of their terms.
-const ROUNDING: f64 = 1e-12;
+const SLIP_CAPACITY_ROUNDING: f64 = 1e-12;
 
 /// Growth beyond which no motion is possible: it would require more digits of frequency and stiffness than exist.
 const UNBOUNDED_GROWTH: f64 = 1e10;
@@ -119,7 +119,13 @@ impl Model {
         // most work.
         let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
         self.add_forces_to(harmonic, 1.0, &mut forces);
-        let Some(shape) = left_null(&dynamic(-w * w - SHIFT * square)?, &mass, &forces, interrupt)? else {
+        let Some(shape) = left_null(
+            &dynamic(-w * w - SLIP_CAPACITY_SHIFT * square)?,
+            &mass,
+            &forces,
+            interrupt,
+        )?
+        else {
             return Ok(None);
         };
         let r = (0..n).map(|j| {
@@ -131,7 +137,7 @@ impl Model {
         let force = shape.iter().zip(&forces).map(work).sum::<Complex64>().norm();
         let size: f64 = shape.iter().zip(&forces).map(|z| work(z).norm()).sum();
         let slip_capacity = self.slip_capacity(harmonic, &shape);
-        let excess = force - slip_capacity * (1.0 + ROUNDING) - ROUNDING * size;
+        let excess = force - slip_capacity * (1.0 + SLIP_CAPACITY_ROUNDING) - SLIP_CAPACITY_ROUNDING * size;
         let inertia = square * quadratic(&mass, &shape);
         let growth = if excess > 0.0 && inertia > 0.0 {
             // Without any resistance the growth is infinite.
@@ -189,7 +195,7 @@ fn iterate(
     factor.factor(shifted, interrupt)?;
     let mut x = try_copy(force, CONTEXT)?;
     let mut load = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
-    for i in 0..MAX_STEPS {
+    for i in 0..SLIP_CAPACITY_MAX_STEPS {
         if i > 0 {
             load.fill(Complex64::ZERO);
             mass.multiply_add(Complex64::ONE, &x, &mut load);

@@ -27,7 +27,7 @@ const CONTEXT: &str = "the modes of the stuck structure";
 const DEPENDENT: f64 = 1e-6;
 
 /// Shift of the static shapes of a structure that no stiffness holds, relative to its stiffness per mass.
-const SHIFT: f64 = 1e-7;
+const STUCK_SHAPES_SHIFT: f64 = 1e-7;
 
 /// Shapes of one nodal diameter, column after column.
 pub(crate) struct StuckShapes {
@@ -201,7 +201,7 @@ fn stiffness_factors(k: &Csc, m: &Csc, interrupt: &Interrupt<'_>) -> Result<Inve
     let shift = if resists_all_motion(k, interrupt)? {
         0.0
     } else {
-        SHIFT * diagonal(k) / diagonal(m).max(f64::MIN_POSITIVE)
+        STUCK_SHAPES_SHIFT * diagonal(k) / diagonal(m).max(f64::MIN_POSITIVE)
     };
     Inverse::new(k, (shift, m), interrupt)
 }

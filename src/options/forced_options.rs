@@ -36,7 +36,7 @@ pub struct ForcedOptions<'a> {
 /// Values of [`ForcedOptions::branch_depth`] and [`ForcedOptions::most_branches`] where they are 0, and their largest ones.
 const DEPTH: usize = 3;
 const MOST_BRANCHES: usize = 32;
-const LARGEST: (usize, usize) = (8, 10_000);
+const FORCED_OPTIONS_LARGEST: (usize, usize) = (8, 10_000);
 
 impl ForcedOptions<'_> {
     /// Largest numbers of generations and of branches beside the response.
@@ -66,8 +66,8 @@ impl ForcedOptions<'_> {
             return fail!(Argument, "branches = {}, needs 0, 1, 2 or 3", self.branches);
         }
         for (name, value, most) in [
-            ("branch_depth", self.branch_depth, LARGEST.0),
-            ("most_branches", self.most_branches, LARGEST.1),
+            ("branch_depth", self.branch_depth, FORCED_OPTIONS_LARGEST.0),
+            ("most_branches", self.most_branches, FORCED_OPTIONS_LARGEST.1),
         ] {
             if value > most {
                 return fail!(Argument, "{name} = {value}, needs 0 (automatic) .. {most}");

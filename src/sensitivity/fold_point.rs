@@ -16,10 +16,10 @@ use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::forced_point::ForcedPoint;
 
 /// Step of the differences along v, over the size of the motion.
-const STEP: f64 = 1e-4;
+const FOLD_POINT_STEP: f64 = 1e-4;
 
 /// Iterations for the first borders.
-const ITERATIONS: usize = 3;
+const FOLD_POINT_ITERATIONS: usize = 3;
 
 /// Size of a perturbation that makes an exactly singular matrix regular.
 const PERTURBATION: f64 = 1e-9;
@@ -69,7 +69,7 @@ impl Borders {
         }
         let mut c = try_vec(n, 1.0, CONTEXT)?;
         let mut b = try_copy(&c, CONTEXT)?;
-        for _ in 0..ITERATIONS {
+        for _ in 0..FOLD_POINT_ITERATIONS {
             b.copy_from_slice(&c);
             system.solve_transposed(&mut b);
             normalise(&mut b);
@@ -148,7 +148,7 @@ pub(crate) fn fold_gradient(
         by_unknowns: try_vec(u.len() + 1, 0.0, CONTEXT)?,
         by_parameter: 0.0,
     };
-    let unit = STEP * norm(u) / norm(&at.v);
+    let unit = FOLD_POINT_STEP * norm(u) / norm(&at.v);
     // The errors of two steps are even in the step.
     for (step, weight) in [(unit, 4.0 / 3.0), (2.0 * unit, -1.0 / 3.0)] {
         for sign in [1.0, -1.0] {

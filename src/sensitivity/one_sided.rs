@@ -10,7 +10,7 @@ use crate::sensitivity::contact_products::{ContactMotion, evaluate};
 
 /// Relative change of the vibration within which a contact begins to slip that is at the onset: a solution is not known
 /// better.
-const NEAR: f64 = 1e-8;
+const ONE_SIDED_NEAR: f64 = 1e-8;
 
 /// The first contact at the onset of slip, if there is one. `model` is the model at the frequency of the solution.
 ///
@@ -40,7 +40,7 @@ pub(crate) fn contact_at_onset(
             let found = evaluate(&*law, (condensed, samples, adjoint.omega), &motion, interrupt)?;
             Ok(found.linear && found.slip_fraction == 0.0 && found.open_fraction == 0.0)
         };
-        if sticks(1.0 - NEAR)? && !sticks(1.0 + NEAR)? {
+        if sticks(1.0 - ONE_SIDED_NEAR)? && !sticks(1.0 + ONE_SIDED_NEAR)? {
             return Ok(Some(number));
         }
     }

@@ -9,7 +9,7 @@ use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::forced_point::ForcedPoint;
 
 /// Distance of the differences over the width of the peak.
-const STEP: f64 = 5e-4;
+const PEAK_SHIFT_STEP: f64 = 5e-4;
 
 /// Change of the frequency relative to itself that tells the width of the peak where no contact moves.
 const PROBE: f64 = 1e-7;
@@ -62,7 +62,7 @@ pub(crate) fn peak_shift(
         };
         (amplitude / probed[count].abs()).sqrt()
     };
-    let step = STEP * width;
+    let step = PEAK_SHIFT_STEP * width;
     let Some((far, near)) = slopes(2.0 * step)?.zip(slopes(step)?) else {
         return Ok(shift);
     };

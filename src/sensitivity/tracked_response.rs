@@ -41,7 +41,7 @@ const OMEGA_UNIT: f64 = 0.05;
 const BRANCH_STEP: f64 = 1e-4;
 
 /// Newton iterations by which the work of an estimate is bounded: those of a point that is solved by homotopy.
-const ITERATIONS: usize = 200;
+const TRACKED_RESPONSE_ITERATIONS: usize = 200;
 
 /// Point of a response over the frequency that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -387,7 +387,7 @@ impl Tracked for TrackedResponse<'_> {
             watched: &watched,
             together: false,
             sticks: None,
-            iterations: ITERATIONS,
+            iterations: TRACKED_RESPONSE_ITERATIONS,
         };
         let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
         let estimator = ForcedEstimator::new(&model, &self.solver, self.response_dof, models, self.interrupt);

@@ -16,7 +16,7 @@ use num_complex::Complex64;
 const NO_STRAIN: f64 = 1e-12;
 
 /// Iterations of the singular values, far above what converging cases need.
-const MOST_ITERATIONS: usize = 100_000;
+const KNOWN_DIRECTIONS_MOST_ITERATIONS: usize = 100_000;
 
 impl Perturbations<'_> {
     /// The sliders of the ring that never move; `moved` tells it of the elements of the structure in time.
@@ -42,7 +42,7 @@ impl Perturbations<'_> {
                 strain[(n + i, dof)] += a;
             }
         }
-        let Some(svd) = SVD::try_new(strain, false, true, f64::EPSILON, MOST_ITERATIONS) else {
+        let Some(svd) = SVD::try_new(strain, false, true, f64::EPSILON, KNOWN_DIRECTIONS_MOST_ITERATIONS) else {
             return Err(Error::new(
                 Status::NoConvergence,
                 format_args!("displacements without strain"),

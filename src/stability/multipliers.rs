@@ -16,10 +16,10 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the Floquet multipliers";
 
 /// Square matrices that the eigenvalues of a map need at a time.
-const COPIES: usize = 8;
+const MULTIPLIERS_COPIES: usize = 8;
 
 /// Share of the largest pivot below which a direction of the map is round-off.
-const ROUNDING: f64 = 1e-12;
+const MULTIPLIERS_ROUNDING: f64 = 1e-12;
 
 /// Modulus over a period below which the multiplier of a slider is zero to rounding: while another one remembers, what
 /// a slider has forgotten is not an exact null space.
@@ -29,7 +29,7 @@ const FORGOTTEN: f64 = f64::EPSILON;
 const INVARIANT: f64 = 1e-6;
 
 /// Iterations of the eigensolver, far above what converging cases need.
-const MOST_ITERATIONS: usize = 100_000;
+const MULTIPLIERS_MOST_ITERATIONS: usize = 100_000;
 
 /// Facts about the motion from which multipliers are known.
 pub(crate) struct Known<'a> {
@@ -52,7 +52,7 @@ pub(crate) fn multipliers_of(
         .filter(|&i| i < 2 * n || !stuck.contains(&(i - 2 * n)))
         .collect();
     let square = kept.len().saturating_mul(kept.len());
-    check_memory::<Complex64>(square.saturating_mul(COPIES), CONTEXT)?;
+    check_memory::<Complex64>(square.saturating_mul(MULTIPLIERS_COPIES), CONTEXT)?;
     // Velocities are divided by ω, which gives them the unit of displacements.
     let unit = |i: usize| if (n..2 * n).contains(&i) { system.omega } else { 1.0 };
     let map = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
@@ -175,7 +175,7 @@ fn without_zeros<T: ComplexField<RealField = f64>>(
         let r = factors.r();
         let first = r[(0, 0)].clone().modulus();
         let rank = (0..order)
-            .take_while(|&i| r[(i, i)].clone().modulus() > ROUNDING * first)
+            .take_while(|&i| r[(i, i)].clone().modulus() > MULTIPLIERS_ROUNDING * first)
             .count();
         if rank == order {
             return Ok((map, zeros));
@@ -192,7 +192,7 @@ fn real_eigenvalues(map: &DMatrix<f64>) -> Result<Vec<Complex64>> {
     if order == 0 {
         return Ok(found);
     }
-    let Some(schur) = Schur::try_new(map.clone(), f64::EPSILON, MOST_ITERATIONS) else {
+    let Some(schur) = Schur::try_new(map.clone(), f64::EPSILON, MULTIPLIERS_MOST_ITERATIONS) else {
         return eigenvalues(map.map(Complex64::from));
     };
     for value in schur.complex_eigenvalues().iter() {
@@ -207,7 +207,7 @@ fn eigenvalues(map: DMatrix<Complex64>) -> Result<Vec<Complex64>> {
     if order == 0 {
         return Ok(found);
     }
-    let Some(schur) = Schur::try_new(map, f64::EPSILON, MOST_ITERATIONS) else {
+    let Some(schur) = Schur::try_new(map, f64::EPSILON, MULTIPLIERS_MOST_ITERATIONS) else {
         return Err(Error::new(
             Status::NoConvergence,
             format_args!("the eigenvalues of a map of order {order} were not found"),

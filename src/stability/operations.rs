@@ -11,7 +11,7 @@ const OF_EIGENVALUES: f64 = 100.0;
 const TERMS: f64 = 24.0;
 
 /// Rate of the fastest motion times the length of a step.
-const STEP: f64 = 2.0;
+const OPERATIONS_STEP: f64 = 2.0;
 
 /// Columns that are carried: those of shooting and those of the perturbations.
 const TWICE: f64 = 2.0;
@@ -34,7 +34,7 @@ impl Extent {
     /// Operations of their multipliers.
     pub fn operations(&self) -> f64 {
         let states = 2.0 * self.order + self.sliders;
-        let steps = 1.0 + self.fastest / STEP;
+        let steps = 1.0 + self.fastest / OPERATIONS_STEP;
         let carried = TWICE * TERMS * 2.0 * self.entries * states * steps;
         self.blocks * (carried + OF_EIGENVALUES * states.powi(3))
     }

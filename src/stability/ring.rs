@@ -16,7 +16,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the equations of perturbations";
 
 /// Entries of a sum over diameters below this share of the largest are rounding.
-const ROUNDING: f64 = 1e-14;
+const RING_ROUNDING: f64 = 1e-14;
 
 /// Row of a relative motion: entries (degree of freedom of the ring, coefficient).
 pub(super) type Row = [Option<(usize, Complex64)>; 6];
@@ -156,10 +156,10 @@ fn matrix(structure: &Structure, which: MatrixKind, closure: &Closure) -> Result
         let block = Csc::sum(ndof, &terms)?;
         for j in 0..ndof {
             for (i, mut v) in block.column(j) {
-                if v.im.abs() <= ROUNDING * largest {
+                if v.im.abs() <= RING_ROUNDING * largest {
                     v.im = 0.0;
                 }
-                if v.norm() <= ROUNDING * largest {
+                if v.norm() <= RING_ROUNDING * largest {
                     continue;
                 }
                 for s in 0..sectors as i64 {

@@ -19,7 +19,7 @@ const OPERATIONS_OF_A_LAW: usize = 200;
 
 /// Steps of one lapse before the integration stops with an error: for integration in time the structure is then too
 /// stiff against its period.
-const MOST_STEPS: usize = 20_000_000;
+const EVENT_LOOP_MOST_STEPS: usize = 20_000_000;
 
 /// Events without progress in time, per contact, before the integration stops with an error.
 const MOST_AT_ONCE: usize = 50;
@@ -65,6 +65,7 @@ impl State {
     /// Adds a motion without any symmetry, whose size is a share of the largest displacement or velocity over ω. Signs without
     /// pattern come from multiples of the golden ratio.
     pub fn disturb(&mut self, share: f64, omega: f64) {
+        /// Golden ratio − 1.
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let size = largest(&self.x).max(largest(&self.v) / omega);
@@ -260,10 +261,10 @@ impl EventLoop {
             let work = OPERATIONS_OF_A_LAW * system.elements.len();
             system.interrupt.check_before(work as u64)?;
             steps += 1;
-            if steps > MOST_STEPS {
+            if steps > EVENT_LOOP_MOST_STEPS {
                 return fail!(
                     NoConvergence,
-                    "a period takes more than {MOST_STEPS} time steps; the structure is too stiff for omega = {}",
+                    "a period takes more than {EVENT_LOOP_MOST_STEPS} time steps; the structure is too stiff for omega = {}",
                     system.omega
                 );
             }

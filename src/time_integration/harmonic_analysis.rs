@@ -18,10 +18,10 @@ use std::f64::consts::TAU;
 const CONTEXT: &str = "the harmonics of the motion";
 
 /// Points of quadrature on each part.
-const POINTS: usize = 20;
+const HARMONIC_ANALYSIS_POINTS: usize = 20;
 
 /// Harmonics, or times, between two checks of a stop.
-const BETWEEN_CHECKS: usize = 64;
+const HARMONIC_ANALYSIS_BETWEEN_CHECKS: usize = 64;
 
 /// Largest angle of a part.
 const WIDEST: f64 = 4.0;
@@ -96,7 +96,7 @@ pub(crate) struct HarmonicAnalysis {
     omega: f64,
     /// ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
     integrals: Vec<Complex64>,
-    nodes: ([f64; POINTS], [f64; POINTS]),
+    nodes: ([f64; HARMONIC_ANALYSIS_POINTS], [f64; HARMONIC_ANALYSIS_POINTS]),
     requested: RequestedTimes,
     /// Number of requested times that are done.
     next: usize,
@@ -144,9 +144,12 @@ impl HarmonicAnalysis {
         let n = self.ndof * self.sectors;
         let length = theta * step.length;
         for (h, integral) in self.integrals.chunks_exact_mut(n).enumerate() {
-            if h % BETWEEN_CHECKS == 0 {
+            if h % HARMONIC_ANALYSIS_BETWEEN_CHECKS == 0 {
                 let parts = (h as f64 * self.omega * length / WIDEST) as usize + 1;
-                interrupt.check_before((BETWEEN_CHECKS * (parts * POINTS * DEGREE + n * DEGREE)) as u64)?;
+                interrupt.check_before(
+                    (HARMONIC_ANALYSIS_BETWEEN_CHECKS * (parts * HARMONIC_ANALYSIS_POINTS * DEGREE + n * DEGREE))
+                        as u64,
+                )?;
             }
             let rate = h as f64 * self.omega;
             let moments = moments(&self.nodes, rate * length, step.degree);
@@ -161,8 +164,8 @@ impl HarmonicAnalysis {
         }
         let end = step.begin + length;
         while let Some(requested) = self.requested.get((self.lapse, self.follower), self.next) {
-            if self.next.is_multiple_of(BETWEEN_CHECKS) {
-                interrupt.check_before((BETWEEN_CHECKS * n * DEGREE) as u64)?;
+            if self.next.is_multiple_of(HARMONIC_ANALYSIS_BETWEEN_CHECKS) {
+                interrupt.check_before((HARMONIC_ANALYSIS_BETWEEN_CHECKS * n * DEGREE) as u64)?;
             }
             // Round-off may leave the last times of a lapse just beyond its last step.
             if requested.time > end && end < self.lapse * (1.0 - 1e-12) {
@@ -246,7 +249,11 @@ fn back(count: usize, sectors: usize) -> usize {
 }
 
 /// ∫ θᵏ e^{−iαθ} dθ from 0 to 1, k = 0 ..= degree.
-fn moments((c, b): &([f64; POINTS], [f64; POINTS]), angle: f64, degree: usize) -> [Complex64; DEGREE + 1] {
+fn moments(
+    (c, b): &([f64; HARMONIC_ANALYSIS_POINTS], [f64; HARMONIC_ANALYSIS_POINTS]),
+    angle: f64,
+    degree: usize,
+) -> [Complex64; DEGREE + 1] {
     let mut sums = [Complex64::ZERO; DEGREE + 1];
     let parts = (angle / WIDEST).ceil().max(1.0) as usize;
     let width = 1.0 / parts as f64;

@@ -16,7 +16,7 @@ use crate::time_integration::step_polynomial::StepPolynomial;
 use crate::time_integration::unrolled_structure::System;
 
 /// Newton iterations of a step before it is halved.
-const MOST_ITERATIONS: usize = 30;
+const IMPLICIT_STEP_MOST_ITERATIONS: usize = 30;
 
 /// Memory of the steps.
 pub(super) struct Implicit {
@@ -165,7 +165,7 @@ impl Implicit {
         }
         self.accelerations.fill(0.0);
         let mut before = f64::INFINITY;
-        for iteration in 0..MOST_ITERATIONS {
+        for iteration in 0..IMPLICIT_STEP_MOST_ITERATIONS {
             self.evaluate(system, pieces, x, v, t, h)?;
             self.lu.solve(&mut self.residual);
             let (mut change, mut size) = (0.0_f64, 0.0_f64);

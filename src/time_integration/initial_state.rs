@@ -10,7 +10,7 @@ use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 
 /// Number of times per period of the highest harmonic at which the sliders of an initial motion are updated.
-const POINTS_PER_WAVE: usize = 64;
+const INITIAL_STATE_POINTS_PER_WAVE: usize = 64;
 
 const CONTEXT: &str = "the start of the motion in time";
 
@@ -56,7 +56,7 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
         return Ok(());
     }
     let set = HarmonicSet::all(count - 1)?;
-    let mut transform = Transform::new(&set, POINTS_PER_WAVE * count, false)?;
+    let mut transform = Transform::new(&set, INITIAL_STATE_POINTS_PER_WAVE * count, false)?;
     let times = transform.held();
     let mut packed = try_vec(set.packed_len(), 0.0, CONTEXT)?;
     let mut motions = try_vec(times.saturating_mul(2), 0.0, CONTEXT)?;

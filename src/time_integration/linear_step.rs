@@ -14,10 +14,10 @@ use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 
 /// Share of the largest term below which the last terms of a step must be.
-const NEGLIGIBLE: f64 = 1e-18;
+const LINEAR_STEP_NEGLIGIBLE: f64 = 1e-18;
 
 /// Rounds of shortening a step whose largest terms shrink with it.
-const ROUNDS: usize = 100;
+const LINEAR_STEP_ROUNDS: usize = 100;
 
 /// Size of a term from which on the next ones may overflow.
 const OVERFLOW: f64 = 1e200;
@@ -143,7 +143,7 @@ impl Taylor {
         }
         let mut ratio = f64::INFINITY;
         // The largest term shrinks with the step, but by a far lower power than the last.
-        for _ in 0..ROUNDS {
+        for _ in 0..LINEAR_STEP_ROUNDS {
             let mut largest = 0.0_f64;
             let mut power = 1.0;
             for size in sizes {
@@ -153,7 +153,7 @@ impl Taylor {
             let before = ratio;
             for k in [DEGREE - 1, DEGREE] {
                 if sizes[k] > 0.0 {
-                    ratio = ratio.min((NEGLIGIBLE * largest / sizes[k]).powf(1.0 / k as f64));
+                    ratio = ratio.min((LINEAR_STEP_NEGLIGIBLE * largest / sizes[k]).powf(1.0 / k as f64));
                 }
             }
             if ratio > 0.9 * before {

@@ -15,13 +15,13 @@ use crate::time_integration::unrolled_structure::System;
 use crate::time_integration::variation::Variation;
 
 /// Newton iterations before marching replaces them.
-const MOST_ITERATIONS: usize = 30;
+const SHOOTING_MOST_ITERATIONS: usize = 30;
 
 /// Ratio of successive errors below which the monodromy is kept.
-const FAST: f64 = 0.1;
+const SHOOTING_FAST: f64 = 0.1;
 
 /// Smallest share of a Newton step that is tried.
-const SHORTEST: f64 = 1.0 / 64.0;
+const SHOOTING_SHORTEST: f64 = 1.0 / 64.0;
 
 /// Distance from 1 below which directions of the monodromy are not corrected, such as the free rotation of a ring
 /// that friction alone holds: the whole motion may be shifted along them.
@@ -253,7 +253,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         let mut equations = LeastSquares::new(unknowns, interrupt)?;
         let mut step = try_vec(unknowns, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..SHOOTING_MOST_ITERATIONS {
             self.event_loop.clear_moved();
             if self.lap(Some(&mut sensitivity))? {
                 return Ok(Outcome::Stopped);
@@ -267,11 +267,11 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
                 }
                 base.set(&self.state);
                 let omega = self.system.omega;
-                let shortest = if damped && !converged { SHORTEST } else { 1.0 };
+                let shortest = if damped && !converged { SHOOTING_SHORTEST } else { 1.0 };
                 if self.step_from(&base, omega, &step, (residual, shortest))? {
                     return Ok(Outcome::Stopped);
                 }
-                let fast = self.residual < FAST * residual;
+                let fast = self.residual < SHOOTING_FAST * residual;
                 if self.residual >= residual {
                     // Round-off may keep the last correction from reducing the error.
                     self.state.set(&base);

@@ -80,7 +80,7 @@ impl StepPolynomial {
 }
 
 /// Width of an interval of θ in which two roots cannot be distinguished.
-const FINEST: f64 = 1e-14;
+const STEP_POLYNOMIAL_FINEST: f64 = 1e-14;
 
 /// Relative size against its terms below which a margin counts as zero.
 const ZERO: f64 = 4.0 * f64::EPSILON;
@@ -115,6 +115,7 @@ pub(super) fn first_fall(margin: &[f64], zeros: usize) -> Option<f64> {
 
 /// The first fall through zero of a polynomial that begins above it.
 fn search(c: &[f64]) -> Option<f64> {
+    /// Brackets that wait at most.
     const DEEPEST: usize = 64;
     let degree = c.len() - 1;
     let mut stack = [([0.0; DEGREE + 1], 0.0, 0.0); DEEPEST];
@@ -138,7 +139,7 @@ fn search(c: &[f64]) -> Option<f64> {
             // The margin rises again after two roots that could not be distinguished.
             continue;
         }
-        if to - from < FINEST || open + 2 > DEEPEST {
+        if to - from < STEP_POLYNOMIAL_FINEST || open + 2 > DEEPEST {
             continue;
         }
         let (left, right) = halves(b);

@@ -19,7 +19,7 @@ const CONTEXT: &str = "a step of perturbations";
 const CUT: f64 = 1e-17;
 
 /// Terms of a series.
-const MOST_TERMS: usize = 200;
+const VARIATIONAL_STEP_MOST_TERMS: usize = 200;
 
 /// Largest ratio of a term to the result: so many digits are lost.
 const LARGEST_TERM: f64 = 100.0;
@@ -165,7 +165,7 @@ impl<T: Number> VariationalStep<T> {
         }
         let begin = larger(sizes(this, 1.0), sizes(next, 1.0));
         let (mut largest, mut small) = (begin, 0);
-        for k in 0..MOST_TERMS {
+        for k in 0..VARIATIONAL_STEP_MOST_TERMS {
             interrupt.check_before(operations)?;
             new.fill([T::NONE; LANES]);
             equations.stiffness.subtract(1.0, this, new);

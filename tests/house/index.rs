@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 const INTRODUCTION: &str = "\
 # Tests
 
-`sh tests/run.sh` runs all of them and installs what they need; `sh tests/deep.sh` runs those that take minutes, and the unit tests inside
-the library, which is compiled once more for them. The files are
+`sh tests/run.sh` runs them and the unit tests inside the libraries, installs what they need, and lists at the end how long each step took;
+`sh tests/deep.sh` runs those that take minutes. The files are
 grouped into a few crates, so that the library is linked a few times only: `cargo test --release --test contact_laws` runs one
 crate, and `cargo test --release --test contact_laws friction` what has this word in its name.
 

@@ -6,3 +6,4 @@ mod layering;
 mod python;
 mod rust_interface;
 mod supply;
+mod thresholds;

@@ -9,6 +9,8 @@
 //! defaults of its structs, and writes the generated parts of the Fortran and Python modules and of the tests. These
 //! parts are between the lines `BEGIN GENERATED` and `END GENERATED`; the rest of these files is written by hand.
 //!
+//! `cargo run -p hbvib-bindings -- from-header` takes the header as it is, where a build with the feature `bindings` has just written it.
+//!
 //! `cargo run -p hbvib-bindings -- rust-api` documents the library and lists its public Rust interface in `docs/rust-api.txt`.
 
 mod declarations;
@@ -37,9 +39,10 @@ use std::process::Command;
 fn main() {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let written = match &arguments[..] {
-        [] => write(),
+        [] => write_header().and_then(|()| write()),
+        [one] if one == "from-header" => write(),
         [one] if one == "rust-api" => write_rust_api(),
-        _ => Err("needs no argument, or rust-api".into()),
+        _ => Err("needs no argument, or one of from-header and rust-api".into()),
     };
     if let Err(error) = written {
         eprintln!("error: {error}");
@@ -67,12 +70,15 @@ fn write_rust_api() -> Result<()> {
     replace(&path, &old, &rust_api::list(&pages)?)
 }
 
+/// Writes the header, by the build script of the library.
+fn write_header() -> Result<()> {
+    let check = ["check", "--release", "-p", "hbvib", "--lib", "--features", "bindings"];
+    cargo(checkout(), &check)
+}
+
+/// Writes what follows from the header.
 fn write() -> Result<()> {
     let root = checkout();
-    cargo(
-        root,
-        &["check", "--release", "-p", "hbvib", "--lib", "--features", "bindings"],
-    )?;
     cargo(root, &["build", "--release", "--lib"])?;
     let all = Declarations::parse(&read(&root.join("include/hbvib.h"))?)?;
     let defaults = defaults(&all)?;

@@ -21,10 +21,10 @@ const CONTEXT: &str = "the computed resonance";
 const BANDWIDTHS: f64 = 8.0;
 
 /// Most points of the response on the way to its peak.
-const MOST_POINTS: usize = 100;
+const COMPUTED_PEAK_MOST_POINTS: usize = 100;
 
 /// Largest step over the range of frequency.
-const STEP: f64 = 0.05;
+const COMPUTED_PEAK_STEP: f64 = 0.05;
 
 /// A synthesised resonance with the motion of the mode there.
 pub(super) struct AtPeak<'a> {
@@ -80,7 +80,7 @@ fn computed(
         end,
         tolerance: 1e-9,
         max_iterations: 25,
-        steps: StepControl::new(0.0, 0.0, STEP),
+        steps: StepControl::new(0.0, 0.0, COMPUTED_PEAK_STEP),
     };
     let v = turned(peak, n)?;
     let near = Point {
@@ -115,7 +115,7 @@ fn computed(
     if (settings.end - settings.start) * before.tangent[n] < 0.0 {
         before.reverse();
     }
-    for _ in 0..MOST_POINTS {
+    for _ in 0..COMPUTED_PEAK_MOST_POINTS {
         let (Advance::Accepted { point, .. } | Advance::LeftAtStart { point }) =
             continuation.advance(&mut problem, interrupt)?
         else {

@@ -10,8 +10,8 @@ use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, try_push};
 
 /// Largest number of evaluations for one extremum, and its width in log₁₀ of the amplitude: the force is flat there.
-const MAX_EVALUATIONS: usize = 60;
-const WIDTH: f64 = 1e-7;
+const FORCE_EXTREMA_MAX_EVALUATIONS: usize = 60;
+const FORCE_EXTREMA_WIDTH: f64 = 1e-7;
 
 /// Width of a resonance, of which a start is made, in log₁₀ of the amplitude.
 const CROSSING: f64 = 1e-10;
@@ -70,7 +70,7 @@ fn crossing(
     (mut a, mut b): ((f64, f64), (f64, f64)),
 ) -> Result<Option<State>> {
     let mut found = None;
-    for _ in 0..MAX_EVALUATIONS {
+    for _ in 0..FORCE_EXTREMA_MAX_EVALUATIONS {
         let p = 0.5 * (a.0 + b.0);
         let Some(state) = refinement.state_at(k, p)? else { break };
         let Some(f) = state.log_force_factor() else { break };
@@ -95,8 +95,8 @@ fn minimum(
     sign: f64,
 ) -> Result<(f64, f64)> {
     let mut use_parabola = true;
-    for _ in 0..MAX_EVALUATIONS {
-        if c.0 - a.0 <= WIDTH {
+    for _ in 0..FORCE_EXTREMA_MAX_EVALUATIONS {
+        if c.0 - a.0 <= FORCE_EXTREMA_WIDTH {
             break;
         }
         let wide = if c.0 - b.0 > b.0 - a.0 { c } else { a };
@@ -107,7 +107,7 @@ fn minimum(
             golden
         };
         // Neither an end nor the point itself.
-        let least = 1e-2 * WIDTH;
+        let least = 1e-2 * FORCE_EXTREMA_WIDTH;
         if !(p > a.0 + least && p < c.0 - least) {
             p = golden;
         }

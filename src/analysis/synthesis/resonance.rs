@@ -21,10 +21,10 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the synthesised response";
 
 /// Relative accuracy of the amplitude of a resonance.
-const WIDTH: f64 = 1e-12;
+const RESONANCE_WIDTH: f64 = 1e-12;
 
 /// Largest number of evaluations for one resonance.
-const MAX_EVALUATIONS: usize = 60;
+const RESONANCE_MAX_EVALUATIONS: usize = 60;
 
 /// Solves the mode between two points of its branch.
 pub(super) struct Refinement<'a> {
@@ -100,13 +100,13 @@ impl<'a> Refinement<'a> {
         let (mut low, mut high) = ((a.parameter(), first), (b.parameter(), last));
         let mut side = 0;
         let mut found = None;
-        for _ in 0..MAX_EVALUATIONS {
+        for _ in 0..RESONANCE_MAX_EVALUATIONS {
             let p = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             let p = if p.is_finite() { p } else { 0.5 * (low.0 + high.0) };
             let Some(state) = self.solve(&a, &b, p)? else { break };
             let f = state.excess();
             found = Some(state);
-            if f == 0.0 || (high.0 - low.0).abs() <= WIDTH || f.abs() <= WIDTH * state.work.norm() {
+            if f == 0.0 || (high.0 - low.0).abs() <= RESONANCE_WIDTH || f.abs() <= RESONANCE_WIDTH * state.work.norm() {
                 break;
             }
             if (f < 0.0) == (low.1 < 0.0) {

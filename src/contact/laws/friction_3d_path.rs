@@ -28,10 +28,10 @@ const TOWARDS_OPENING: f64 = 0.8;
 const NEGLECTED_IMPULSE: f64 = 1e-14;
 
 /// Solutions up to the end of slip: the last two correct its time.
-const CORRECTIONS: usize = 3;
+const FRICTION_3D_PATH_CORRECTIONS: usize = 3;
 
 /// Shortest panel, against the turn.
-const SHORTEST: f64 = 1e-13;
+const FRICTION_3D_PATH_SHORTEST: f64 = 1e-13;
 
 /// Rounding of the margin of a stick, over the motion against the largest limit.
 const PULL_ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -137,7 +137,7 @@ impl<'a> Walk<'a> {
 
     /// Follows the force over a time in which the sides touch, and which an opening may end.
     pub fn follow(&mut self, (from, to): (f64, f64), begin: Phase, opens: bool) -> Result<Phase> {
-        let shortest = SHORTEST * self.path.turn;
+        let shortest = FRICTION_3D_PATH_SHORTEST * self.path.turn;
         let (mut tau, mut phase) = (from, begin);
         let (mut events_here, mut after_slip) = (0, false);
         while to - tau > shortest {
@@ -303,7 +303,7 @@ impl<'a> Walk<'a> {
             let nodes = self.nodes(from, end, panel);
             let weight = nodes.iter().fold(0.0_f64, |m, at| m.max(at.limit)) / self.size;
             let solved = solve(&self.path.tables, &mut self.path.lu, (end - from, angle, rate), &nodes);
-            let last = end - from < 2.0 * SHORTEST * self.path.turn;
+            let last = end - from < 2.0 * FRICTION_3D_PATH_SHORTEST * self.path.turn;
             match solved {
                 Some(solved) if last || solved.tail * weight <= TURN_TOLERANCE => {
                     let eases = solved.tail * weight < EASY * TURN_TOLERANCE;
@@ -333,7 +333,7 @@ impl<'a> Walk<'a> {
         if stop > from {
             let mut part = None;
             // The angle between nodes is less exact than at the end of a panel: solved up to the event, it corrects it.
-            for round in 0..CORRECTIONS {
+            for round in 0..FRICTION_3D_PATH_CORRECTIONS {
                 let nodes = self.nodes(from, stop, None);
                 part = solve(&self.path.tables, &mut self.path.lu, (stop - from, angle, rate), &nodes);
                 let Some(part) = &part else { break };
@@ -343,7 +343,7 @@ impl<'a> Walk<'a> {
                     stop - from,
                     1.0 - self.path.tables.nodes[STAGES - 2],
                 );
-                if round + 1 < CORRECTIONS && step.abs() < 0.01 * (stop - from) {
+                if round + 1 < FRICTION_3D_PATH_CORRECTIONS && step.abs() < 0.01 * (stop - from) {
                     stop += step;
                 }
             }

@@ -17,8 +17,8 @@ use std::f64::consts::TAU;
 /// Turns that are followed at most.
 const TURNS: usize = 120;
 
-/// Turns after which a force that returns to [`ENOUGH`] is taken.
-const PATIENCE: usize = 40;
+/// Turns after which a force that returns to [`FRICTION_3D_PERIOD_ENOUGH`] is taken.
+const FRICTION_3D_PERIOD_PATIENCE: usize = 40;
 
 /// Difference of a force that returns, against the largest limit.
 const RETURNS: f64 = 1e-13;
@@ -26,17 +26,17 @@ const RETURNS: f64 = 1e-13;
 /// Difference that a step of Newton's method takes to [`RETURNS`].
 const SQUARE_RETURNS: f64 = 1e-7;
 
-/// The same where the difference before promised more, or after [`PATIENCE`] turns.
-const ENOUGH: f64 = 1e-10;
+/// The same where the difference before promised more, or after [`FRICTION_3D_PERIOD_PATIENCE`] turns.
+const FRICTION_3D_PERIOD_ENOUGH: f64 = 1e-10;
 
 /// Searches of the times that hold a slider at rest.
-const ROUNDS: usize = 8;
+const FRICTION_3D_PERIOD_ROUNDS: usize = 8;
 
 /// Change of the slider's place, against the largest motion, that is rounding.
-const SETTLED: f64 = 1e-15;
+const FRICTION_3D_PERIOD_SETTLED: f64 = 1e-15;
 
 /// Distance beyond a limit, against the largest motion, that is rounding.
-const ROUNDING: f64 = 1e-13;
+const FRICTION_3D_PERIOD_ROUNDING: f64 = 1e-13;
 
 /// Times closer than this, against a panel, are the same time found more exactly.
 const NEIGHBOURS: f64 = 0.2;
@@ -122,14 +122,14 @@ fn settle(path: &mut PlanePath) -> Result<Option<StuckSlider>> {
         }
     }
     let mut settled = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..FRICTION_3D_PERIOD_ROUNDS {
         settled = stuck_slider(path.moments.len(), |j| disc(&path.moments[j].1));
         let Some(found) = settled else {
             break;
         };
         let change = (found.at[0] - place[0]).hypot(found.at[1] - place[1]);
         place = found.at;
-        if change <= SETTLED * size {
+        if change <= FRICTION_3D_PERIOD_SETTLED * size {
             break;
         }
         look_closer(path, place)?;
@@ -158,7 +158,11 @@ fn rest(path: &mut PlanePath, settled: &StuckSlider) -> Result<Option<[Option<Ho
     });
     // A place that the circles at other times exclude is none.
     let beyond = |at: &PlaneInstant| (at.pull[0] - place[0]).hypot(at.pull[1] - place[1]) - at.limit;
-    if path.grid.iter().any(|at| beyond(at) > ROUNDING * size) {
+    if path
+        .grid
+        .iter()
+        .any(|at| beyond(at) > FRICTION_3D_PERIOD_ROUNDING * size)
+    {
         return Ok(None);
     }
     // Two circles that hold the slider determine its place; along one it drifts as the time of the contact moves.
@@ -321,7 +325,7 @@ fn repeat(path: &mut PlanePath, settled: Option<&StuckSlider>, interrupt: &Inter
         let step = [sign * last[0] - force[0], sign * last[1] - force[1]];
         let defect = step[0].hypot(step[1]);
         path.repetition = Repetition::Returns;
-        if defect <= RETURNS * size || (is_last && defect <= ENOUGH * size) {
+        if defect <= RETURNS * size || (is_last && defect <= FRICTION_3D_PERIOD_ENOUGH * size) {
             return Ok(());
         }
         // (1 − by) δ = step
@@ -344,8 +348,9 @@ fn repeat(path: &mut PlanePath, settled: Option<&StuckSlider>, interrupt: &Inter
         let taken = if by_newton { newton } else { step };
         // Newton's method squares the error; slip alone reduces it by its own factor.
         let factor = by.iter().flatten().fold(0.0_f64, |m, b| m.max(b.abs()));
-        is_last =
-            turn > PATIENCE || factor * defect <= RETURNS * size || (by_newton && defect <= SQUARE_RETURNS * size);
+        is_last = turn > FRICTION_3D_PERIOD_PATIENCE
+            || factor * defect <= RETURNS * size
+            || (by_newton && defect <= SQUARE_RETURNS * size);
         force = [force[0] + taken[0], force[1] + taken[1]];
     }
     Err(Error::new(

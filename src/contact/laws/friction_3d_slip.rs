@@ -10,10 +10,10 @@ use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 
 /// Newton iterations of a panel, after which it is halved.
-const ITERATIONS: usize = 12;
+const FRICTION_3D_SLIP_ITERATIONS: usize = 12;
 
 /// A step of Newton's method after which the next would be rounding.
-const LAST_STEP: f64 = 1e-8;
+const FRICTION_3D_SLIP_LAST_STEP: f64 = 1e-8;
 
 /// Largest turn of the first guess.
 const LARGEST_GUESS: f64 = 0.3;
@@ -26,7 +26,7 @@ pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Halvings of the first interval in which a margin is sought that rises from zero before it falls. A shorter time of stick or slip is
 /// left out: its force matters by the third power of the time.
-const HALVINGS: usize = 20;
+const FRICTION_3D_SLIP_HALVINGS: usize = 20;
 
 /// A solved panel.
 pub(super) struct Solved {
@@ -56,12 +56,12 @@ pub(super) fn solve(
     };
     let mut step = [f64::INFINITY; STAGES];
     let mut rates = [0.0; STAGES];
-    for _ in 0..ITERATIONS {
+    for _ in 0..FRICTION_3D_SLIP_ITERATIONS {
         turn(&mut panel, nodes);
         for (rate, (across, limit)) in rates.iter_mut().zip(panel.across.iter().zip(&panel.limits)) {
             *rate = across / limit;
         }
-        if largest(&step) < LAST_STEP {
+        if largest(&step) < FRICTION_3D_SLIP_LAST_STEP {
             break;
         }
         for (i, step) in step.iter_mut().enumerate() {
@@ -88,7 +88,7 @@ pub(super) fn solve(
         .points()
         .windows(2)
         .all(|pair| (pair[1] - pair[0]).abs() < LARGEST_TURN);
-    if largest(&step).is_nan() || largest(&step) >= LAST_STEP || !turns_slowly {
+    if largest(&step).is_nan() || largest(&step) >= FRICTION_3D_SLIP_LAST_STEP || !turns_slowly {
         return None;
     }
     let tail = tables
@@ -186,7 +186,7 @@ pub(super) fn first_zero(
 /// its slope vanishes as well, and a stick may be shorter than the first interval.
 fn return_to_zero(end: (f64, f64), rounding: f64, margin: &mut impl FnMut(f64) -> (f64, f64)) -> f64 {
     let mut end = end;
-    for _ in 0..HALVINGS {
+    for _ in 0..FRICTION_3D_SLIP_HALVINGS {
         let share = 0.5 * end.0;
         let value = margin(share).0;
         if value > rounding {

@@ -48,7 +48,7 @@ pub(super) struct StuckSlider {
 }
 
 /// Violations below this, relative to the current lengths, are rounding.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const FRICTION_3D_STUCK_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Gap between two discs, relative to the size of the motion, that is no rounding.
 const CLEARLY: f64 = 1e-6;
@@ -62,14 +62,14 @@ const DIRECTIONS: [[f64; 2]; 4] = [
 ];
 
 /// Largest number of discs that are added; a few suffice but for a cycle by rounding.
-const ROUNDS: usize = 200;
+const FRICTION_3D_STUCK_ROUNDS: usize = 200;
 
 impl Disc {
     /// Distance of `w` outside the disc; not above 0 for points that are inside to rounding.
     fn violation(&self, w: [f64; 2]) -> f64 {
         let [x, y] = self.centre;
         let size = x.abs() + y.abs() + w[0].abs() + w[1].abs();
-        (w[0] - x).hypot(w[1] - y) - self.radius - ROUNDING * size
+        (w[0] - x).hypot(w[1] - y) - self.radius - FRICTION_3D_STUCK_ROUNDING * size
     }
 
     /// Its point nearest to 0, which lies outside.
@@ -109,7 +109,7 @@ pub(super) fn stuck_slider(count: usize, disc: impl Fn(usize) -> Disc) -> Option
     }
     let mut at = [0.0; 2];
     let mut held: [Option<usize>; 2] = [None; 2];
-    for _ in 0..ROUNDS {
+    for _ in 0..FRICTION_3D_STUCK_ROUNDS {
         let mut worst = (0.0, None);
         for j in 0..count {
             let violation = disc(j).violation(at);

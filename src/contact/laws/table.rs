@@ -21,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Share of the sizes that are subtracted up to which a difference counts as rounding.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const TABLE_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A line f = slope·x + offset, from the displacement `from` on.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +87,7 @@ impl Table {
                 );
             }
             // Points on a line through the origin make one, in spite of the rounding of the division.
-            let noise = ROUNDING * (f[0].abs().max(f[1].abs()) + slope.abs() * x[near].abs());
+            let noise = TABLE_ROUNDING * (f[0].abs().max(f[1].abs()) + slope.abs() * x[near].abs());
             let line = Line {
                 from: if k == 0 { f64::NEG_INFINITY } else { x[0] },
                 slope,
@@ -274,10 +274,10 @@ impl Law for Table {
         let odd_at = |x: f64| {
             let (a, b) = (&self.lines[self.line_from(x)], &self.lines[self.line_from(-x)]);
             let sum = (a.slope - b.slope) * x + self.scaled(a.offset + b.offset);
-            let size = (a.slope.abs() + b.slope.abs()) * x.abs() + (a.noise + b.noise) / (ROUNDING * self.length);
-            sum.abs() <= ROUNDING * size
+            let size = (a.slope.abs() + b.slope.abs()) * x.abs() + (a.noise + b.noise) / (TABLE_ROUNDING * self.length);
+            sum.abs() <= TABLE_ROUNDING * size
         };
-        let ends = (first.slope - last.slope).abs() <= ROUNDING * first.slope.abs().max(last.slope.abs());
+        let ends = (first.slope - last.slope).abs() <= TABLE_ROUNDING * first.slope.abs().max(last.slope.abs());
         ends && odd_at(0.0) && self.levels().all(odd_at)
     }
 

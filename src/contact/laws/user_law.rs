@@ -232,7 +232,7 @@ impl fmt::Debug for User {
 }
 
 /// A law of unknown form counts as linear at motions this many times smaller.
-const FAR: f64 = 1e6;
+const USER_LAW_FAR: f64 = 1e6;
 
 impl ContactLaw for User {
     fn name(&self) -> &'static str {
@@ -286,7 +286,7 @@ impl Law for User {
     }
 
     fn linearisation_scale(&self, _ranges: &[Range], _reference: f64) -> f64 {
-        FAR
+        USER_LAW_FAR
     }
 
     fn has_known_linear_range(&self) -> bool {

@@ -13,10 +13,10 @@
 use core::array::from_fn;
 
 /// Margin of the bounds.
-const MARGIN: f64 = 100.0;
+const CONTRACTION_MARGIN: f64 = 100.0;
 
 /// Largest residual over the tolerance from which the end is foreseen.
-const LARGEST: f64 = 100.0;
+const CONTRACTION_LARGEST: f64 = 100.0;
 
 /// Ends in a row that are foreseen, after which the contraction is measured again.
 const MOST_FORESEEN: usize = 20;
@@ -50,10 +50,10 @@ impl Contraction {
 
     /// Bound of the residual behind a step; `None` where it is not known to be within the tolerance, or not the step from there.
     pub fn foresee(&mut self, sizes: Sizes, tolerance: f64) -> Option<f64> {
-        let bounds: Sizes = from_fn(|i| MARGIN * self.rates[i].max(1.0) * sizes[i] * sizes[i]);
+        let bounds: Sizes = from_fn(|i| CONTRACTION_MARGIN * self.rates[i].max(1.0) * sizes[i] * sizes[i]);
         // A comparison with NaN is false.
         let is_known = bounds.iter().all(|bound| *bound <= tolerance)
-            && sizes[0] <= LARGEST * tolerance
+            && sizes[0] <= CONTRACTION_LARGEST * tolerance
             && self.foreseen < MOST_FORESEEN;
         self.foreseen += usize::from(is_known);
         is_known.then_some(bounds[0])

@@ -17,10 +17,10 @@ use crate::problem::Problem;
 const LARGEST_CHANGE: f64 = 1e-3;
 
 /// Largest Newton step to the point, over the motion: after a longer one the matrices may differ too much.
-const SMALL: f64 = 1e-5;
+const LAST_EVALUATION_SMALL: f64 = 1e-5;
 
 /// Rounds that take less time than new factors.
-const MOST_ROUNDS: usize = 3;
+const LAST_EVALUATION_MOST_ROUNDS: usize = 3;
 
 impl Corrector {
     /// Solves for the last Newton step, in `step`, and for the tangent, in `next`, by the factors of the iteration before, whose
@@ -33,7 +33,7 @@ impl Corrector {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let n = v.len() - 1;
-        if last_step.is_nan() || last_step > SMALL {
+        if last_step.is_nan() || last_step > LAST_EVALUATION_SMALL {
             return Ok(false);
         }
         // Near-rigid contacts leave residuals that are rounding, to which a matrix that is not exact would add.
@@ -63,7 +63,7 @@ impl Corrector {
         }
         let size = norm(&self.next);
         let mut last = size;
-        for round in 0..MOST_ROUNDS {
+        for round in 0..LAST_EVALUATION_MOST_ROUNDS {
             let (unknowns, along) = (&mut self.trial[..n], metric.p * self.next[n]);
             for (scaled, x) in unknowns.iter_mut().zip(&self.next) {
                 *scaled = metric.u * x;

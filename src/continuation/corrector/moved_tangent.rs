@@ -15,15 +15,15 @@ use crate::linalg::norm;
 use core::array::from_fn;
 
 /// Least share of the way between two points that leads along the row.
-const ALONG: f64 = 0.9;
+const MOVED_TANGENT_ALONG: f64 = 0.9;
 
 /// Least ratio of the way between the two points before to that from the last one.
 const APART: f64 = 0.1;
 
 /// Largest step over the way from the last point: the branch may have had a corner there. Below the least one tangents are exact
 /// enough to predict residuals far below those from which a step is foreseen.
-const SMALL: f64 = 1e-6;
-const NEGLIGIBLE: f64 = 1e-9;
+const MOVED_TANGENT_SMALL: f64 = 1e-6;
+const MOVED_TANGENT_NEGLIGIBLE: f64 = 1e-9;
 
 impl Corrector {
     /// Weights of the matrix here and of those at the points before in K′; `None` where they are not of one branch.
@@ -31,10 +31,11 @@ impl Corrector {
         let [here, before, oldest] = &self.matrices_at;
         let way = |from: &[f64], to: &[f64]| {
             let way = metric.along_row(from, to, row);
-            (way > ALONG * metric.distance(from, to)).then_some(way)
+            (way > MOVED_TANGENT_ALONG * metric.distance(from, to)).then_some(way)
         };
         // Near-rigid contacts have matrices whose rounding would be amplified.
-        let is_small = |last: &f64| (NEGLIGIBLE * last..=SMALL * last).contains(&norm(&self.step));
+        let is_small =
+            |last: &f64| (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&norm(&self.step));
         let last = way(before, here).filter(|last| is_small(last) && self.at.rounding == 0.0)?;
         let slope = [1.0 / last, -1.0 / last, 0.0];
         let Some(first) = way(oldest, before).filter(|first| *first > APART * last) else {

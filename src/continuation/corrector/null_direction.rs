@@ -12,11 +12,11 @@ use crate::linalg::{dot, norm};
 use crate::problem::Problem;
 
 /// Largest number of iterations, and the sine of the angle between the last two directions that ends them.
-const MAX_ITERATIONS: usize = 40;
+const NULL_DIRECTION_MAX_ITERATIONS: usize = 40;
 const CONVERGED: f64 = 1e-9;
 
 /// Relative shift of the motion where the matrix is singular to rounding.
-const SHIFT: f64 = 1e-9;
+const NULL_DIRECTION_SHIFT: f64 = 1e-9;
 
 impl Corrector {
     /// The null vector φ of the Jacobian at `v` = (u, p), from a start in u, as a direction (φ, 0) of length 1; `None` where the
@@ -37,7 +37,7 @@ impl Corrector {
         let mut row = try_vec(n + 1, 0.0, CONTEXT)?;
         row[n] = 1.0;
         let mut at = try_copy(v, CONTEXT)?;
-        for shift in [0.0, SHIFT] {
+        for shift in [0.0, NULL_DIRECTION_SHIFT] {
             for (x, start) in at[..n].iter_mut().zip(start) {
                 *x += shift * metric.u * start;
             }
@@ -66,7 +66,7 @@ impl Corrector {
         for (x, s) in last.iter_mut().zip(start) {
             *x = s * inverse;
         }
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..NULL_DIRECTION_MAX_ITERATIONS {
             interrupt.check()?;
             self.step.copy_from_slice(&last);
             if !self.solve(problem, (metric, row), TANGENT_ERROR, interrupt)? {
