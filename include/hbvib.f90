@@ -60,6 +60,9 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_AERO_DISPLACEMENT = 0, HBVIB_AERO_VELOCITY = 1
    ! hbvib_sector_frame
    integer(c_int32_t), parameter, public :: HBVIB_CARTESIAN = 0, HBVIB_CYLINDRICAL = 1
+   ! hbvib_mistuning
+   integer(c_int32_t), parameter, public :: HBVIB_MISTUNING_STIFFNESS = 0, HBVIB_MISTUNING_FREQUENCY = 1, &
+      HBVIB_MISTUNING_MASS = 2, HBVIB_MISTUNING_DAMPING = 3, HBVIB_MISTUNING_PRELOAD = 4, HBVIB_MISTUNING_FORCE = 5
    ! hbvib_contact_kind
    integer(c_int32_t), parameter, public :: HBVIB_JENKINS = 1, HBVIB_FRICTION_2D = 2, HBVIB_FRICTION_3D = 3, &
       HBVIB_UNILATERAL = 4, HBVIB_CUBIC = 5, HBVIB_REGULARISED = 6, HBVIB_TABLE = 7, HBVIB_POLYNOMIAL = 8, HBVIB_CALLER_LAW = 9
@@ -788,6 +791,25 @@ module hbvib
          type(c_ptr), intent(inout) :: out
          integer(c_int32_t) :: status
       end function hbvib_cyclic_from_sector
+
+      function hbvib_wheel_new(cyclic, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: cyclic
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_wheel_new
+
+      function hbvib_wheel_mistune(wheel, cyclic, kind, n_dofs, dofs, direction, contact, sectors, delta) bind(c) result(status)
+         import
+         type(c_ptr), value :: wheel, cyclic
+         integer(c_int32_t), value :: kind
+         integer(c_int64_t), value :: n_dofs
+         integer(c_int64_t), intent(in) :: dofs(*)
+         type(hbvib_matrix), intent(in), optional :: direction
+         integer(c_int64_t), value :: contact, sectors
+         real(c_double), intent(in) :: delta(*)
+         integer(c_int32_t) :: status
+      end function hbvib_wheel_mistune
 
       function hbvib_contact_init(c, size_of_c) bind(c) result(status)
          import

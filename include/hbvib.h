@@ -866,6 +866,71 @@ hbvib_status hbvib_sector_init(hbvib_sector *s, size_t size_of_s);
 HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **out);
 
+/// Makes the whole wheel of a cyclic model as a plain model, for every analysis. Degree of freedom
+/// i of sector s is s * ndof + i and contact c is s * contacts + c, with ndof degrees of freedom
+/// and `contacts` contacts of a sector; sectors count from 0. The phases of the engine order are
+/// in the forces. Forces of several engine orders e at one speed are those in harmonics e of a
+/// model under engine order 1.
+///
+/// cyclic  model of a sector, without faces; later changes of it have no effect on the wheel.
+/// out     receives the wheel; untouched on error. Free it by hbvib_model_free.
+/// Errors: HBVIB_E_UNSUPPORTED (a plain model, a sector with faces, complex aerodynamic forces,
+/// aerodynamic forces per displacement with damping by stiffness), HBVIB_E_ARGUMENT (a nodal
+/// diameter without matrix), HBVIB_E_DIMENSION (too large), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_wheel_new(const hbvib_model *cyclic, hbvib_model **out);
+
+/// Quantities that differ between the sectors of a wheel, by delta of each.
+typedef enum {
+  /// Stiffness of the blade times 1 + delta.
+  HBVIB_MISTUNING_STIFFNESS = 0,
+  /// Frequencies of the blade, clamped where it is attached, times 1 + delta.
+  HBVIB_MISTUNING_FREQUENCY = 1,
+  /// Mass of the degrees of freedom of the blade times 1 + delta.
+  HBVIB_MISTUNING_MASS = 2,
+  /// Damping of the blade over its attachment times 1 + delta: damping matrix, Rayleigh damping.
+  HBVIB_MISTUNING_DAMPING = 3,
+  /// Normal load of a contact times 1 + delta.
+  HBVIB_MISTUNING_PRELOAD = 4,
+  /// Forces on the sector times 1 + delta.
+  HBVIB_MISTUNING_FORCE = 5,
+} hbvib_mistuning;
+
+/// Mistunes a wheel. Changes of matrices refer to the cyclic model, and several calls add up; loads
+/// and forces are multiplied. A blade is given by its degrees of freedom: its stiffness is that of
+/// its motion relative to the one that its attachment carries along, so that a rigid motion of a
+/// free blade has none and the clamped blade has all of it. Rayleigh damping follows the matrices.
+///
+/// wheel      made by hbvib_wheel_new of `cyclic`; unchanged on error.
+/// cyclic     the model of the sector.
+/// kind       a value of enum hbvib_mistuning.
+/// n_dofs     degrees of freedom of the blade of a sector, 0 with a direction and for
+///            HBVIB_MISTUNING_PRELOAD and HBVIB_MISTUNING_FORCE.
+/// dofs       their numbers, n_dofs numbers, each once.
+/// direction  matrix of a sector, delta times which is added to stiffness, mass or damping, instead
+///            of a blade; not with HBVIB_MISTUNING_FREQUENCY. Or NULL.
+/// contact    contact of the sector for HBVIB_MISTUNING_PRELOAD, -1: all with a normal load; else
+///            without effect.
+/// sectors    length of delta, the number of sectors.
+/// delta      of each sector, finite.
+/// Errors: HBVIB_E_ARGUMENT (kind, dofs twice or none that moves, neither dofs nor direction, or
+/// both; a load below 0), HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION (another model or number
+/// of sectors, n_dofs), HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the stiffness of the clamped
+/// blade), HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an attachment that is too large),
+/// those of hbvib_model_set_matrix for the direction; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
+HBVIB_NODISCARD
+hbvib_status hbvib_wheel_mistune(hbvib_model *wheel,
+                                 const hbvib_model *cyclic,
+                                 int32_t kind,
+                                 int64_t n_dofs,
+                                 const int64_t *dofs,
+                                 const hbvib_matrix *direction,
+                                 int64_t contact,
+                                 int64_t sectors,
+                                 const double *delta);
+
 /* ==============================================================================================
  * Contacts: friction, unilateral contacts, nonlinear springs and dampers, patches
  * ============================================================================================== */

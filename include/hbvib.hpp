@@ -1158,6 +1158,17 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     use(hbvib_cyclic_set_aero, n, dofs.data(), offsets.length(), reinterpret_cast<const double*>(coefficients.data()), offsets.data(), form);
   }
 
+  /// The whole wheel of a cyclic model, a plain model: degree of freedom i of sector s is s * ndof + i.
+  Model wheel() const {
+    Model whole = make(hbvib_wheel_new, get());
+    whole.core_->forces = core_->forces;
+    return whole;
+  }
+  /// Mistunes the wheel of a sector by a number for each; dofs of the blade, contact -1: all with a normal load.
+  void mistune(const Model& sector, hbvib_mistuning kind, In<double> delta, In<Index> dofs = {}, Index contact = -1) {
+    use(hbvib_wheel_mistune, sector.get(), kind, dofs.length(), dofs.data(), nullptr, contact, delta.length(), delta.data());
+  }
+
   /// Adds Re(amplitude exp(i harmonic omega t)) on a degree of freedom.
   void add_force(Index dof, Index harmonic, Complex amplitude) {
     use(hbvib_model_add_force, dof, harmonic, amplitude.real(), amplitude.imag());

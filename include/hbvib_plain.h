@@ -87,6 +87,14 @@ typedef enum {
   HBVIB_CYLINDRICAL = 1
 } hbvib_sector_frame;
 typedef enum {
+  HBVIB_MISTUNING_STIFFNESS = 0,
+  HBVIB_MISTUNING_FREQUENCY = 1,
+  HBVIB_MISTUNING_MASS = 2,
+  HBVIB_MISTUNING_DAMPING = 3,
+  HBVIB_MISTUNING_PRELOAD = 4,
+  HBVIB_MISTUNING_FORCE = 5
+} hbvib_mistuning;
+typedef enum {
   HBVIB_JENKINS = 1,
   HBVIB_FRICTION_2D = 2,
   HBVIB_FRICTION_3D = 3,
@@ -782,6 +790,8 @@ hbvib_status hbvib_cyclic_set_aero(hbvib_model *model, int64_t n_dofs, const int
 hbvib_status hbvib_cyclic_aero(const hbvib_model *model, int32_t form, int64_t capacity, int64_t *dof_force, int64_t *dof_motion, int64_t *offset, double *coefficient, int64_t *count);
 hbvib_status hbvib_sector_init(hbvib_sector *s, size_t size_of_s);
 hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **out);
+hbvib_status hbvib_wheel_new(const hbvib_model *cyclic, hbvib_model **out);
+hbvib_status hbvib_wheel_mistune(hbvib_model *wheel, const hbvib_model *cyclic, int32_t kind, int64_t n_dofs, const int64_t *dofs, const hbvib_matrix *direction, int64_t contact, int64_t sectors, const double *delta);
 hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
 hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c, int64_t *id);
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);

@@ -105,6 +105,7 @@ pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
 pub use model::linear_modes::{ContactState, LinearModes};
+pub use model::mistuning::{BladeProperty, Mistuning};
 pub use model::sector_faces::{SectorDescription, SectorFrame};
 pub use model::speed::Speed;
 pub use model::spring::Spring;

@@ -21,13 +21,14 @@ from ._sensitivity import _Sensitivity
 from ._static_history import _StaticHistories
 from ._structs import _new
 from ._time_integration import _TimeIntegration
+from ._wheel import _Wheels
 
 if TYPE_CHECKING:
     from ._choices import MatrixKinds, SectorFrames
 
 
 class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands,
-            _StaticHistories):
+            _StaticHistories, _Wheels):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.
 

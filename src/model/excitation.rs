@@ -86,6 +86,13 @@ impl Excitation {
         }
     }
 
+    /// Multiplies each force by a factor of its degree of freedom.
+    pub(super) fn scale_each(&mut self, factor: impl Fn(usize) -> f64) {
+        for force in &mut self.forces {
+            force.value *= factor(force.dof);
+        }
+    }
+
     /// Moves forces to `periods` times their harmonic, of a frequency that is smaller by that factor.
     pub(super) fn stretch(&mut self, periods: usize) -> Result<()> {
         for force in &self.forces {

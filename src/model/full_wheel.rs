@@ -107,7 +107,7 @@ impl Structure {
     }
 
     /// One matrix as it was given.
-    fn given_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+    pub(super) fn given_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         if self.blocks[which as usize].diameters.is_empty() {
             self.sectors_around(which, interrupt)
         } else {
@@ -149,7 +149,11 @@ impl Structure {
 
     /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
     /// couples a sector to the j-th after it is Bⱼ = 1/n Σ_d A(2πd/n) e^{+2πijd/n}.
-    fn blocks_of_waves(&self, wave: impl Fn(&Self, usize) -> Result<Csc>, interrupt: &Interrupt<'_>) -> Result<Csc> {
+    pub(super) fn blocks_of_waves(
+        &self,
+        wave: impl Fn(&Self, usize) -> Result<Csc>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let divisor = self.sectors() / sectors;
         let share = 1.0 / sectors as f64;

@@ -15,6 +15,7 @@ pub mod influence;
 pub mod linear_modes;
 mod longer_period;
 mod mechanical_model;
+pub mod mistuning;
 mod modal_damping;
 pub mod mode_selection;
 mod model_checks;
@@ -43,6 +44,7 @@ pub mod structure;
 mod stuck_shapes;
 pub mod wave;
 pub mod wave_matrix;
+mod wheel;
 
 pub use mechanical_model::Model;
 pub(crate) use mechanical_model::copy;

@@ -110,6 +110,11 @@ fn aerodynamic_influence_acts_and_is_checked() {
 }
 
 #[test]
+fn the_wheel_of_a_cyclic_model_has_its_pattern() {
+    silent("mistuned", |_| vec![]);
+}
+
+#[test]
 fn results_are_what_they_say() {
     silent("results", |_| vec![]);
 }

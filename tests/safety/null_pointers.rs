@@ -41,6 +41,7 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("hbvib_campbell_crossings", "engine_order", "1"),
     ("hbvib_cyclic_set_aero", "n_dofs", "1"),
     ("hbvib_cyclic_set_aero", "n_offsets", "1"),
+    ("hbvib_wheel_mistune", "n_dofs", "1"),
     ("", "n", "2"),
     ("", "n_dof", "3"),
     ("", "ndof", "3"),

@@ -4,6 +4,7 @@
 mod common;
 
 mod boundary_sector;
+mod mistuned_wheel;
 mod sector_contacts;
 mod sector_frequencies;
 mod sector_mode_rounding;

@@ -36,7 +36,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Cyclic structures",
         about: "sectors, their faces and couplings, diameters, engine order, aerodynamics",
-        files: &["cyclic", "cyclic_aero", "cyclic_faces"],
+        files: &["cyclic", "cyclic_aero", "cyclic_faces", "cyclic_wheel"],
     },
     Section {
         title: "Contacts",

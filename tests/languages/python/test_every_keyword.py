@@ -260,10 +260,11 @@ for name, (structs, others) in OF_STRUCTS.items():
     arguments = set(inspect.signature(method).parameters) - {"self"} - HOOKS - set(others.split())
     check(f"{name}: every argument is a field", arguments <= fields, arguments - fields)
 
-# Calls that need no claim: without arguments that could be dropped, drawings, files, and those of test_every_constant.py.
+# Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and mistune of
+# test_wheels.py.
 PLAIN = {
     "add_contact", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic", "free", "from_bytes", "load",
-    "matrix", "save", "to_bytes",
+    "matrix", "mistune", "save", "to_bytes", "wheel",
     "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "higher_peaks", "limit_cycles",
     "mode_point", "point",
     "to_dataframe", "to_xarray",

@@ -60,13 +60,14 @@ PREFIXES = dict(
     Follow="FOLLOW_",
     BandOf="BAND_",
     AeroForm="AERO_",
+    Mistuning="MISTUNING_",
     FlexibilityWay="FLEXIBILITY_WAY_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND, "HBVIB_DIAMETER_OF_ENGINE_ORDER": hbvib.DIAMETER_OF_ENGINE_ORDER}
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
-    "ParameterKind Scaling Quantity Derivative Follow BandOf AeroForm FlexibilityWay Measure "
+    "ParameterKind Scaling Quantity Derivative Follow BandOf AeroForm Mistuning FlexibilityWay Measure "
     "Component Reading"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():

@@ -1,0 +1,95 @@
+/* The wheel of a cyclic model: its matrices, contacts and forces; patterns of mistuning in closed form; refusals. */
+#include "common.h"
+
+#include <complex.h>
+#include <math.h>
+
+enum { SECTORS = 5 };
+
+static const double none[SECTORS] = {0}, delta[SECTORS] = {0.1, -0.05, 0.02, 0, 0.03};
+
+/* A mass and stiffness, a coupling to the next sector, a contact with the ground and a force of engine order 2. */
+static hbvib_model *ring(void)
+{
+    const double one = 1, stiffness = 3, coupling = -1;
+    hbvib_matrix a;
+    hbvib_contact c;
+    hbvib_model *model = NULL;
+    WORKS("ring", hbvib_cyclic_new(1, SECTORS, &model));
+    a = matrix(1, &one);
+    WORKS("mass", hbvib_model_set_matrix(model, HBVIB_MASS, &a));
+    a = matrix(1, &stiffness);
+    WORKS("stiffness", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &a));
+    a = matrix(1, &coupling);
+    WORKS("coupling", hbvib_cyclic_set_coupling(model, HBVIB_STIFFNESS, &a));
+    WORKS("wave", hbvib_cyclic_set_wave(model, 2));
+    WORKS("init", hbvib_contact_init(&c, sizeof c));
+    c.kind = HBVIB_JENKINS;
+    c.dof_a[0] = 0;
+    c.dof_b[0] = HBVIB_GROUND;
+    c.kt = 1;
+    c.mu = 0.3;
+    c.preload = 2;
+    WORKS("contact", hbvib_model_add_contact(model, &c, NULL));
+    WORKS("force", hbvib_model_add_force(model, 0, 1, 0.2, 0));
+    return model;
+}
+
+/* An entry of the diagonal of a matrix. */
+static double diagonal(const hbvib_model *wheel, int32_t which, int64_t at)
+{
+    int64_t row[64], column[64], count = 0, i;
+    double complex value[64];
+    WORKS("matrix", hbvib_model_matrix(wheel, which, HBVIB_BLOCK_OWN, 64, row, column, (double *)value, &count));
+    for (i = 0; i < count; i++)
+        if (row[i] == at && column[i] == at) return creal(value[i]);
+    return verdict(90);
+}
+
+int main(void)
+{
+    hbvib_model *cyclic = ring(), *wheel = NULL;
+    hbvib_matrix a;
+    const double direction = 4;
+    const int64_t blade = 0, far = 7;
+    double complex force[SECTORS];
+    int64_t dof[SECTORS], harmonic[SECTORS], unbalance[SECTORS], count = 0;
+    hbvib_contact c;
+    int s;
+    a = matrix(1, &direction);
+
+    WORKS("wheel", hbvib_wheel_new(cyclic, &wheel));
+    EXPECT("size", hbvib_model_dofs(wheel) == SECTORS && hbvib_model_sectors(wheel) == 1);
+    WORKS("blade", hbvib_wheel_mistune(wheel, cyclic, HBVIB_MISTUNING_FREQUENCY, 1, &blade, NULL, 0, SECTORS, delta));
+    WORKS("mass", hbvib_wheel_mistune(wheel, cyclic, HBVIB_MISTUNING_MASS, 0, NULL, &a, 0, SECTORS, delta));
+    WORKS("load", hbvib_wheel_mistune(wheel, cyclic, HBVIB_MISTUNING_PRELOAD, 0, NULL, NULL, -1, SECTORS, delta));
+    WORKS("force", hbvib_wheel_mistune(wheel, cyclic, HBVIB_MISTUNING_FORCE, 0, NULL, NULL, 0, SECTORS, delta));
+
+    WORKS("forces", hbvib_model_forces(wheel, SECTORS, dof, harmonic, (double *)force, unbalance, &count));
+    EXPECT("forces", count == SECTORS);
+    WORKS("init", hbvib_contact_init(&c, sizeof c));
+    for (s = 0; s < SECTORS; s++) {
+        /* A blade over the neighbours that carry it along: 3 (x_s - (x_(s-1) + x_(s+1)) / 3)^2 / 2. */
+        const double own = delta[s] * (2 + delta[s]), d1 = delta[(s + 1) % SECTORS], d2 = delta[(s + 4) % SECTORS];
+        const double stiffness = 3 + 3 * own + (d1 * (2 + d1) + d2 * (2 + d2)) / 3;
+        const double complex expected = 0.2 * (1 + delta[s]) * cexp(-2 * I * acos(-1.0) * 2 * s / SECTORS);
+        EXPECT("stiffness", fabs(diagonal(wheel, HBVIB_STIFFNESS, s) - stiffness) < 1e-14);
+        EXPECT("mass", fabs(diagonal(wheel, HBVIB_MASS, s) - 1 - 4 * delta[s]) < 1e-15);
+        EXPECT("force", dof[s] == s && harmonic[s] == 1 && cabs(force[s] - expected) < 1e-15);
+        WORKS("contact", hbvib_model_contact(wheel, s, &c, NULL));
+        EXPECT("contact", c.dof_a[0] == s && fabs(c.preload - 2 * (1 + delta[s])) < 1e-15);
+    }
+
+    REFUSED("null", hbvib_wheel_new(cyclic, NULL), HBVIB_E_NULL, 2, "out");
+    REFUSED("plain", hbvib_wheel_new(wheel, &wheel), HBVIB_E_UNSUPPORTED, 1, "plain structure");
+    REFUSED("kind", hbvib_wheel_mistune(wheel, cyclic, 6, 0, NULL, NULL, 0, SECTORS, none), HBVIB_E_ARGUMENT, 3, "kind = 6");
+    REFUSED("dofs", hbvib_wheel_mistune(wheel, cyclic, 0, 1, &far, NULL, 0, SECTORS, none), HBVIB_E_INDEX, 5, "dofs");
+    REFUSED("neither", hbvib_wheel_mistune(wheel, cyclic, 0, 0, NULL, NULL, 0, SECTORS, none), HBVIB_E_ARGUMENT, 4, "direction");
+    REFUSED("both", hbvib_wheel_mistune(wheel, cyclic, 0, 1, &blade, &a, 0, SECTORS, none), HBVIB_E_ARGUMENT, 6, "one of them");
+    REFUSED("frequency", hbvib_wheel_mistune(wheel, cyclic, 1, 0, NULL, &a, 0, SECTORS, none), HBVIB_E_ARGUMENT, 6, "blade");
+    REFUSED("contact", hbvib_wheel_mistune(wheel, cyclic, 4, 0, NULL, NULL, 1, SECTORS, none), HBVIB_E_INDEX, 7, "contact");
+    REFUSED("length", hbvib_wheel_mistune(wheel, cyclic, 5, 0, NULL, NULL, 0, 4, none), HBVIB_E_DIMENSION, 9, "delta");
+    WORKS("wheel", hbvib_model_free(wheel));
+    WORKS("cyclic", hbvib_model_free(cyclic));
+    return verdict(90);
+}
