@@ -19,7 +19,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the mistuning";
 
 /// Numbers of the matrix K_bb⁻¹ K_br that are affordable.
-const MOST_DEGREES: usize = 4_000_000;
+const LARGEST_ATTACHMENT: usize = 4_000_000;
 
 /// Difference of mirrored entries of a stiffness, relative to the largest, that is rounding.
 const MIRROR_ROUNDING: f64 = 1e-10;
@@ -256,10 +256,10 @@ impl Structure {
         root.sort_unstable();
         root.dedup();
         let nr = root.len();
-        if nb.saturating_mul(nr) > MOST_DEGREES {
+        if nb.saturating_mul(nr) > LARGEST_ATTACHMENT {
             return fail!(
                 Unsupported,
-                "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {MOST_DEGREES}; give \
+                "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {LARGEST_ATTACHMENT}; give \
                  a direction"
             );
         }
