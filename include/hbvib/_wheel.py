@@ -54,7 +54,7 @@ class _Wheels(_Owner):
         >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-1))
         >>> wheel = sector.wheel()
         >>> wheel.mistune(sector, "mass", 0.02 * np.cos(np.arange(8)), dofs=[0])
-        >>> wheel.matrix("mass")[1, 1].round(6)
+        >>> round(float(wheel.matrix("mass")[1, 1]), 6)
         1.010806
         """
         numbers = _array("dofs", [] if dofs is None else dofs, np.int64).ravel()

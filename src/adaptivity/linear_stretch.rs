@@ -8,6 +8,7 @@
 use crate::adaptivity::branch_tracer::{BranchTracer, Stretch, some_unless_lost};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_grid::LinearGrid;
+use crate::continuation::bracket::Bracket;
 use crate::continuation::special_points::SpecialPoint;
 use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status, try_push};
@@ -390,7 +391,7 @@ impl BranchTracer<'_> {
         Ok(None)
     }
 
-    /// A root of the derivative of the amplitude between two values, by the Illinois variant of regula falsi.
+    /// A root of the derivative of the amplitude between two values.
     fn stationary(
         &self,
         analysis: &mut dyn Traceable,
@@ -398,17 +399,14 @@ impl BranchTracer<'_> {
         near: &Point,
         [low, high]: [(f64, f64); 2],
     ) -> Result<Option<Point>> {
-        let (mut a, mut b) = (low, high);
+        let width = high.0 - low.0;
+        let mut bracket = Bracket::new(low.1, high.1);
         let mut best = None;
-        let mut side = 0;
         for _ in 0..LINEAR_STRETCH_MAX_EVALUATIONS {
-            let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
-            let at = if secant > a.0 && secant < b.0 {
-                secant
-            } else {
-                0.5 * (a.0 + b.0)
-            };
-            if b.0 - a.0 <= LINEAR_STRETCH_ROUNDING * b.0.abs() || at <= a.0 || at >= b.0 {
+            let (share, is_last) = (bracket.guess(), bracket.is_last());
+            let at = low.0 + share * width;
+            let rounding = LINEAR_STRETCH_ROUNDING * at.abs();
+            if bracket.width() * width <= rounding || at <= low.0 || at >= high.0 {
                 break;
             }
             let Some(point) = analysis.linear_at(near, at, self.interrupt)? else {
@@ -416,21 +414,7 @@ impl BranchTracer<'_> {
             };
             let slope = growth_of(analysis, kind, &point)?;
             best = Some(point);
-            if slope == 0.0 {
-                break;
-            }
-            let (end, other, this) = if slope > 0.0 {
-                (&mut a, &mut b, -1)
-            } else {
-                (&mut b, &mut a, 1)
-            };
-            let converged = (at - end.0).abs() <= LINEAR_STRETCH_ROUNDING * at.abs();
-            *end = (at, slope);
-            if side == this {
-                other.1 *= 0.5;
-            }
-            side = this;
-            if converged {
+            if slope == 0.0 || is_last || bracket.narrow(share, slope) * width <= rounding {
                 break;
             }
         }

@@ -13,9 +13,8 @@ const INTRODUCTION: &str = "\
 # Thresholds
 
 Named numbers of the library, by the folders of `src/`, without the C interface: tolerances, limits of work, sizes of blocks, and numbers
-that were tuned. Each row is made from the declaration and its comment. After a change of either,
-`HBVIB_WRITE_INDEX=1 cargo test --release --test house thresholds` writes this page; without the variable that test fails where the
-page is out of date.
+that were tuned. Each row is made from the declaration and its comment. A test fails where the page is out of date; CONTRIBUTING.md has
+the command that writes it.
 ";
 
 /// A named number, or several in a tuple or a list.
