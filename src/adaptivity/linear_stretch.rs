@@ -28,9 +28,6 @@ const LINEAR_STRETCH_NEARLY: f64 = 0.7;
 /// Evaluations of a search for such a maximum.
 const GOLDEN_STEPS: usize = 16;
 
-/// Values that are tried by the secant in search of the end of a stretch, of about ten that suffice.
-const SECANT_TRIES: usize = 20;
-
 /// Ratio of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -194,32 +191,15 @@ impl BranchTracer<'_> {
         }
     }
 
-    /// The last point between `here` and a value beyond it at which every contact is linear.
-    ///
-    /// The share of the linear range reaches 1 there. Its secant through the last two linear points tells where; a point is tried
-    /// before that value and one behind it in turn, as far from it as it moved last. Bisection where this does not narrow.
+    /// The last point between `here` and a value beyond it at which every contact is linear, by bisection.
     fn onset(&self, analysis: &mut dyn Traceable, here: &Point, beyond: f64) -> Result<Next> {
         let mut inside = here.try_clone()?;
         let mut outside = beyond;
-        let mut share = analysis.linear_share(here)?;
-        let (mut predicted, mut error) = (f64::NAN, f64::NAN);
-        let mut tries = 0;
         while (outside - inside.parameter()).abs() > LINEAR_STRETCH_ROUNDING * outside.abs() {
-            let (from, width) = (inside.parameter(), outside - inside.parameter());
-            let sign = if tries % 2 == 0 { -1.0 } else { 1.0 };
-            let margin = (2.0 * error).max(0.5 * LINEAR_STRETCH_ROUNDING * outside.abs());
-            let at = predicted + sign * margin * width.signum();
-            let is_tried = tries < SECANT_TRIES && (at - from) * width > 0.0 && (outside - at) * width > 0.0;
-            tries += usize::from(is_tried);
-            let at = if is_tried { at } else { from + 0.5 * width };
-            match analysis.linear_at(&inside, at, self.interrupt)? {
-                Some(point) => {
-                    let next = analysis.linear_share(&point)?;
-                    let value = at + (1.0 - next) * (at - from) / (next - share);
-                    error = (value - predicted).abs();
-                    (inside, share, predicted) = (point, next, value);
-                }
-                None => outside = at,
+            let middle = 0.5 * (inside.parameter() + outside);
+            match analysis.linear_at(&inside, middle, self.interrupt)? {
+                Some(point) => inside = point,
+                None => outside = middle,
             }
         }
         Ok(Next::Onset(inside, beyond))

@@ -41,13 +41,14 @@ impl BranchTracer<'_> {
             try_push(&mut arc, (a.0.try_clone()?, a.1), CONTEXT)?;
         }
         let start = arc.len() - 1;
+        let mut locator = None;
         try_push(&mut arc, (b.0.try_clone()?, b.1), CONTEXT)?;
         for response in analysis.further_responses() {
             let mut k = start;
             while k + 1 < arc.len() {
                 k += 1;
                 analysis.select(resolution)?;
-                if let Some(found) = self.find_peaks_of(analysis, response, (&arc, k))? {
+                if let Some(found) = self.find_peaks_of(analysis, response, (&arc, k), &mut locator)? {
                     arc.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
                     arc.insert(k, found);
                     k += 1;
@@ -66,6 +67,7 @@ impl BranchTracer<'_> {
         analysis: &mut dyn Traceable,
         response: usize,
         (arc, next): (&[(Point, usize)], usize),
+        locator: &mut Option<Locator>,
     ) -> Result<Option<(Point, usize)>> {
         let resolution = analysis.resolution();
         let first = seen_here(analysis, response, &arc[next - 1])?;
@@ -84,8 +86,12 @@ impl BranchTracer<'_> {
                 }
             }
             let kind = SpecialKind::PeakOf(response);
-            let locator = Locator::new(first.unknowns().len(), self.course.settings)?;
-            let mut locator = locator.with_response(Some(response));
+            // One serves all peaks of an arc: it has the memory of a matrix.
+            let known = locator.take();
+            let locator = locator.insert(match known {
+                Some(known) => known.with_response(Some(response)),
+                None => Locator::new(first.unknowns().len(), self.course.settings)?.with_response(Some(response)),
+            });
             let found = locator.peak_on(analysis.problem(), &mut nodes, (place, place + 1), self.interrupt)?;
             if let Some(point) = found
                 && self.record_special(analysis, kind, &point)?

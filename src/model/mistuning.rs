@@ -3,7 +3,7 @@
 //! A blade is a set of degrees of freedom b; r are those to which its stiffness couples it. Its motion relative to the one
 //! that r carries along is y = x_b + K_bb⁻¹ K_br x_r, and its stiffness is the share ½ yᵀ K_bb y of the strain energy: none in
 //! a rigid motion of a free blade, and all of it with r held. Hence a pattern of blade frequencies moves the frequencies of
-//! the clamped blade by exactly its factors (component mode mistuning: Lim et al. 2007, doi:10.2514/1.26003).
+//! the clamped blade by exactly its factors (component mode mistuning: Lim, Bladh, Castanier & Pierre, AIAA Journal 45, 2007, 2285 to 2298).
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;

@@ -9,7 +9,7 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::condense::near_rigid_motion;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_extend, try_push, try_vec};
 use crate::fourier::{Reader, Reading};
 use crate::interrupt::Interrupt;
 use crate::model::reduced_wave::MotionRow;
@@ -126,6 +126,9 @@ pub struct Gauges<'a> {
     dw: Vec<Complex64>,
     x: Vec<Complex64>,
     dx: Vec<Complex64>,
+    /// The point and the direction that were read last, and the harmonics whose signals are known there.
+    last: Vec<f64>,
+    known: Vec<bool>,
 }
 
 impl<'a> Gauges<'a> {
@@ -158,10 +161,13 @@ impl<'a> Gauges<'a> {
             dw: vector(condensed.coordinates())?,
             x: vector(condensed.ndof())?,
             dx: vector(condensed.ndof())?,
+            last: Vec::new(),
+            known: try_vec(set.numbers().len(), false, CONTEXT)?,
         })
     }
 
-    /// Reads the gauges at `v` = (u, ω) along a direction of as many numbers: one of them, or all.
+    /// Reads the gauges at `v` = (u, ω) along a direction of as many numbers: one of them, or all. The signals of all are known
+    /// after either, in the harmonics that were read: a peak is found by one gauge, and recorded with all.
     ///
     /// # Errors
     /// `Singular` at an undamped resonance; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
@@ -172,14 +178,24 @@ impl<'a> Gauges<'a> {
         let interrupt = self.forces.interrupt();
         let set = condensed.set();
         let m = set.packed_len();
-        self.forces.evaluate(u, omega)?;
-        self.signals.fill(0.0);
-        self.changes.fill(0.0);
+        if !self.last.iter().eq(v.iter().chain(direction)) {
+            self.known.fill(false);
+            self.signals.fill(0.0);
+            self.changes.fill(0.0);
+            self.last.clear();
+            try_extend(&mut self.last, v, CONTEXT)?;
+            try_extend(&mut self.last, direction, CONTEXT)?;
+        }
+        let mut evaluated = false;
         let wanted = |r: usize| one.is_none_or(|one| one == r);
         for (i, &number) in set.numbers().iter().enumerate() {
             let mut gauges = self.all.iter().enumerate();
-            if !gauges.any(|(r, gauge)| wanted(r) && gauge.reads(condensed, i)) {
+            if self.known[i] || !gauges.any(|(r, gauge)| wanted(r) && gauge.reads(condensed, i)) {
                 continue;
+            }
+            if !evaluated {
+                self.forces.evaluate(u, omega)?;
+                evaluated = true;
             }
             for (c, (w, dw)) in self.w.iter_mut().zip(&mut self.dw).enumerate() {
                 *w = self.forces.minus_reference(u, c, i);
@@ -202,6 +218,7 @@ impl<'a> Gauges<'a> {
                 let change = factor * change + d_factor * value * d_omega;
                 set.set(&mut self.changes[signal], i, change);
             }
+            self.known[i] = true;
         }
         seen.clear();
         for (r, gauge) in self.all.iter().enumerate() {
