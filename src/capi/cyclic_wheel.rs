@@ -91,13 +91,14 @@ pub unsafe extern "C" fn hbvib_wheel_mistune(
     delta: *const f64,
 ) -> hbvib_status {
     call(|| {
+        let n_dofs = count(n_dofs, 4, "n_dofs")?;
+        let dofs = unsafe { input(dofs, n_dofs, 5, "dofs") }?;
+        let sectors = count(sectors, 8, "sectors")?;
+        let delta = unsafe { input(delta, sectors, 9, "delta") }?;
         let mut wheel = write::<Model>(wheel, 1)?;
         let cyclic = read::<Model>(cyclic, 2)?;
         let kind = quantity(kind).with_argument(3)?;
-        let n_dofs = count(n_dofs, 4, "n_dofs")?;
-        let dofs = indices(unsafe { input(dofs, n_dofs, 5, "dofs") }?, cyclic.ndof(), 5, "dofs")?;
-        let sectors = count(sectors, 8, "sectors")?;
-        let delta = unsafe { input(delta, sectors, 9, "delta") }?;
+        let dofs = indices(dofs, cyclic.ndof(), 5, "dofs")?;
         let (property, which) = match kind {
             Quantity::Blade(property, which) => (property, which),
             Quantity::Preload if contact == -1 => {
