@@ -41,8 +41,8 @@ impl BranchTracer<'_> {
             try_push(&mut arc, (a.0.try_clone()?, a.1), CONTEXT)?;
         }
         let start = arc.len() - 1;
-        let mut locator = None;
         try_push(&mut arc, (b.0.try_clone()?, b.1), CONTEXT)?;
+        let mut locator = None;
         for response in analysis.further_responses() {
             let mut k = start;
             while k + 1 < arc.len() {
@@ -87,11 +87,11 @@ impl BranchTracer<'_> {
             }
             let kind = SpecialKind::PeakOf(response);
             // One serves all peaks of an arc: it has the memory of a matrix.
-            let known = locator.take();
-            let locator = locator.insert(match known {
-                Some(known) => known.with_response(Some(response)),
-                None => Locator::new(first.unknowns().len(), self.course.settings)?.with_response(Some(response)),
-            });
+            let known = match locator.take() {
+                Some(known) => known,
+                None => Locator::new(first.unknowns().len(), self.course.settings)?,
+            };
+            let locator = locator.insert(known.with_response(Some(response)));
             let found = locator.peak_on(analysis.problem(), &mut nodes, (place, place + 1), self.interrupt)?;
             if let Some(point) = found
                 && self.record_special(analysis, kind, &point)?

@@ -346,9 +346,9 @@ mod tests {
             alone.chunks_exact_mut(n).for_each(|column| lu.solve(column));
             assert_eq!(at_once, alone, "{n}");
             for (x, b) in at_once.chunks_exact(n).zip(b.chunks_exact(n)) {
-                for i in 0..n {
+                for (i, b) in b.iter().enumerate() {
                     let sum: Complex64 = (0..n).map(|j| entry(j * n + i) * x[j]).sum();
-                    assert!((sum - b[i]).norm() < 1e-11, "{n}");
+                    assert!((sum - b).norm() < 1e-11, "{n}");
                 }
             }
         }

@@ -3,7 +3,8 @@
 //! A blade is a set of degrees of freedom b; r are those to which its stiffness couples it. Its motion relative to the one
 //! that r carries along is y = x_b + K_bb⁻¹ K_br x_r, and its stiffness is the share ½ yᵀ K_bb y of the strain energy: none in
 //! a rigid motion of a free blade, and all of it with r held. Hence a pattern of blade frequencies moves the frequencies of
-//! the clamped blade by exactly its factors (component mode mistuning: Lim, Bladh, Castanier & Pierre, AIAA Journal 45, 2007, 2285 to 2298).
+//! the clamped blade by exactly its factors (component mode mistuning: Lim, Bladh, Castanier & Pierre, AIAA Journal 45, 2007,
+//! 2285 to 2298).
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -14,6 +15,7 @@ use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::sector_matrices::of_independent;
 use crate::model::structure::{MatrixKind, Structure};
+use crate::model::wheel::symmetrised;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the mistuning";
@@ -153,13 +155,7 @@ impl Model {
         }
         let added = Csc::from_triplets(all, all, placed)?;
         // Overlapping shares of neighbours are summed in an order that rounding may tell.
-        let half = Complex64::new(0.5, 0.0);
-        let (_, _, gap) = added.worst_pair(Symmetry::Plain);
-        let added = if gap <= MIRROR_ROUNDING * added.max_abs() {
-            Csc::sum(all, &[(half, &added, Form::Plain), (half, &added, Form::Transposed)])?
-        } else {
-            added
-        };
+        let added = symmetrised(added, MIRROR_ROUNDING)?;
         let blocks = self.changed_structure().blocks_mut(kind)?;
         let added = KeptMatrix::new(added)?;
         let one = Complex64::ONE;

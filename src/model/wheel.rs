@@ -148,7 +148,11 @@ impl Structure {
         if self.has(kind) {
             let a = self.given_around(kind, interrupt)?;
             let per_diameter = !self.blocks[kind as usize].diameters.is_empty();
-            let a = if per_diameter { symmetrised(a)? } else { a };
+            let a = if per_diameter {
+                symmetrised(a, TRANSFORM_ROUNDING)?
+            } else {
+                a
+            };
             try_push(&mut parts, a, CONTEXT)?;
         }
         let form = match kind {
@@ -163,7 +167,7 @@ impl Structure {
         }
         if kind == MatrixKind::Damping && self.has_modal_damping() {
             let a = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
-            try_push(&mut parts, symmetrised(a)?, CONTEXT)?;
+            try_push(&mut parts, symmetrised(a, TRANSFORM_ROUNDING)?, CONTEXT)?;
         }
         let mut terms = Vec::new();
         for a in &parts {
@@ -176,10 +180,10 @@ impl Structure {
     }
 }
 
-/// The symmetric matrix where only rounding separates it from that.
-fn symmetrised(a: Csc) -> Result<Csc> {
+/// The symmetric matrix where only `rounding`, relative to the largest entry, separates it from that.
+pub(super) fn symmetrised(a: Csc, rounding: f64) -> Result<Csc> {
     let (_, _, gap) = a.worst_pair(Symmetry::Plain);
-    if gap > TRANSFORM_ROUNDING * a.max_abs() {
+    if gap > rounding * a.max_abs() {
         return Ok(a);
     }
     let half = Complex64::new(0.5, 0.0);

@@ -40,7 +40,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
             if name != "capi" {
                 sources(&path, found);
             }
-        } else if name.ends_with(".rs") && !name.ends_with("_tests.rs") {
+        } else if path.extension().is_some_and(|of| of == "rs") && !name.ends_with("_tests.rs") {
             found.push(path);
         }
     }
