@@ -139,7 +139,7 @@ module hbvib
       HBVIB_DERIVATIVE_ONE_SIDED = 2, HBVIB_DERIVATIVE_FOLD = 3
    ! hbvib_follow
    integer(c_int32_t), parameter, public :: HBVIB_FOLLOW_OMEGA = 0, HBVIB_FOLLOW_PEAK = 1, HBVIB_FOLLOW_FOLD = 2, &
-      HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
+      HBVIB_FOLLOW_MODE_MAX_DAMPING = 3, HBVIB_FOLLOW_PEAK_THROUGH_FOLDS = 4
    ! hbvib_band_of
    integer(c_int32_t), parameter, public :: HBVIB_BAND_AMPLITUDE = 0, HBVIB_BAND_PEAK_AMPLITUDE = 1, HBVIB_BAND_PEAK_OMEGA = 2
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
@@ -1682,6 +1682,16 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_optima
 
+      function hbvib_branch_turns(branch, capacity, parameter, omega, amplitude, maximum, point, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: parameter(*), omega(*), amplitude(*)
+         integer(c_int64_t), intent(inout), optional :: maximum(*), point(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_turns
+
       function hbvib_branch_higher_peaks(branch, capacity, parameter, omega, amplitude, point, count) bind(c) result(status)
          import
          type(c_ptr), value :: branch
@@ -1972,6 +1982,7 @@ module hbvib
       procedure :: bifurcations => branch_bifurcations
       procedure :: limit_cycles => branch_limit_cycles
       procedure :: optima => branch_optima
+      procedure :: turns => branch_turns
       procedure :: higher_peaks => branch_higher_peaks
       procedure :: at => branch_at
       procedure :: energy => branch_energy
@@ -2017,7 +2028,7 @@ module hbvib
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
    private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, model_batch, branch_limit_cycles
    private :: branch_bifurcations
-   private :: model_parameter_response, branch_optima, branch_higher_peaks
+   private :: model_parameter_response, branch_optima, branch_turns, branch_higher_peaks
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -3286,8 +3297,8 @@ contains
    end function model_forced_response
 
    !> A result over a parameter from start to stop: the response at the frequency omega, or with follow =
-   !> HBVIB_FOLLOW_PEAK or _FOLD the peak or fold near it, or with HBVIB_FOLLOW_MODE_MAX_DAMPING the largest damping ratio of
-   !> the nonlinear mode near it, sought within log10_amplitude(1) .. (2). Contacts are counted from 1 in parameter%contact.
+   !> HBVIB_FOLLOW_PEAK, _PEAK_THROUGH_FOLDS or _FOLD the peak or fold near it, or with HBVIB_FOLLOW_MODE_MAX_DAMPING the
+   !> largest damping ratio of the nonlinear mode near it, sought within log10_amplitude(1) .. (2). Contacts are counted from 1 in parameter%contact.
    function model_parameter_response(self, branch, parameter, start, stop, omega, solver, follow, hooks, at, log10_amplitude) &
       result(status)
       class(hbvib_model), intent(in) :: self
@@ -3832,6 +3843,29 @@ contains
       if (present(maximum)) maximum = m == 1
       if (present(point)) point = int(p) + 1
    end function branch_optima
+
+   !> Points at which a parameter response turns over the parameter: forces at which a detached curve is born or merges.
+   function branch_turns(self, parameter, omega, amplitude, maximum, point) result(status)
+      class(hbvib_branch), intent(in) :: self
+      real(dp), allocatable, intent(inout), optional :: parameter(:), omega(:), amplitude(:)
+      logical, allocatable, intent(inout), optional :: maximum(:)
+      integer, allocatable, intent(inout), optional :: point(:)
+      integer(i32) :: status
+      real(dp), allocatable :: v(:), w(:), a(:)
+      integer(i64), allocatable :: m(:), p(:)
+      integer(i64) :: n
+      n = 0
+      status = hbvib_branch_turns(self%handle, 0_i64, count=n)
+      if (status /= HBVIB_OK) return
+      allocate (v(n), w(n), a(n), m(n), p(n))
+      status = hbvib_branch_turns(self%handle, n, v, w, a, m, p, n)
+      if (status /= HBVIB_OK) return
+      if (present(parameter)) parameter = v
+      if (present(omega)) omega = w
+      if (present(amplitude)) amplitude = a
+      if (present(maximum)) maximum = m == 1
+      if (present(point)) point = int(p) + 1
+   end function branch_turns
 
    !> Peaks that are higher than the followed one of a parameter response; point: numbers of that one.
    function branch_higher_peaks(self, parameter, omega, amplitude, point) result(status)

@@ -3785,6 +3785,8 @@ typedef enum {
   HBVIB_FOLLOW_FOLD = 2,
   /// The largest damping ratio along a nonlinear mode.
   HBVIB_FOLLOW_MODE_MAX_DAMPING = 3,
+  /// A peak, which is also followed where it turns into the minimum that it meets.
+  HBVIB_FOLLOW_PEAK_THROUGH_FOLDS = 4,
 } hbvib_follow;
 
 /// Range of a parameter response. Fill it by hbvib_parameter_options_init.
@@ -3829,21 +3831,21 @@ hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t siz
 
 /// Follows a result over a parameter by arc-length continuation: the amplitude of a forced
 /// response, or the response of the options, at a fixed frequency, in a peak or in a fold, or the
-/// largest damping ratio of a nonlinear mode. Folds over the parameter are passed, minima and
-/// maxima refined. The harmonics
-/// are chosen at each point by the tolerance of the solver, or the same at all points with a
+/// largest damping ratio of a nonlinear mode. Folds over the parameter are passed
+/// (hbvib_branch_turns), minima and maxima refined (hbvib_branch_optima). The harmonics are
+/// chosen at each point by the tolerance of the solver, or the same at all points with a
 /// tolerance of 0. The branch has the fields HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, of a
-/// mode HBVIB_D_DAMPING and those of a mode, and hbvib_branch_optima; its points belong to
-/// different models, so that functions of a model and a branch refuse it.
+/// mode HBVIB_D_DAMPING and those of a mode; its points belong to different models, so that
+/// functions of a model and a branch refuse it.
 ///
 /// solver   options of the solver; NULL: the defaults.
 /// options  parameter, range, and the result to follow.
 /// hooks    progress, log and cancellation; NULL: none.
 /// out      receives the branch; untouched on error. Free it by hbvib_branch_free.
 /// A positive status says why the branch ends early: HBVIB_STOPPED_PEAK_VANISHED where a peak or
-/// a maximum of damping met a minimum. Two folds that meet in a cusp are one curve, which comes
-/// back: HBVIB_STOPPED_LEFT_RANGE. A peak that is no longer the highest is told by
-/// hbvib_branch_higher_peaks.
+/// a maximum of damping met a minimum (HBVIB_FOLLOW_PEAK_THROUGH_FOLDS goes on there). Two folds
+/// that meet in a cusp are one curve, which comes back: HBVIB_STOPPED_LEFT_RANGE. A peak that is
+/// no longer the highest is told by hbvib_branch_higher_peaks.
 /// Errors: those of hbvib_forced_response, hbvib_nonlinear_mode and of the parameters of
 /// hbvib_sensitivity; HBVIB_E_NO_CONVERGENCE also where there is no peak, fold or maximum of
 /// damping near the frequency. Threads: as for hbvib_forced_response.
@@ -3874,6 +3876,31 @@ hbvib_status hbvib_branch_optima(const hbvib_branch *branch,
                                  int64_t *maximum,
                                  int64_t *point,
                                  int64_t *count);
+
+/// Points at which a branch over a parameter turns, refined: beyond their values the result does
+/// not exist. Over the force those with HBVIB_FOLLOW_PEAK_THROUGH_FOLDS are the forces at which a
+/// detached curve is born (a minimum) or merges with another one (a maximum). A fold turns there,
+/// too, and in a cusp. Other branches have none.
+///
+/// capacity   numbers that fit into each array.
+/// parameter  receives the values of the parameter, or NULL.
+/// omega      receives the angular frequencies, or NULL.
+/// amplitude  receives the amplitudes, or NULL.
+/// maximum    receives numbers: 1 where the parameter is largest, 0 where smallest; or NULL.
+/// point      receives their point numbers for hbvib_branch_harmonics, numbers, or NULL.
+/// count      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_turns(const hbvib_branch *branch,
+                                int64_t capacity,
+                                double *parameter,
+                                double *omega,
+                                double *amplitude,
+                                int64_t *maximum,
+                                int64_t *point,
+                                int64_t *count);
 
 /// Peaks that are higher than the followed one. At the first and the last point of the curve and
 /// at the optima the response is swept over a tenth of the frequency below and above the followed

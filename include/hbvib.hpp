@@ -851,6 +851,12 @@ struct Optimum {
   bool is_maximum;
   Index point;
 };
+/// A point at which a parameter response turns over the parameter, which is largest there, or smallest.
+struct Turn {
+  double parameter, omega, amplitude;
+  bool is_maximum;
+  Index point;
+};
 /// A peak that is higher than the followed one of a parameter response, and the point number of that one.
 struct HigherPeak {
   double parameter, omega, amplitude;
@@ -972,6 +978,18 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
     use(hbvib_branch_optima, count, parameter.data(), amplitude.data(), maximum.data(), point.data(), &count);
     std::vector<Optimum> out;
     for (std::size_t i = 0; i < n; i++) out.push_back({parameter[i], amplitude[i], maximum[i] == 1, point[i]});
+    return out;
+  }
+  /// Points at which a parameter response turns over the parameter: forces at which a detached curve is born or merges.
+  std::vector<Turn> turns() const {
+    Index count = 0;
+    use(hbvib_branch_turns, 0, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
+    const std::size_t n = detail::extent(count);
+    std::vector<double> parameter(n), omega(n), amplitude(n);
+    std::vector<Index> maximum(n), point(n);
+    use(hbvib_branch_turns, count, parameter.data(), omega.data(), amplitude.data(), maximum.data(), point.data(), &count);
+    std::vector<Turn> out;
+    for (std::size_t i = 0; i < n; i++) out.push_back({parameter[i], omega[i], amplitude[i], maximum[i] == 1, point[i]});
     return out;
   }
   /// Peaks that are higher than the followed one of a parameter response, with the point numbers of that one.

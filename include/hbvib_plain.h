@@ -285,7 +285,8 @@ typedef enum {
   HBVIB_FOLLOW_OMEGA = 0,
   HBVIB_FOLLOW_PEAK = 1,
   HBVIB_FOLLOW_FOLD = 2,
-  HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
+  HBVIB_FOLLOW_MODE_MAX_DAMPING = 3,
+  HBVIB_FOLLOW_PEAK_THROUGH_FOLDS = 4
 } hbvib_follow;
 typedef enum {
   HBVIB_BAND_AMPLITUDE = 0,
@@ -886,6 +887,7 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *bra
 hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
 hbvib_status hbvib_parameter_response(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_parameter_options *options, const hbvib_hooks *hooks, hbvib_branch **out);
 hbvib_status hbvib_branch_optima(const hbvib_branch *branch, int64_t capacity, double *parameter, double *amplitude, int64_t *maximum, int64_t *point, int64_t *count);
+hbvib_status hbvib_branch_turns(const hbvib_branch *branch, int64_t capacity, double *parameter, double *omega, double *amplitude, int64_t *maximum, int64_t *point, int64_t *count);
 hbvib_status hbvib_branch_higher_peaks(const hbvib_branch *branch, int64_t capacity, double *parameter, double *omega, double *amplitude, int64_t *point, int64_t *count);
 hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
 hbvib_status hbvib_batch_solve(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_batch_options *options, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, int64_t designs, const double *values, hbvib_batch **out);

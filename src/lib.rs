@@ -157,7 +157,7 @@ pub use fourier::Reading;
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,
-    LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch,
+    LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch, Turn,
 };
 pub use time_integration::TimeResponse;
 

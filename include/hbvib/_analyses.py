@@ -160,13 +160,14 @@ class _Analyses(_Matrices):
                            cancel: Optional[CancelFlag] = None,
                            phase: Hook = None, **solver: Unpack[SolverOptions]) -> Branch:
         """Follows a result over a parameter: Branch.parameter_values, .amplitude, .d_amplitude (of a mode .damping_ratio
-        and .d_damping), .optima and .higher_peaks.
+        and .d_damping), .optima, .turns and .higher_peaks.
 
         values    (start, stop), downward where stop is the lower: of a constant or of the speed the value itself, of a
                   factor 1 as at present, of a direction its coefficient.
         omega     the frequency held, or one within a tenth of which the peak or fold next to it is sought at the start,
                   or one near the linear mode with stuck contacts.
         follow    "omega": the response at this frequency; "peak": the peak; "fold": a fold over the frequency;
+                  "peak_through_folds": the peak, and beyond the value at which it vanishes the minimum that it meets;
                   "mode_max_damping": the largest damping ratio along a nonlinear mode.
         at        values within the range at which every solution is computed exactly: Branch.at.
         response  the Response that is followed, or a degree of freedom; None: the amplitude of the response dof.

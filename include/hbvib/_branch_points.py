@@ -11,7 +11,7 @@ from ._c import Bifurcation, Field
 from ._calls import _call, _Owner, _stoppable
 from ._convert import _whole
 from ._errors import ArgumentError
-from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Synthesis, SynthesisPeaks, Wanted
+from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Synthesis, SynthesisPeaks, Turns, Wanted
 from ._stored_point import StoredPoint
 from ._structs import _new, _options, _record, _Record, _with_options
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction, SynthesisOptions
@@ -245,6 +245,22 @@ class _BranchPoints(_Owner):
         """
         found = self._listed("hbvib_branch_optima", (), [float, float, np.int64, np.int64])
         return Optima(found[0], found[1], np.where(found[2] == 1, "maximum", "minimum"), found[3])
+
+    def turns(self) -> Turns:
+        """Points at which a parameter response turns, beyond whose values its result does not exist: value of the parameter,
+        omega, amplitude, kind ("minimum" or "maximum" of the parameter), point number. Over the force, with follow
+        "peak_through_folds" or "fold": forces at which a detached curve is born, or merges with another one.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+        >>> contact = model.add_spring_damper(0, damper=[0, 0, -0.05, 0, 0.012])
+        >>> model.add_force(0, 0.015)
+        >>> found = model.parameter_response(hbvib.Parameter("force"), (0.3, 2), omega=1.0, follow="peak_through_folds", harmonics=1)
+        >>> found.turns().kind.tolist(), (0.015 * found.turns().parameter).round(8).tolist()
+        (['maximum', 'minimum'], [0.02346897, 0.00492012])
+        """
+        found = self._listed("hbvib_branch_turns", (), [float, float, float, np.int64, np.int64])
+        return Turns(found[0], found[1], found[2], np.where(found[3] == 1, "maximum", "minimum"), found[4])
 
     def higher_peaks(self) -> HigherPeaks:
         """Peaks that are higher than the one that a parameter response follows: value of the parameter, omega, amplitude,

@@ -791,6 +791,7 @@ class Follow(enum.IntEnum):
     PEAK   A peak of the response.
     FOLD   A fold of the response over the frequency.
     MODE_MAX_DAMPING   The largest damping ratio along a nonlinear mode.
+    PEAK_THROUGH_FOLDS   A peak, which is also followed where it turns into the minimum that it meets.
 
     >>> import hbvib
     >>> hbvib.Follow(0)
@@ -800,6 +801,7 @@ class Follow(enum.IntEnum):
     PEAK = 1
     FOLD = 2
     MODE_MAX_DAMPING = 3
+    PEAK_THROUGH_FOLDS = 4
 
 
 class BandOf(enum.IntEnum):
@@ -1034,6 +1036,7 @@ sensitivity: h h l i parameter l p l p p hooks
 parameter_options_init: parameter_options z
 parameter_response: h solver_options parameter_options hooks p
 branch_optima: h l p p p p p
+branch_turns: h l p p p p p p
 branch_higher_peaks: h l p p p p p
 batch_options_init: batch_options z
 batch_solve: h solver_options batch_options hooks parameter l l p p
@@ -1245,6 +1248,8 @@ if TYPE_CHECKING:
         def hbvib_parameter_response(self, model: Any, solver: Any, options: Any, hooks: Any, out: Any) -> int: ...
         def hbvib_branch_optima(self, branch: Any, capacity: int, parameter: Any, amplitude: Any, maximum: Any, point:
             Any, count: Any) -> int: ...
+        def hbvib_branch_turns(self, branch: Any, capacity: int, parameter: Any, omega: Any, amplitude: Any, maximum:
+            Any, point: Any, count: Any) -> int: ...
         def hbvib_branch_higher_peaks(self, branch: Any, capacity: int, parameter: Any, omega: Any, amplitude: Any,
             point: Any, count: Any) -> int: ...
         def hbvib_batch_options_init(self, o: Any, size_of_o: int) -> int: ...

@@ -20,7 +20,7 @@ Fields = Union[
             "sampling_error", "damping_error_estimate", "floquet_radius", "unstable_directions", "parameter_value",
             "d_amplitude", "d_damping"],
     int]
-Follows = Union[Follow, Literal["omega", "peak", "fold", "mode_max_damping"], int]
+Follows = Union[Follow, Literal["omega", "peak", "fold", "mode_max_damping", "peak_through_folds"], int]
 LogLevels = Union[LogLevel, Literal["none", "warn", "info", "debug"], int]
 MatrixKinds = Union[
     MatrixKind, Literal["mass", "damping", "stiffness", "structural", "gyroscopic", "stiffness_speed2"], int]

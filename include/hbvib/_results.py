@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 from ._c import Status
 from ._model_parts import AeroEntries, Contact, Forces, Springs
+from ._parameter_results import HigherPeaks, Optima, Turns
 from ._types import TimeInfo, VerificationInfo
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AeroEntries", "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "HigherPeaks",
     "LimitCycles", "Loop", "Modes",
-    "Optima", "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Verification", "Wanted",
+    "Optima", "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Turns", "Verification", "Wanted",
 ]
 
 
@@ -330,38 +331,6 @@ class Kinks(NamedTuple):
     amplitude: FloatArray
     before: IntArray
     after: IntArray
-
-
-class Optima(NamedTuple):
-    """Optima of a parameter response: value of the parameter, amplitude or damping ratio, kind, point number.
-
-    >>> import hbvib
-    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
-    >>> model.add_force(0, 0.2)
-    >>> found = model.parameter_response(hbvib.Parameter("force"), (1, 3), omega=1.0, follow="peak")
-    >>> found.optima().kind.tolist()  # the peak only rises
-    []
-    """
-    parameter: FloatArray
-    value: FloatArray
-    kind: StringArray
-    point: IntArray
-
-
-class HigherPeaks(NamedTuple):
-    """Peaks higher than a followed one: value of the parameter, omega, amplitude, point number of the followed one.
-
-    >>> import hbvib
-    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
-    >>> model.add_force(0, 0.2)
-    >>> found = model.parameter_response(hbvib.Parameter("force"), (1, 3), omega=1.0, follow="peak")
-    >>> len(found.higher_peaks().parameter)
-    0
-    """
-    parameter: FloatArray
-    omega: FloatArray
-    amplitude: FloatArray
-    point: IntArray
 
 
 class Floquet(NamedTuple):

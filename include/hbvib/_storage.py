@@ -15,7 +15,7 @@ from ._model import Model
 from ._recomputed import check, recomputed
 from ._responses import Response, WatchedResponse
 from ._responses import contents as response_contents
-from ._results import Bifurcations, HigherPeaks, Kinks, LimitCycles, Loop, Optima, Points, Wanted
+from ._results import Bifurcations, HigherPeaks, Kinks, LimitCycles, Loop, Optima, Points, Turns, Wanted
 from ._stored_point import requests
 from ._tables import fields
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction
@@ -36,7 +36,7 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
         stored=stored, is_mode=branch.is_mode, reduction=branch.reduction._asdict(), at=0)
     arrays: dict[str, np.ndarray] = {"field/" + name: values for name, values in fields(branch).items()}
     lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds(), bifurcations=branch.bifurcations(),
-                                 optima=branch.optima(), higher_peaks=branch.higher_peaks())
+                                 optima=branch.optima(), turns=branch.turns(), higher_peaks=branch.higher_peaks())
     if branch.is_mode:
         lists["limit_cycles"] = branch.limit_cycles()
         about["mode_info"] = branch.mode_info._asdict()
@@ -307,6 +307,12 @@ class SavedBranch(Branch):
 
     def optima(self) -> Optima:
         return self._list(Optima, "optima")
+
+    def turns(self) -> Turns:
+        if "turns/parameter" not in self._arrays:  # a file of version 0.1
+            none = np.empty(0)
+            return Turns(none, none, none, np.empty(0, "U7"), np.empty(0, np.int64))
+        return self._list(Turns, "turns")
 
     def higher_peaks(self) -> HigherPeaks:
         return self._list(HigherPeaks, "higher_peaks")

@@ -215,7 +215,8 @@ def requests(branch: Branch) -> Iterator[Wanted]:
 
 def _listed(branch: Branch, number: int, name: str) -> Iterator[float]:
     """A number of a point beside the curve, from the lists that have the point."""
-    lists: list[Any] = [branch.peaks(), branch.folds(), branch.bifurcations(), branch.optima(), *requests(branch)]
+    lists: list[Any] = [branch.peaks(), branch.folds(), branch.bifurcations(), branch.optima(), branch.turns(),
+                        *requests(branch)]
     for entries in lists:
         values = getattr(entries, name, None)
         if values is not None:

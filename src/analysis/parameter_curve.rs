@@ -1,4 +1,4 @@
-//! The curve of a result over a parameter: its points, its optima, and the solutions at requested values.
+//! The curve of a result over a parameter: its points, its optima, its turns, and the solutions at requested values.
 
 use crate::adaptivity::branch_recorder::largest_change;
 use crate::adaptivity::controller::AdaptivityController;
@@ -10,7 +10,7 @@ use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, Progress};
 use crate::interrupt::{Interrupt, Phase};
 use crate::problem::Problem;
-use crate::results::{Branch, Optimum, ParameterData, SpecialKind};
+use crate::results::{Branch, Optimum, ParameterData, SpecialKind, Turn};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the parameter response";
@@ -22,13 +22,15 @@ enum Beside {
     At(usize),
     /// With the smallest or largest result.
     Optimum { is_maximum: bool },
+    /// With the smallest or largest parameter.
+    Turn { is_maximum: bool },
 }
 
 impl Beside {
     fn kind(self) -> SpecialKind {
         match self {
             Self::At(i) => SpecialKind::At(i),
-            Self::Optimum { .. } => SpecialKind::Peak,
+            Self::Optimum { .. } | Self::Turn { .. } => SpecialKind::Peak,
         }
     }
 }
@@ -159,8 +161,29 @@ impl<'a> CurveRecorder<'a> {
         }
     }
 
-    /// Locates requested values and optima between two neighbours, each with its level.
+    /// Locates turns, requested values and optima between two neighbours, each with its level.
     fn locate(&mut self, (a, level_a): (&Point, usize), (b, level_b): (&Point, usize)) -> Result<()> {
+        if !SpecialPoint::Fold.between(a, b) {
+            return self.locate_without_turn((a, level_a), (b, level_b));
+        }
+        let interrupt = self.interrupt;
+        self.followed.select(level_a.max(level_b))?;
+        let is_maximum = a.tangent.last().is_some_and(|t| *t > 0.0);
+        let count = self.beside.len();
+        let ends = ((a, level_a), (b, level_b));
+        self.find(Beside::Turn { is_maximum }, ends.0, ends.1, |locator, problem, a, b| {
+            locator.locate(problem, SpecialPoint::Fold, a, b, interrupt)
+        })?;
+        let found = match self.beside.get(count) {
+            Some(found) => (found.point.try_clone()?, found.level),
+            None => return self.locate_without_turn((a, level_a), (b, level_b)),
+        };
+        // On each side of the turn the parameter is monotonic.
+        self.locate_without_turn((a, level_a), (&found.0, found.1))?;
+        self.locate_without_turn((&found.0, found.1), (b, level_b))
+    }
+
+    fn locate_without_turn(&mut self, (a, level_a): (&Point, usize), (b, level_b): (&Point, usize)) -> Result<()> {
         let interrupt = self.interrupt;
         let highest = level_a.max(level_b);
         for (i, &p) in self.wanted.at.iter().enumerate() {
@@ -261,14 +284,24 @@ impl<'a> CurveRecorder<'a> {
             let (special, sampling_error) =
                 tracked.store(point, *error, self.branch, self.data, Some(beside.kind()))?;
             self.note(*error, sampling_error);
-            if let Beside::Optimum { is_maximum } = *beside {
-                self.data.push_optimum(Optimum {
-                    point: special.point,
-                    omega: special.omega,
-                    amplitude: special.amplitude,
-                    parameter: point.parameter(),
+            let (parameter, amplitude) = (point.parameter(), special.amplitude);
+            let (point, omega) = (special.point, special.omega);
+            match *beside {
+                Beside::Optimum { is_maximum } => self.data.push_optimum(Optimum {
+                    point,
+                    omega,
+                    amplitude,
+                    parameter,
                     is_maximum,
-                })?;
+                })?,
+                Beside::Turn { is_maximum } => self.data.push_turn(Turn {
+                    point,
+                    parameter,
+                    omega,
+                    amplitude,
+                    is_maximum,
+                })?,
+                Beside::At(_) => {}
             }
         }
         Ok(())

@@ -13,6 +13,10 @@ pub enum Follow {
     Omega(f64),
     /// The peak next to this angular frequency, within a tenth of it.
     Peak(f64),
+    /// The same peak, also beyond the values at which it vanishes: there it meets a minimum, and the curve turns and goes on along that.
+    /// The peak of a detached curve, the minimum on it and the peak of the curve beneath are one curve over the force, whose
+    /// [`turns`](crate::Branch::turns) are the forces of birth and merging.
+    PeakThroughFolds(f64),
     /// The fold over the frequency next to this angular frequency, within a tenth of it.
     Fold(f64),
     /// The largest damping ratio along the nonlinear mode whose linear mode with stuck contacts is next to this angular
@@ -47,8 +51,11 @@ impl ParameterRange<'_> {
     /// # Errors
     /// `NotFinite` or `Argument`, naming the field, its value and its range.
     pub fn check(&self) -> Result<()> {
-        let (Follow::Omega(omega) | Follow::Peak(omega) | Follow::Fold(omega) | Follow::ModeMaxDamping { omega, .. }) =
-            self.follow;
+        let (Follow::Omega(omega)
+        | Follow::Peak(omega)
+        | Follow::PeakThroughFolds(omega)
+        | Follow::Fold(omega)
+        | Follow::ModeMaxDamping { omega, .. }) = self.follow;
         if !(omega > 0.0 && omega.is_finite()) {
             return fail!(Argument, "omega = {omega}, needs an angular frequency > 0");
         }

@@ -80,6 +80,7 @@ pub fn parameter_response(
     let (omega, kind) = match range.follow {
         Follow::Omega(omega) => (omega, ResponsePoint::Fixed),
         Follow::Peak(omega) => (omega, ResponsePoint::Peak),
+        Follow::PeakThroughFolds(omega) => (omega, ResponsePoint::Extremum),
         Follow::Fold(omega) => (omega, ResponsePoint::Fold),
         Follow::ModeMaxDamping { omega, log10_range } => {
             if solver.samples > 0 {
@@ -155,7 +156,7 @@ fn follow(
             ResponsePoint::Fixed => {
                 return fail!(NoConvergence, "the response at the start of the range was not found");
             }
-            ResponsePoint::Peak => "peak",
+            ResponsePoint::Peak | ResponsePoint::Extremum => "peak",
             ResponsePoint::Fold => "fold",
         };
         return fail!(
@@ -221,7 +222,7 @@ fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response
 fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize> {
     let list = match kind {
         ResponsePoint::Fixed => return (branch.points() > 0).then_some(0),
-        ResponsePoint::Peak => branch.peaks(),
+        ResponsePoint::Peak | ResponsePoint::Extremum => branch.peaks(),
         ResponsePoint::Fold => branch.folds(),
     };
     let distance = |s: &&Special| (s.omega - omega).abs();

@@ -29,6 +29,8 @@ pub enum hbvib_follow {
     HBVIB_FOLLOW_FOLD = 2,
     /// The largest damping ratio along a nonlinear mode.
     HBVIB_FOLLOW_MODE_MAX_DAMPING = 3,
+    /// A peak, which is also followed where it turns into the minimum that it meets.
+    HBVIB_FOLLOW_PEAK_THROUGH_FOLDS = 4,
 }
 
 /// Range of a parameter response. Fill it by hbvib_parameter_options_init.
@@ -101,21 +103,21 @@ pub unsafe extern "C" fn hbvib_parameter_options_init(
 
 /// Follows a result over a parameter by arc-length continuation: the amplitude of a forced
 /// response, or the response of the options, at a fixed frequency, in a peak or in a fold, or the
-/// largest damping ratio of a nonlinear mode. Folds over the parameter are passed, minima and
-/// maxima refined. The harmonics
-/// are chosen at each point by the tolerance of the solver, or the same at all points with a
+/// largest damping ratio of a nonlinear mode. Folds over the parameter are passed
+/// (hbvib_branch_turns), minima and maxima refined (hbvib_branch_optima). The harmonics are
+/// chosen at each point by the tolerance of the solver, or the same at all points with a
 /// tolerance of 0. The branch has the fields HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, of a
-/// mode HBVIB_D_DAMPING and those of a mode, and hbvib_branch_optima; its points belong to
-/// different models, so that functions of a model and a branch refuse it.
+/// mode HBVIB_D_DAMPING and those of a mode; its points belong to different models, so that
+/// functions of a model and a branch refuse it.
 ///
 /// solver   options of the solver; NULL: the defaults.
 /// options  parameter, range, and the result to follow.
 /// hooks    progress, log and cancellation; NULL: none.
 /// out      receives the branch; untouched on error. Free it by hbvib_branch_free.
 /// A positive status says why the branch ends early: HBVIB_STOPPED_PEAK_VANISHED where a peak or
-/// a maximum of damping met a minimum. Two folds that meet in a cusp are one curve, which comes
-/// back: HBVIB_STOPPED_LEFT_RANGE. A peak that is no longer the highest is told by
-/// hbvib_branch_higher_peaks.
+/// a maximum of damping met a minimum (HBVIB_FOLLOW_PEAK_THROUGH_FOLDS goes on there). Two folds
+/// that meet in a cusp are one curve, which comes back: HBVIB_STOPPED_LEFT_RANGE. A peak that is
+/// no longer the highest is told by hbvib_branch_higher_peaks.
 /// Errors: those of hbvib_forced_response, hbvib_nonlinear_mode and of the parameters of
 /// hbvib_sensitivity; HBVIB_E_NO_CONVERGENCE also where there is no peak, fold or maximum of
 /// damping near the frequency. Threads: as for hbvib_forced_response.
@@ -164,7 +166,8 @@ unsafe fn parameter_range<'a>(o: &hbvib_parameter_options) -> Result<ParameterRa
                 log10_range: (o.log10_start.to_bits() != o.log10_stop.to_bits())
                     .then_some((o.log10_start, o.log10_stop)),
             },
-            other => return fail!(Argument, "follow = {other}, needs a value of enum hbvib_follow: 0 .. 3"),
+            4 => Follow::PeakThroughFolds(o.omega),
+            other => return fail!(Argument, "follow = {other}, needs a value of enum hbvib_follow: 0 .. 4"),
         },
         response: None,
     };

@@ -38,7 +38,7 @@ pub use floquet_multiplier::{Multiplier, MultiplierClass};
 pub use floquet_stability::Floquet;
 pub use limit_cycles::LimitCycle;
 pub(crate) use parameter_branch::ParameterData;
-pub use parameter_branch::{HigherPeak, Optimum};
+pub use parameter_branch::{HigherPeak, Optimum, Turn};
 pub use point_energy::Energy;
 pub(crate) use recovery::Recovery;
 pub use response_series::{ResponseSeries, SeenWithError};

@@ -18,6 +18,25 @@ pub struct Optimum {
     pub is_maximum: bool,
 }
 
+/// A point at which a branch over a parameter turns: beyond its value the result does not exist.
+///
+/// The turns of a peak that is followed through folds over the force are the forces at which a detached curve is born (a minimum) or
+/// merges with another one (a maximum). A fold turns there, too: under less force the two folds that meet do not exist. It also turns
+/// in a cusp.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// Number of the stored point.
+    pub point: usize,
+    /// Value of the parameter.
+    pub parameter: f64,
+    /// Angular frequency.
+    pub omega: f64,
+    /// The result there, as that of an [`Optimum`].
+    pub amplitude: f64,
+    /// Whether the parameter is largest there, else smallest.
+    pub is_maximum: bool,
+}
+
 /// A peak that is higher than the followed one, in the same design.
 #[derive(Clone, Copy, Debug)]
 pub struct HigherPeak {
@@ -41,6 +60,7 @@ pub(crate) struct ParameterData {
     /// Total derivative of the largest damping ratio by it; NaN where a response is followed.
     pub(super) d_damping: Vec<f64>,
     pub(super) optima: Vec<Optimum>,
+    pub(super) turns: Vec<Turn>,
     pub(super) higher: Vec<HigherPeak>,
 }
 
@@ -60,6 +80,11 @@ impl ParameterData {
     /// Stores an optimum.
     pub fn push_optimum(&mut self, optimum: Optimum) -> Result<()> {
         try_push(&mut self.optima, optimum, "the optima")
+    }
+
+    /// Stores a turn.
+    pub fn push_turn(&mut self, turn: Turn) -> Result<()> {
+        try_push(&mut self.turns, turn, "the turns")
     }
 
     /// Stores a higher peak.

@@ -2,7 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::results::Branch;
-use crate::results::parameter_branch::{HigherPeak, Optimum, ParameterData};
+use crate::results::parameter_branch::{HigherPeak, Optimum, ParameterData, Turn};
 
 impl Branch {
     pub(crate) fn set_parameter_data(&mut self, data: ParameterData) {
@@ -55,6 +55,12 @@ impl Branch {
     #[must_use]
     pub fn optima(&self) -> &[Optimum] {
         self.parameter.as_ref().map_or(&[], |data| &data.optima)
+    }
+
+    /// Points at which the branch turns over the parameter; none for other branches, and for the largest damping ratio of a mode.
+    #[must_use]
+    pub fn turns(&self) -> &[Turn] {
+        self.parameter.as_ref().map_or(&[], |data| &data.turns)
     }
 
     /// Refuses a branch whose points belong to several models.

@@ -27,8 +27,8 @@ const PERTURBATION: f64 = 1e-9;
 /// The vectors b and c.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Borders {
-    b: Vec<f64>,
-    c: Vec<f64>,
+    pub b: Vec<f64>,
+    pub c: Vec<f64>,
 }
 
 /// The condition of a fold and its null vectors.

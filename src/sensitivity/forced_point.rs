@@ -322,6 +322,11 @@ impl<'a> ForcedPoint<'a> {
         Ok(change)
     }
 
+    /// Unit of lengths of the motions.
+    pub fn length(&self) -> f64 {
+        self.condensed.length()
+    }
+
     /// Residual at the point of which the adjoint was made last.
     pub fn residual(&self) -> &[f64] {
         &self.at.values

@@ -15,6 +15,7 @@
 mod adjoint;
 mod contact_products;
 mod design;
+mod extremum_point;
 mod fold_point;
 mod forced_point;
 mod mode_point;

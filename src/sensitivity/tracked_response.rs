@@ -4,9 +4,11 @@
 //! The unknowns are the packed relative motions u and in a peak or fold also ln ω. At a fixed frequency the equations are
 //! R(u, p) = 0; in a peak follows dA/dω = g(u, ω, p) = ∂A/∂ω − λᵀ ∂R/∂ω = 0 with the adjoint λ of the amplitude. With
 //! the direction t = (du/dω, 1) of the branch over ω, the derivatives of g by u and ω are those of ∂A − (∂R)ᵀ λ along t at
-//! a fixed λ: by one difference of exact Jacobians. The condition of a fold is that of [`fold_point`].
+//! a fixed λ: by one difference of exact Jacobians. The condition of a fold is that of [`fold_point`], and
+//! that of a peak which is followed beyond the parameter at which it vanishes that of [`extremum_point`].
 //!
 //! [`fold_point`]: crate::sensitivity::fold_point
+//! [`extremum_point`]: crate::sensitivity::extremum_point
 
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference, Resolution};
@@ -26,7 +28,8 @@ use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::design::design;
-use crate::sensitivity::fold_point::{Borders, fold_gradient};
+use crate::sensitivity::extremum_point::{extremum_gradient, extremum_matrix};
+use crate::sensitivity::fold_point::{Borders, FoldCondition, fold_gradient};
 use crate::sensitivity::forced_point::ForcedPoint;
 use crate::sensitivity::parameter::Parameter;
 use crate::sensitivity::total_derivative::TotalDerivative;
@@ -50,6 +53,8 @@ pub(crate) enum ResponsePoint {
     Fixed,
     /// A maximum of the amplitude.
     Peak,
+    /// The same, and the minimum that meets it.
+    Extremum,
     /// A turning point of the frequency.
     Fold,
 }
@@ -69,7 +74,7 @@ pub(crate) struct TrackedResponse<'a> {
     length: f64,
     unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
-    /// Borders of the condition of a fold, from the first evaluation on.
+    /// Borders of the condition of a fold or an extremum, from the first evaluation on.
     borders: Option<Borders>,
     /// Amplitude at the point evaluated last, its total derivative by the parameter, and its change with all unknowns and
     /// the parameter along solutions.
@@ -199,10 +204,12 @@ impl<'a> TrackedResponse<'a> {
         let own = self.own_motion(u, &condensed)?;
         let mut point = self.point(&condensed, omega)?;
         let (models, at) = ((&model, &condensed), (&*own, omega, p));
-        let scale = if self.kind == ResponsePoint::Fold {
-            self.fold_equations(&mut point, models, at, (fully, values))?
-        } else {
-            self.peak_equations(&mut point, models, at, (fully, values))?
+        let scale = match self.kind {
+            ResponsePoint::Fold => self.fold_equations(&mut point, models, at, (fully, values))?,
+            ResponsePoint::Extremum => self.extremum_equations(&mut point, models, at, (fully, values))?,
+            ResponsePoint::Fixed | ResponsePoint::Peak => {
+                self.peak_equations(&mut point, models, at, (fully, values))?
+            }
         };
         for value in &mut values[..m] {
             *value /= unit;
@@ -308,6 +315,86 @@ impl<'a> TrackedResponse<'a> {
         Ok(scale)
     }
 
+    /// The same in a peak or the minimum that meets it.
+    fn extremum_equations(
+        &mut self,
+        point: &mut ForcedPoint<'_>,
+        (model, condensed): (&Model, &Condensed),
+        (own, omega, p): (&[f64], f64, f64),
+        (fully, values): (bool, &mut [f64]),
+    ) -> Result<f64> {
+        let (m, n) = (own.len(), values.len());
+        let length = condensed.length();
+        let unit = self.length / length;
+        let (by_motion, amplitude) = point.amplitude(own, omega)?;
+        values[..m].copy_from_slice(point.residual());
+        let scale = point.scale();
+        let none = try_vec(m, 0.0, CONTEXT)?;
+        let partial = point.of_lambda((own, omega), amplitude, &none)?;
+        let by_omega = point.residual_by_omega(omega)?;
+        let at = self.extremum_condition(point, (&by_omega, &by_motion, partial.by_omega / length), omega)?;
+        values[m] = at.value;
+        if !fully {
+            return Ok(scale);
+        }
+        self.fill_motions(point.jacobian());
+        let row = extremum_gradient(point, (own, omega, length), &at, OMEGA_UNIT * omega)?;
+        self.fill_frequency((&by_omega, &row), omega, unit, 1.0);
+        self.amplitude = length * amplitude.norm();
+        for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
+            *to = self.length * from;
+        }
+        self.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
+        self.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
+        // The amplitude does not change with the frequency there, so that its derivative is that at a fixed one.
+        self.d_amplitude = match point.adjoint(own, omega)? {
+            Some(adjoint) => self.by_parameter((model, condensed), p, &adjoint)?,
+            None => f64::NAN,
+        };
+        Ok(scale)
+    }
+
+    /// The condition of an extremum at the point linearised last.
+    fn extremum_condition(
+        &mut self,
+        point: &ForcedPoint<'_>,
+        derivatives: (&[f64], &[f64], f64),
+        omega: f64,
+    ) -> Result<FoldCondition> {
+        let matrix = extremum_matrix(point.jacobian(), derivatives, OMEGA_UNIT * omega)?;
+        let borders = match self.borders.take() {
+            Some(borders) => borders,
+            None => Borders::near(&matrix, derivatives.1.len() + 1, self.interrupt)?,
+        };
+        let at = borders.condition(&matrix, self.interrupt);
+        self.borders = Some(borders);
+        at
+    }
+
+    /// Lets the borders follow the null vectors at a solution.
+    fn follow_borders(&mut self, point: &mut ForcedPoint<'_>, own: &[f64], omega: f64) -> Result<()> {
+        if self.borders.is_none() {
+            return Ok(());
+        }
+        let (by_motion, amplitude) = point.amplitude(own, omega)?;
+        let null = if self.kind == ResponsePoint::Extremum {
+            let none = try_vec(own.len(), 0.0, CONTEXT)?;
+            let slope = point.of_lambda((own, omega), amplitude, &none)?.by_omega / point.length();
+            let by_omega = point.residual_by_omega(omega)?;
+            Some(self.extremum_condition(point, (&by_omega, &by_motion, slope), omega)?)
+        } else {
+            None
+        };
+        if let Some(borders) = &mut self.borders {
+            let null = match null {
+                Some(null) => null,
+                None => borders.condition(point.jacobian(), self.interrupt)?,
+            };
+            borders.follow(&null)?;
+        }
+        Ok(())
+    }
+
     /// Writes Newton's matrix of the motions.
     fn fill_motions(&mut self, jacobian: &[f64]) {
         let (m, n) = (self.motions(), self.unknowns.len());
@@ -358,7 +445,12 @@ impl Tracked for TrackedResponse<'_> {
         let motions = to.condensed.unknowns();
         let n = motions + usize::from(self.is_free());
         if let Some(borders) = &mut self.borders {
-            borders.transfer(from, to.condensed.set(), motions)?;
+            let to = to.condensed.set();
+            if self.kind == ResponsePoint::Extremum {
+                borders.transfer_with_frequency(from, to, motions)?;
+            } else {
+                borders.transfer(from, to, motions)?;
+            }
         }
         self.unknowns.resize(n)?;
         self.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
@@ -368,7 +460,8 @@ impl Tracked for TrackedResponse<'_> {
     }
 
     fn estimate(&mut self, point: &Point) -> Result<Option<(f64, Estimate)>> {
-        if self.kind == ResponsePoint::Fold {
+        // Where curves are born or merge the solution at a fixed frequency is not isolated.
+        if matches!(self.kind, ResponsePoint::Fold | ResponsePoint::Extremum) {
             return Ok(None);
         }
         let (u, p) = (point.unknowns(), point.parameter());
@@ -420,15 +513,10 @@ impl Tracked for TrackedResponse<'_> {
             samples: self.solver.samples,
         };
         let condensed = &*resolution.condensed;
-        let samples = (self.response_dof, self.solver.samples);
-        let mut at = ForcedPoint::new(condensed, samples, omega, self.interrupt)?;
+        let mut at = self.point(condensed, omega)?;
         let mut response = try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?;
         let slip_fractions = at.response(&motion, omega, &mut response)?;
-        if let Some(borders) = &mut self.borders {
-            at.amplitude(&motion, omega)?;
-            let null = borders.condition(at.jacobian(), self.interrupt)?;
-            borders.follow(&null)?;
-        }
+        self.follow_borders(&mut at, &motion, omega)?;
         let sampling_error = at.sampling_error(&motion, omega)?;
         let record = Record {
             resolution: &resolution,

@@ -91,8 +91,13 @@ int main(void)
         REFUSED("no parameter", hbvib_branch_field(branch, HBVIB_D_AMPLITUDE, &view), HBVIB_E_ARGUMENT, 2, "parameter response");
         REFUSED("models", hbvib_sensitivity(model, study, 0, 0, p, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 0, "model of its own");
         WORKS("free", hbvib_branch_free(study));
-        o.follow = 4;
-        REFUSED("follow", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_ARGUMENT, 3, "follow = 4");
+        o.follow = HBVIB_FOLLOW_PEAK_THROUGH_FOLDS;
+        WORKS("through folds", hbvib_parameter_response(model, &solver, &o, NULL, &study));
+        WORKS("turns", hbvib_branch_turns(study, 8, value, size, size, maximum, where, &n));
+        EXPECT("turns", n == 0);
+        WORKS("free", hbvib_branch_free(study));
+        o.follow = 5;
+        REFUSED("follow", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_ARGUMENT, 3, "follow = 5");
         o.follow = HBVIB_FOLLOW_FOLD;
         REFUSED("no fold", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_NO_CONVERGENCE, 0, "no fold");
         o.follow = HBVIB_FOLLOW_OMEGA;

@@ -91,6 +91,7 @@ static hbvib_status over(const hbvib_model *model, int32_t follow, uint64_t *sum
     o.omega = ring ? 1305 : 1.35;
     STEP(hbvib_parameter_response(model, &s, &o, NULL, &branch));
     STEP(hbvib_branch_optima(branch, 16, value, amplitude, maximum, point, &count));
+    STEP(hbvib_branch_turns(branch, 16, value, amplitude, NULL, maximum, point, &count));
     if (status >= 0) digest(sum, value, (size_t)count * sizeof(double));
     return of_branch(status, branch, hbvib_model_dofs(model), sum);
 }

@@ -15,3 +15,4 @@ mod tracked_damping;
 mod tracked_ends;
 mod tracked_fold;
 mod tracked_peak;
+mod turns_of_peaks;

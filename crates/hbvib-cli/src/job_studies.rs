@@ -67,6 +67,8 @@ pub enum FollowName {
     /// The peak next to near_hz, within a tenth of it.
     #[default]
     Peak,
+    /// The same, and beyond the value at which it vanishes the minimum that it meets.
+    PeakThroughFolds,
     /// The amplitude at near_hz.
     Frequency,
     /// The fold next to near_hz, within a tenth of it.

@@ -20,6 +20,7 @@ impl StudyPart {
         let omega = self.near_hz * TAU;
         match self.follow {
             FollowName::Peak => Follow::Peak(omega),
+            FollowName::PeakThroughFolds => Follow::PeakThroughFolds(omega),
             FollowName::Frequency => Follow::Omega(omega),
             FollowName::Fold => Follow::Fold(omega),
             FollowName::ModeMaxDamping => Follow::ModeMaxDamping {
@@ -137,6 +138,16 @@ fn summary(part: &StudyPart, found: &Branch, points: usize) -> String {
             o.amplitude,
             o.parameter,
             o.omega / TAU
+        );
+    }
+    for turn in found.turns() {
+        let kind = if turn.is_maximum { "largest" } else { "smallest" };
+        let _ = writeln!(
+            text,
+            "{kind} parameter {:.8e} at a turn, {:.6} Hz, amplitude {:.6e}",
+            turn.parameter,
+            turn.omega / TAU,
+            turn.amplitude
         );
     }
     for peak in found.higher_peaks() {

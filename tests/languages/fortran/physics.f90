@@ -338,6 +338,7 @@ contains
       call expect('it has the requested value', size(amplitude) == 1)
       call works(study%optima(amplitude), 'optima')
       call works(study%higher_peaks(amplitude=amplitude), 'higher peaks')
+      call works(study%turns(amplitude=amplitude), 'turns')
       call expect('no peak is followed', size(amplitude) == 0)
       call works(model%parameter_response(study, hbvib_parameter(kind=HBVIB_PARAMETER_PRELOAD, contact=1), 1._dp, 1.5_dp, &
                  omega, follow=HBVIB_FOLLOW_MODE_MAX_DAMPING), 'a study of damping')

@@ -265,7 +265,8 @@ for name, (structs, others) in OF_STRUCTS.items():
 PLAIN = {
     "add_contact", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic", "free", "from_bytes", "load",
     "matrix", "mistune", "save", "to_bytes", "wheel",
-    "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "higher_peaks", "limit_cycles",
+    "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
+    "limit_cycles",
     "mode_point", "point",
     "to_dataframe", "to_xarray",
 }

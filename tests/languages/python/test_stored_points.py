@@ -161,6 +161,7 @@ raises("a force of the caller cannot be saved", NotImplementedError, back.loop, 
 back = pickle.loads(pickle.dumps(held))
 raises("points over a parameter have models of their own", NotImplementedError, back.loop, 0, 0, words="a model of its own")
 check("their optima are saved", back.optima().kind.tolist() == held.optima().kind.tolist())
+check("their turns are saved", back.turns().kind.tolist() == held.turns().kind.tolist())
 
 # A file whose model is another one is not believed.
 broken = pickle.loads(pickle.dumps(mode))
