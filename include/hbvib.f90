@@ -402,6 +402,12 @@ module hbvib
       real(c_double) :: modes_change = 0
    end type hbvib_floquet_info
 
+   !> The smallest kick that was found.
+   type, bind(c) :: hbvib_kick
+      integer(c_int32_t) :: struct_size = 64, verified = 0
+      real(c_double) :: impulse = 0, returning = 0, phase = 0, estimate = 0, estimate_phase = 0, velocity = 0, multiplier = 0
+   end type hbvib_kick
+
    !> A parameter of a model.
    type, bind(c) :: hbvib_parameter
       integer(c_int32_t) :: struct_size = 32, kind = 0
@@ -1612,6 +1618,24 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_floquet
 
+      function hbvib_kick_init(k, size_of_k) bind(c) result(status)
+         import
+         type(hbvib_kick), intent(inout) :: k
+         integer(c_size_t), value :: size_of_k
+         integer(c_int32_t) :: status
+      end function hbvib_kick_init
+
+      function hbvib_smallest_kick(model, branch, point, saddle_branch, saddle, dof, phases, hooks, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(c_ptr), value :: saddle_branch
+         integer(c_int64_t), value :: saddle, dof, phases
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_kick), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_smallest_kick
+
       function hbvib_branch_bifurcations(branch, capacity, omega, amplitude, kind, point, unstable_before, unstable_after, &
          count) bind(c) result(status)
          import
@@ -1957,6 +1981,7 @@ module hbvib
       procedure :: time_response => model_time_response
       procedure :: verify => model_verify
       procedure :: floquet => model_floquet
+      procedure :: smallest_kick => model_smallest_kick
       procedure :: sensitivity => model_sensitivity
       procedure :: batch => model_batch
       procedure :: parameter_response => model_parameter_response
@@ -2026,7 +2051,8 @@ module hbvib
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
-   private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, model_batch, branch_limit_cycles
+   private :: branch_synthesis_peaks, model_verify, model_floquet, model_smallest_kick, &
+      model_sensitivity, model_batch, branch_limit_cycles
    private :: branch_bifurcations
    private :: model_parameter_response, branch_optima, branch_turns, branch_higher_peaks
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
@@ -3479,6 +3505,34 @@ contains
       if (present(classes)) classes = int(reasons(:found%count))
       if (present(info)) info = found
    end function model_floquet
+
+   !> The smallest impulse at a degree of freedom that leads from a stable point to another motion; saddle is an unstable point
+   !> between, at the same frequency, of the same branch or of another one.
+   function model_smallest_kick(self, branch, point, saddle, dof, kick, saddle_branch, phases, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point, saddle, dof
+      type(hbvib_kick), intent(out) :: kick
+      class(hbvib_branch), intent(in), optional :: saddle_branch
+      integer, intent(in), optional :: phases
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64) :: p, s, at
+      type(c_ptr) :: other
+      status = HBVIB_OK
+      call point_to_zero(branch, status, point, p)
+      other = branch%handle
+      if (present(saddle_branch)) then
+         call point_to_zero(saddle_branch, status, saddle, s)
+         other = saddle_branch%handle
+      else
+         call point_to_zero(branch, status, saddle, s)
+      end if
+      at = 16
+      if (present(phases)) at = phases
+      if (status == HBVIB_OK) &
+         status = hbvib_smallest_kick(self%handle, branch%handle, p, other, s, int(dof - 1, i64), at, hooks, kick)
+   end function model_smallest_kick
 
    !> Exact derivatives of a result at a point of this model by parameters: HBVIB_OF_AMPLITUDE unless `of` is another one.
    !> Contacts are counted from 1 in parameters%contact, -1 is all. Those that do not exist are NaN, with the reasons

@@ -3573,6 +3573,69 @@ hbvib_status hbvib_floquet(const hbvib_model *model,
                            int64_t classes_len,
                            hbvib_floquet_info *out);
 
+/// The smallest kick that was found. Fill it by hbvib_kick_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1: integration in time with a tight tolerance confirmed that `impulse` leads to another motion
+  /// and `returning` does not; 0: the estimate is all that is known.
+  int32_t verified;
+  /// Impulse that leads to another motion, with its sign; NaN where none was found.
+  double impulse;
+  /// Impulse at the same phase after which the motion comes back.
+  double returning;
+  /// Phase of the forces at which it acts: omega t, 0 .. 2 pi.
+  double phase;
+  /// Smallest impulse to first order, from the left eigenvector of the saddle.
+  double estimate;
+  /// Its phase.
+  double estimate_phase;
+  /// Velocity that the impulse gives the degree of freedom.
+  double velocity;
+  /// Multiplier of the saddle in its unstable direction.
+  double multiplier;
+} hbvib_kick;
+
+/// Fills the numbers of a kick with zeros.
+///
+/// k          the struct; untouched on error.
+/// size_of_k  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_kick_init(hbvib_kick *k, size_t size_of_k);
+
+/// Searches for the smallest impulse at one degree of freedom that leads from a stable point of a
+/// forced response to another motion. Between the two lies an unstable one, a saddle: the left
+/// eigenvector of its period map gives an estimate at each of `phases` times of the period, and
+/// integration in time brackets the impulse to a thousandth, there and around the best of them.
+/// Smaller kicks at other times, and in other directions, may exist.
+///
+/// model          the model of which both branches are results, not a cyclic one.
+/// point          number of the stable point: of the curve, or a requested solution.
+/// saddle_branch  the branch of the saddle, the same or another one.
+/// saddle         number of an unstable point at the same frequency with one unstable direction.
+/// dof            degree of freedom of the impulse.
+/// phases         times of a period, 1 .. 10000; 16 are a good number.
+/// hooks          progress, log and cancellation as in hbvib_time_response; NULL: none.
+/// out            receives the kick; fill it by hbvib_kick_init before.
+/// HBVIB_STOPPED_BY_CALLER: the kick found so far, not verified.
+/// Errors: HBVIB_E_INDEX (point, saddle, dof), HBVIB_E_ARGUMENT (another model, two frequencies, a
+/// saddle without one unstable direction, phases), HBVIB_E_UNSUPPORTED (a cyclic model, a nonlinear
+/// mode; a model that hbvib_time_response refuses), HBVIB_E_NO_CONVERGENCE (shooting did not
+/// converge from a point), HBVIB_E_NO_BOUNDED_SOLUTION, HBVIB_E_CALLBACK (a force callback
+/// failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_smallest_kick(const hbvib_model *model,
+                                 const hbvib_branch *branch,
+                                 int64_t point,
+                                 const hbvib_branch *saddle_branch,
+                                 int64_t saddle,
+                                 int64_t dof,
+                                 int64_t phases,
+                                 const hbvib_hooks *hooks,
+                                 hbvib_kick *out);
+
 /// Kinds of bifurcations.
 typedef enum {
   /// The branch turns in frequency; a multiplier passes 1.

@@ -356,6 +356,7 @@ using VerifyOptions = Filled<hbvib_verify_options, hbvib_verify_options_init>;
 using VerificationInfo = Filled<hbvib_verification, hbvib_verification_init>;
 using FloquetOptions = Filled<hbvib_floquet_options, hbvib_floquet_options_init>;
 using FloquetInfo = Filled<hbvib_floquet_info, hbvib_floquet_info_init>;
+using Kick = Filled<hbvib_kick, hbvib_kick_init>;
 using BandOptions = Filled<hbvib_band_options, hbvib_band_options_init>;
 using BandInfo = Filled<hbvib_band_info, hbvib_band_info_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
@@ -1495,6 +1496,17 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     detail::Call call;
     call.done(hbvib_batch_solve(get(), &solver, &options, &bound, given.data(), count, values.length() / count, values.data(), &core->handle));
     return Batch(std::move(core));
+  }
+  /// The smallest impulse at a degree of freedom that leads from a stable point to another motion; `saddle` is an unstable point between at
+  /// the same frequency. hooks.partial plays no part.
+  Kick smallest_kick(const Branch& branch, Index point, const Branch& saddle_branch, Index saddle, Index dof, Index phases = 16,
+                     const Hooks& hooks = {}) const {
+    const auto keep = branch.core_;
+    const auto other = saddle_branch.core_;
+    const detail::BoundHooks bound(hooks);
+    Kick out;
+    use(hbvib_smallest_kick, branch.get(), point, saddle_branch.get(), saddle, dof, phases, &bound, &out);
+    return out;
   }
   /// The Floquet multipliers of a point. hooks.partial plays no part.
   Floquet floquet(const Branch& branch, Index point, const FloquetOptions& options = FloquetOptions(), const Hooks& hooks = {}) const {

@@ -321,6 +321,7 @@ typedef struct hbvib_verify_options hbvib_verify_options;
 typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
 typedef struct hbvib_floquet_info hbvib_floquet_info;
+typedef struct hbvib_kick hbvib_kick;
 typedef struct hbvib_parameter hbvib_parameter;
 typedef struct hbvib_parameter_options hbvib_parameter_options;
 typedef struct hbvib_batch_options hbvib_batch_options;
@@ -697,6 +698,17 @@ struct hbvib_floquet_info {
   int64_t modes;
   double modes_change;
 };
+struct hbvib_kick {
+  uint32_t struct_size;
+  int32_t verified;
+  double impulse;
+  double returning;
+  double phase;
+  double estimate;
+  double estimate_phase;
+  double velocity;
+  double multiplier;
+};
 struct hbvib_parameter {
   uint32_t struct_size;
   int32_t kind;
@@ -880,6 +892,8 @@ hbvib_status hbvib_verify(const hbvib_model *model, const hbvib_branch *branch, 
 hbvib_status hbvib_floquet_options_init(hbvib_floquet_options *o, size_t size_of_o);
 hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
 hbvib_status hbvib_floquet(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_floquet_options *options, const hbvib_hooks *hooks, double *multipliers, int64_t multipliers_len, int64_t *classes, int64_t classes_len, hbvib_floquet_info *out);
+hbvib_status hbvib_kick_init(hbvib_kick *k, size_t size_of_k);
+hbvib_status hbvib_smallest_kick(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_branch *saddle_branch, int64_t saddle, int64_t dof, int64_t phases, const hbvib_hooks *hooks, hbvib_kick *out);
 hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch, int64_t capacity, double *omega, double *amplitude, int64_t *kind, int64_t *point, int64_t *unstable_before, int64_t *unstable_after, int64_t *count);
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch, int64_t capacity, double *omega, double *log10_amplitude, double *slope, int64_t *point, int64_t *count);
 hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);

@@ -136,6 +136,7 @@ pub use analysis::parameter_response::parameter_response;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::response_of_motion::response_of;
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
+pub use analysis::smallest_kick::{Kick, smallest_kick};
 pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;

@@ -878,6 +878,7 @@ verification: uint32 struct_size; int32 same_solution marched reserved; int64 ha
 floquet_options: uint32 struct_size; int32 waves refine modes; double tolerance; int64 max_periods
 floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
     double orbit_change residual; int64 modes; double modes_change
+kick: uint32 struct_size; int32 verified; double impulse returning phase estimate estimate_phase velocity multiplier
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
 parameter_options: uint32 struct_size; int32 follow; pointer parameter; double start stop omega; pointer at; int64
     at_len; double log10_start log10_stop; pointer response
@@ -1029,6 +1030,8 @@ verify: h h l verify_options hooks p l p l verification
 floquet_options_init: floquet_options z
 floquet_info_init: floquet_info z
 floquet: h h l floquet_options hooks p l p l floquet_info
+kick_init: kick z
+smallest_kick: h h l h l l l hooks kick
 branch_bifurcations: h l p p p p p p p
 branch_limit_cycles: h l p p p p p
 parameter_init: parameter z
@@ -1237,6 +1240,9 @@ if TYPE_CHECKING:
         def hbvib_floquet_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_floquet(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, multipliers: Any,
             multipliers_len: int, classes: Any, classes_len: int, out: Any) -> int: ...
+        def hbvib_kick_init(self, k: Any, size_of_k: int) -> int: ...
+        def hbvib_smallest_kick(self, model: Any, branch: Any, point: int, saddle_branch: Any, saddle: int, dof: int,
+            phases: int, hooks: Any, out: Any) -> int: ...
         def hbvib_branch_bifurcations(self, branch: Any, capacity: int, omega: Any, amplitude: Any, kind: Any, point:
             Any, unstable_before: Any, unstable_after: Any, count: Any) -> int: ...
         def hbvib_branch_limit_cycles(self, branch: Any, capacity: int, omega: Any, log10_amplitude: Any, slope: Any,

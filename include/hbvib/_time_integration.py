@@ -13,7 +13,7 @@ from ._convert import _counted_array, _member
 from ._matrices import _Matrices
 from ._results import Floquet, Progress, TimeResponse, Verification
 from ._structs import _new, _options, _record, _with_options
-from ._types import FloquetOptions, TimeInfo, TimeOptions, VerificationInfo, VerifyOptions
+from ._types import FloquetOptions, Kick, TimeInfo, TimeOptions, VerificationInfo, VerifyOptions
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -96,6 +96,35 @@ class _TimeIntegration(_Matrices, _Contacts):
             status = _call("hbvib_verify", self.handle, branch.handle, point, settings, hooks, x, x.size, errors,
                            errors.size, info, guard=guard)
         return Verification(x, errors, _record(VerificationInfo, info), Status(status))
+
+    def smallest_kick(self, branch: Branch, point: int, saddle: int, *, saddle_branch: Optional[Branch] = None,
+                      dof: int, phases: int = 16, phase: Hook = None,
+                      cancel: Optional[CancelFlag] = None) -> Kick:
+        """The smallest impulse at a degree of freedom that leads from a stable point to another motion: an estimate from the
+        saddle between, and a bracket by integration in time. Smaller kicks at other times or in other directions may exist.
+
+        point          the stable point; saddle: an unstable one at the same frequency with one unstable direction.
+        saddle_branch  the branch of the saddle, such as a child; None: the same one.
+        dof            of the impulse.     phases: times of a period that are examined.
+        phase, cancel  as in forced_response; where they stop it the kick is the smallest until then, and not verified.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> contact = model.add_spring_damper(0, spring=[0, 0, 0.1])
+        >>> model.add_force(0, 0.18)
+        >>> branch = model.forced_response((0.9, 1.3), at=[1.1017664364])
+        >>> upper, saddle, lower = branch.at(0).point
+        >>> kick = model.smallest_kick(branch, int(lower), int(saddle), dof=0, phases=4)
+        >>> kick.verified, kick.returning / kick.impulse > 0.998
+        (True, True)
+        """
+        other = branch if saddle_branch is None else saddle_branch
+        found = _new("hbvib_kick")
+        with _Guard() as guard:
+            hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
+            _call("hbvib_smallest_kick", self.handle, branch.handle, point, other.handle, saddle, dof, phases, hooks, found,
+                  guard=guard)
+        return _record(Kick, found)
 
     @_with_options("hbvib_floquet_options", FloquetOptions)
     def floquet(self, branch: Branch, point: int, *, waves: WaveSets = Waves.WAVE, refine: bool = True,

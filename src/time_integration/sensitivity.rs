@@ -11,7 +11,7 @@ use crate::time_integration::variation::{Interval, Variation};
 use crate::time_integration::variational_equations::VariationalEquations;
 
 /// The derivatives, and memory to integrate them.
-pub(super) struct Sensitivity<'s> {
+pub(crate) struct Sensitivity<'s> {
     basis: PerturbationBasis<'s, f64>,
     /// Relative motion of each slider.
     rows: Vec<Option<Row>>,

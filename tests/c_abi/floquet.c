@@ -104,6 +104,51 @@ static void limit_cycles(void)
     WORKS("free", hbvib_model_free(model));
 }
 
+/* A hardening spring has three motions: a kick leads from the lowest one across the middle one. */
+static void kicks(void)
+{
+    hbvib_solver_options s = solver_options();
+    hbvib_forced_options o = frequencies(1, 1);
+    hbvib_model *model = NULL;
+    hbvib_branch *branch = NULL;
+    hbvib_contact c;
+    hbvib_matrix m;
+    hbvib_kick kick;
+    double mass = 1, damping = 0.1, at = 1.1017664364;
+    int64_t point[4], count = 0;
+
+    WORKS("model", hbvib_model_new(1, &model));
+    m = matrix(1, &mass);
+    WORKS("mass", hbvib_model_set_matrix(model, HBVIB_MASS, &m));
+    WORKS("stiffness", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &m));
+    m = matrix(1, &damping);
+    WORKS("damping", hbvib_model_set_matrix(model, HBVIB_DAMPING, &m));
+    WORKS("contact", hbvib_contact_init(&c, sizeof c));
+    c.kind = HBVIB_CUBIC;
+    c.dof_a[0] = 0;
+    c.cubic = 0.1;
+    WORKS("contact", hbvib_model_add_contact(model, &c, NULL));
+    WORKS("force", hbvib_model_add_force(model, 0, 1, 0.18, 0));
+    s.tolerance = 0;
+    s.harmonics = 7;
+    o.omega_start = 0.9;
+    o.omega_stop = 1.3;
+    o.at = &at;
+    o.at_len = 1;
+    WORKS("solve", hbvib_forced_response(model, &s, &o, NULL, &branch));
+    WORKS("motions", hbvib_branch_at(branch, 0, 4, NULL, point, &count));
+    EXPECT("three motions", count == 3);
+    WORKS("kick", hbvib_kick_init(&kick, sizeof kick));
+    WORKS("kick", hbvib_smallest_kick(model, branch, point[2], branch, point[1], 0, 4, NULL, &kick));
+    EXPECT("kick", kick.verified == 1 && kick.multiplier > 1 && fabs(kick.returning) < fabs(kick.impulse));
+    EXPECT("kick", fabs(kick.velocity - kick.impulse) < 1e-12);
+    REFUSED("no saddle", hbvib_smallest_kick(model, branch, point[2], branch, point[0], 0, 4, NULL, &kick), HBVIB_E_ARGUMENT, 0, "one unstable direction");
+    REFUSED("dof", hbvib_smallest_kick(model, branch, point[2], branch, point[1], 1, 4, NULL, &kick), HBVIB_E_INDEX, 6, "dof = 1");
+    REFUSED("phases", hbvib_smallest_kick(model, branch, point[2], branch, point[1], 0, -1, NULL, &kick), HBVIB_E_ARGUMENT, 7, "phases = -1");
+    WORKS("free", hbvib_branch_free(branch));
+    WORKS("free", hbvib_model_free(model));
+}
+
 /* A mass against a stop that it touches at rest doubles its period. */
 static void children(void)
 {
@@ -233,6 +278,7 @@ int main(void)
     are_those_of_the_reference(branch);
     refuse(branch);
     limit_cycles();
+    kicks();
     children();
     along_a_branch();
     WORKS("free", hbvib_branch_free(branch));

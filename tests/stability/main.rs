@@ -16,6 +16,7 @@ mod hill;
 mod limit_cycles;
 mod on_modes;
 mod senses_of_perturbations;
+mod smallest_kick;
 mod subharmonic_net;
 
 use hbvib::analysis::floquet;

@@ -91,7 +91,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Stability",
         about: "Floquet multipliers of points, bifurcations, limit cycles",
-        files: &["stability", "stability_lists"],
+        files: &["stability", "stability_kick", "stability_lists"],
     },
     Section {
         title: "Design studies",

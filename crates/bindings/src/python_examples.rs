@@ -19,7 +19,7 @@ const PEAK: &str = ">>> peak = branch.peaks().point[0]\n";
 const MODE: &str = ">>> mode = model.nonlinear_mode((-2, 1))\n";
 
 /// Classes, the parts that come before, and the lines of the example itself.
-const EXAMPLES: [(&str, &[&str], &str); 16] = [
+const EXAMPLES: [(&str, &[&str], &str); 17] = [
     (
         "SolverOptions",
         &[MODEL, CONTACT],
@@ -115,6 +115,19 @@ True
         &[MODEL, CONTACT],
         ">>> model.forced_response((0.8, 1.6), harmonics=3, branches=1).searched.bifurcations
 0
+",
+    ),
+    (
+        "Kick",
+        &[],
+        ">>> import hbvib
+>>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+>>> contact = model.add_spring_damper(0, spring=[0, 0, 0.1])
+>>> model.add_force(0, 0.18)
+>>> branch = model.forced_response((0.9, 1.3), at=[1.1017664364])
+>>> upper, saddle, lower = branch.at(0).point
+>>> model.smallest_kick(branch, int(lower), int(saddle), dof=0, phases=4).verified
+True
 ",
     ),
     (

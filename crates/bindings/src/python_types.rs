@@ -20,7 +20,7 @@ const OPTIONS: [(&str, &[&str]); 6] = [
 ];
 
 /// Structs of results, and the names of their classes where those are not their own.
-const RESULTS: [(&str, &str); 10] = [
+const RESULTS: [(&str, &str); 11] = [
     ("hbvib_energy", "Energy"),
     ("hbvib_contact_summary", "ContactSummary"),
     ("hbvib_mode_point", "ModePoint"),
@@ -28,13 +28,14 @@ const RESULTS: [(&str, &str); 10] = [
     ("hbvib_reduction", "Reduction"),
     ("hbvib_descent", "Descent"),
     ("hbvib_searched", "Searched"),
+    ("hbvib_kick", "Kick"),
     ("hbvib_jacobian_gap", "JacobianGap"),
     ("hbvib_time_info", "TimeInfo"),
     ("hbvib_verification", "VerificationInfo"),
 ];
 
 /// Fields that the module gives and takes in another type than C's.
-const TYPES: [(&str, &str, &str); 9] = [
+const TYPES: [(&str, &str, &str); 10] = [
     (
         "hbvib_solver_options",
         "flexibility",
@@ -52,6 +53,7 @@ const TYPES: [(&str, &str, &str); 9] = [
     ("hbvib_reduction", "flexibility_way", "FlexibilityWay"),
     ("hbvib_verification", "same_solution", "bool"),
     ("hbvib_verification", "marched", "bool"),
+    ("hbvib_kick", "verified", "bool"),
 ];
 
 /// The generated part of the module of types.

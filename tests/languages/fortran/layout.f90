@@ -34,6 +34,7 @@ program layout
    call verification()
    call floquet_options()
    call floquet_info()
+   call kick()
    call parameter()
    call parameter_options()
    call batch_options()
@@ -508,6 +509,20 @@ contains
       call field('modes', c_loc(s), c_loc(s%modes), c_sizeof(s%modes))
       call field('modes_change', c_loc(s), c_loc(s%modes_change), c_sizeof(s%modes_change))
    end subroutine floquet_info
+
+   subroutine kick()
+      type(hbvib_kick), target :: s
+      call whole('hbvib_kick', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('verified', c_loc(s), c_loc(s%verified), c_sizeof(s%verified))
+      call field('impulse', c_loc(s), c_loc(s%impulse), c_sizeof(s%impulse))
+      call field('returning', c_loc(s), c_loc(s%returning), c_sizeof(s%returning))
+      call field('phase', c_loc(s), c_loc(s%phase), c_sizeof(s%phase))
+      call field('estimate', c_loc(s), c_loc(s%estimate), c_sizeof(s%estimate))
+      call field('estimate_phase', c_loc(s), c_loc(s%estimate_phase), c_sizeof(s%estimate_phase))
+      call field('velocity', c_loc(s), c_loc(s%velocity), c_sizeof(s%velocity))
+      call field('multiplier', c_loc(s), c_loc(s%multiplier), c_sizeof(s%multiplier))
+   end subroutine kick
 
    subroutine parameter()
       type(hbvib_parameter), target :: s

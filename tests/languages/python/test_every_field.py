@@ -493,7 +493,7 @@ FILLED = {
     "hbvib_force_call", "hbvib_jacobian_gap", "hbvib_progress", "hbvib_phase_report", "hbvib_view", "hbvib_reduction", "hbvib_energy",
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
     "hbvib_band_info",
-    "hbvib_descent", "hbvib_searched",
+    "hbvib_descent", "hbvib_searched", "hbvib_kick",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED
 check("every struct is in a table or filled by the library", listed == set(hbvib.structs), listed ^ set(hbvib.structs))

@@ -132,6 +132,11 @@ damper.add_force(0, 0.02)
 damped, free_damped = (damper.forced_response(omega, harmonics=3) for omega in ((1.23, 1.27), (1.235, 1.265)))
 top = int(damped.peaks().point[0])
 
+spring = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+spring.add_spring_damper(0, spring=[0, 0, 0.1])
+spring.add_force(0, 0.18)
+bent = spring.forced_response((0.9, 1.3), harmonics=5, tolerance=0, at=[1.1017664364])
+_, between, low = (int(number) for number in bent.at(0).point)
 
 pressed = hbvib.Model(mass=1, stiffness=1)
 pressed.add_contact("jenkins", 0, kt=1, mu=0.5, preload=0.1)
@@ -201,6 +206,11 @@ ANALYSES = {
         "branch": [], "point": [(CHANGES, crest + 1), (refused("point"), 10**6)], "parameters": [(CHANGES, [hbvib.Parameter("kt")])],
         "of": [(refused("peak"), "peak_omega"), (refused("amplitude"), "speed")],
         "response": [(CHANGES, 1), (refused("response 7"), 7)]}),
+    "smallest_kick": (*analysis(lambda **o: np.array([spring.smallest_kick(**o).impulse]), branch=bent, point=low, saddle=between,
+                                saddle_branch=bent, dof=0, phases=2), {
+        "branch": [(refused("model"), branch)], "point": [(refused("point"), 10**6)], "saddle": [(refused("saddle"), 10**6)],
+        "saddle_branch": [(refused("model"), branch)], "dof": [(refused("dof"), 9)],
+        "phases": [(CHANGES, 3), (refused("phases"), 0)]}),
     "harmonics": (*analysis(branch.harmonics, point=3, first_dof=0, n_dof=2), {
         "point": [(CHANGES, 4), (refused("point"), -1)], "first_dof": [(CHANGES, 1), (refused("first_dof"), 9)],
         "n_dof": [(CHANGES, 3), (refused("n_dof"), 9)]}),

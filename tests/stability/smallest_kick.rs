@@ -1,0 +1,168 @@
+//! The smallest kick that leads from a motion to another one, against integration of its own by Runge and Kutta: just below it the motion
+//! returns, just above it does not, and no kick at other phases that is a few percent smaller leads across.
+
+use crate::common::{harmonics, one_mass};
+use hbvib::contact::{Contact, ContactKind};
+use hbvib::options::ForcedOptions;
+use hbvib::{Branch, Hooks, Kick, Model, Polynomial, SolverOptions, Status, forced_response, smallest_kick};
+use std::f64::consts::TAU;
+
+/// x″ = −g(x, v) + F cos(ωt + φ)
+struct Oscillator {
+    law: fn(f64, f64) -> f64,
+    force: f64,
+    omega: f64,
+}
+
+impl Oscillator {
+    /// The state after a period with the forces at a phase.
+    fn period(&self, phase: f64, [mut x, mut v]: [f64; 2]) -> [f64; 2] {
+        const STEPS: usize = 60;
+        let h = TAU / self.omega / STEPS as f64;
+        for i in 0..STEPS {
+            let t = i as f64 * h;
+            let a = |t: f64, x: f64, v: f64| self.force * (self.omega * t + phase).cos() - (self.law)(x, v);
+            let (k1, l1) = (v, a(t, x, v));
+            let (k2, l2) = (v + 0.5 * h * l1, a(t + 0.5 * h, x + 0.5 * h * k1, v + 0.5 * h * l1));
+            let (k3, l3) = (v + 0.5 * h * l2, a(t + 0.5 * h, x + 0.5 * h * k2, v + 0.5 * h * l2));
+            let (k4, l4) = (v + h * l3, a(t + h, x + h * k3, v + h * l3));
+            x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+            v += h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
+        }
+        [x, v]
+    }
+
+    /// The motion that attracts from a start.
+    fn attracted(&self, phase: f64, start: [f64; 2]) -> [f64; 2] {
+        (0..500).fold(start, |z, _| self.period(phase, z))
+    }
+
+    /// Whether a kick of the motion that attracts from `near` leads to another one.
+    fn leads_across(&self, phase: f64, near: [f64; 2], impulse: f64) -> bool {
+        let lower = self.attracted(phase, near);
+        let kicked = self.attracted(phase, [lower[0], lower[1] + impulse]);
+        (kicked[0] - lower[0]).hypot(kicked[1] - lower[1]) > 0.1 * lower[0].hypot(lower[1])
+    }
+}
+
+fn all(model: &Model, solver: &SolverOptions, range: (f64, f64), omega: f64, branches: usize) -> Branch {
+    let range = ForcedOptions {
+        omega_start: range.0,
+        omega_stop: range.1,
+        at: &[omega],
+        branches,
+        ..ForcedOptions::default()
+    };
+    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
+}
+
+fn check(oscillator: &Oscillator, near: impl Fn(f64) -> [f64; 2], kick: &Kick) {
+    println!("{kick:?}");
+    assert_eq!(kick.status, Status::Ok);
+    assert!(kick.verified && kick.multiplier > 1.0);
+    assert!((kick.returning / kick.impulse - 1.0).abs() < 2e-3 && kick.returning.abs() < kick.impulse.abs());
+    assert!((kick.velocity / kick.impulse - 1.0).abs() < 1e-12);
+    let phase = kick.phase;
+    assert!(oscillator.leads_across(phase, near(phase), 1.003 * kick.impulse));
+    assert!(!oscillator.leads_across(phase, near(phase), 0.996 * kick.impulse));
+    for i in 0..24 {
+        let phase = TAU * f64::from(i) / 24.0;
+        for sign in [1.0, -1.0] {
+            let impulse = sign * 0.97 * kick.impulse.abs();
+            assert!(
+                !oscillator.leads_across(phase, near(phase), impulse),
+                "{phase} {impulse}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_kick_leads_from_the_sweep_to_the_detached_curve() {
+    let damper = Polynomial::scalar(&[], &[0.0, 0.0, -0.05, 0.0, 0.012]).unwrap();
+    let contact = Contact::between(0, None, ContactKind::Polynomial(damper));
+    let model = one_mass(0.05, &contact, 0.015);
+    let found = all(&model, &harmonics(9), (0.9, 1.1), 1.0, 2);
+    let child = &found.children()[0];
+    let lower = found.at(0)[0].point;
+    let saddle = child
+        .at(0)
+        .iter()
+        .min_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
+        .unwrap();
+    let kick = smallest_kick(
+        &model,
+        (&found, lower),
+        (child, saddle.point),
+        (0, 12),
+        &mut Hooks::default(),
+    )
+    .unwrap();
+    let oscillator = Oscillator {
+        law: |x, v| x + 0.05 * v - 0.05 * v.powi(3) + 0.012 * v.powi(5),
+        force: 0.015,
+        omega: 1.0,
+    };
+    check(&oscillator, |_| [0.0, 0.0], &kick);
+    // The multiplier of the saddle by shooting, from the data.
+    assert!((kick.multiplier - 1.111_498_3).abs() < 1e-6);
+    // The estimate is of first order only.
+    assert!((kick.estimate / kick.impulse).abs() > 0.5 && (kick.estimate / kick.impulse).abs() < 1.5);
+}
+
+#[test]
+fn a_kick_leads_from_the_upper_to_the_lower_motion_of_a_hardening_spring() {
+    let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 0.1), 0.18);
+    let omega = 1.101_766_436_4;
+    let found = all(&model, &harmonics(7), (0.9, 1.3), omega, 0);
+    let mut at: Vec<_> = found.at(0).to_vec();
+    at.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    assert_eq!(at.len(), 3, "{at:?}");
+    let oscillator = Oscillator {
+        law: |x, v| x + 0.1 * v + 0.1 * x.powi(3),
+        force: 0.18,
+        omega,
+    };
+    let (upper, saddle) = (at[2].point, at[1].point);
+    let kick = smallest_kick(
+        &model,
+        (&found, upper),
+        (&found, saddle),
+        (0, 12),
+        &mut Hooks::default(),
+    )
+    .unwrap();
+    let mut x = vec![num_complex::Complex64::ZERO; found.harmonics() + 1];
+    found.harmonics_at(upper, &mut x).unwrap();
+    let near = |phase: f64| {
+        let turn = |h: usize| x[h] * num_complex::Complex64::cis(h as f64 * phase);
+        let numbers = 0..x.len();
+        let velocity = |h: usize| -(h as f64) * omega * turn(h).im;
+        [numbers.clone().map(|h| turn(h).re).sum(), numbers.map(velocity).sum()]
+    };
+    check(&oscillator, near, &kick);
+}
+
+#[test]
+fn points_that_are_no_pair_are_refused() {
+    let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 0.1), 0.18);
+    let found = all(&model, &harmonics(3), (0.9, 1.3), 1.101_766_436_4, 0);
+    let mut at: Vec<_> = found.at(0).to_vec();
+    at.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    let refused = |point: usize, saddle: usize, dof: usize, phases: usize, words: &str| {
+        let e = smallest_kick(
+            &model,
+            (&found, point),
+            (&found, saddle),
+            (dof, phases),
+            &mut Hooks::default(),
+        )
+        .unwrap_err();
+        assert!(e.message().contains(words), "{}", e.message());
+    };
+    refused(at[0].point, at[2].point, 0, 8, "one unstable direction");
+    refused(at[0].point, at[1].point, 1, 8, "dof = 1");
+    refused(at[0].point, at[1].point, 0, 0, "phases = 0");
+    refused(at[0].point, 0, 0, 8, "request it with `at`");
+    refused(at[1].point, at[1].point, 0, 8, "one motion");
+}
