@@ -118,7 +118,7 @@ impl<'a> Kicked<'a> {
         let along: f64 = w[n..2 * n].iter().zip(&kick).map(|(w, v)| w * v).sum();
         let gap = distance(&lower, &saddle, omega);
         let size = distance(&saddle, &State::rest(&system)?, omega);
-        if !(gap > KICKED_SAME * size) {
+        if gap.is_nan() || gap <= KICKED_SAME * size {
             return fail!(Argument, "point and saddle are one motion");
         }
         Ok(Self {
@@ -226,7 +226,7 @@ fn left_eigenvector(system: &mut System<'_>, event_loop: &mut EventLoop, motion:
         }
         multiplier = w.iter().zip(&next).map(|(a, b)| a * b).sum::<f64>() / w.iter().map(|a| a * a).sum::<f64>();
         let size = next.iter().map(|x| x * x).sum::<f64>().sqrt() * multiplier.signum();
-        if !(size.abs() > 0.0) {
+        if size.is_nan() || size == 0.0 {
             break;
         }
         change = 0.0;

@@ -184,7 +184,7 @@ impl<'a> Search<'a> {
             let at = self.at(phase, hooks)?;
             (self.mobility, kick.multiplier) = (at.mobility(), at.multiplier());
             let estimate = at.estimate();
-            if !(estimate.abs() >= kick.estimate.abs()) {
+            if kick.estimate.is_nan() || estimate.abs() < kick.estimate.abs() {
                 (kick.estimate, kick.estimate_phase) = (estimate, phase);
             }
             try_push(&mut estimates, (phase, estimate), CONTEXT)?;
