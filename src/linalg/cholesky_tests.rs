@@ -1,6 +1,7 @@
 //! Tests of Cholesky factors.
 
 use super::*;
+use crate::linalg::triangle_product::multiply;
 
 /// A Hermitian chain in the plane with random couplings.
 fn matrix(n: usize, complex: bool, shift: f64) -> Csc {

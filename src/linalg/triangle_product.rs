@@ -182,7 +182,7 @@ impl<T: Entry> Pass<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::sparse::{Columns, Csc};
+    use crate::linalg::sparse::Csc;
 
     fn number(k: usize) -> Complex64 {
         Complex64::new((1.3 * k as f64).sin(), (0.7 * k as f64).cos())
