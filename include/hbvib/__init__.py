@@ -41,6 +41,7 @@ from ._branch import Branch
 from ._c import *
 from ._caller_law import ForceCall
 from ._calls import CancelFlag
+from ._damper import DamperPlace
 from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError, NumericalError, OutOfMemoryError,
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
 from ._law import evaluate_contact
@@ -53,6 +54,7 @@ from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
 from ._types import *
+from ._wheel_studies import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
 __all__ = [
     # errors
@@ -60,7 +62,8 @@ __all__ = [
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve",
-    "FreeSlider", "StaticHistory", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "FreeSlider", "StaticHistory", "DamperPlace",
+    "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
     "get_include",

@@ -2,6 +2,7 @@
 
 mod all_solutions;
 pub mod band;
+pub mod band_curve;
 mod band_line;
 mod band_search;
 pub mod batch;
@@ -61,8 +62,10 @@ mod unbounded_response;
 mod verified_responses;
 pub mod verify;
 mod watched_responses;
+pub mod wheel_peaks;
 
 pub use crate::analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
+pub use crate::analysis::band_curve::{BandPoint, band_curve};
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::design_peak::DesignPeak;
@@ -82,3 +85,4 @@ pub use crate::analysis::static_history::{LoadHistory, StaticStep, static_histor
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};
 pub use crate::analysis::time_response::time_response;
 pub use crate::analysis::verify::{Verification, verify};
+pub use crate::analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};

@@ -81,6 +81,7 @@ SETTERS = {
     "add_stiffness_tensors": setter(dict(dofs=[0], quadratic=[[[0.1]]], cubic=[[[[0.2]]]]),
                                     dict(dofs=[1], quadratic=[[[0.3]]], cubic=[[[[0.4]]]]),
                                     dict(dofs=([9], "dofs"), quadratic=([[[NAN]]], "quadratic"), cubic=([[[[INF]]]], "cubic"))),
+    "add_centrifugal": setter(dict(dof=0, mass_radius=0.5), dict(dof=1, mass_radius=0.6), dict(dof=(9, "dof"), mass_radius=(NAN, "NaN"))),
     "set_preload": setter(dict(contact=0, preload=2.0, per_speed2=0.1), dict(preload=3.0, per_speed2=0.2),
                           dict(contact=(1, "id"), preload=(NAN, "preload"), per_speed2=(NAN, "per_speed2")), jenkins),
     "set_slider": setter(dict(contact=0, place=0.2, direction=0), dict(place=0.3, contact=1, direction=1),
@@ -260,11 +261,11 @@ for name, (structs, others) in OF_STRUCTS.items():
     arguments = set(inspect.signature(method).parameters) - {"self"} - HOOKS - set(others.split())
     check(f"{name}: every argument is a field", arguments <= fields, arguments - fields)
 
-# Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and mistune of
-# test_wheels.py.
+# Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and wheels of
+# test_wheels.py, add_damper, whose arguments are fields of test_every_field.py.
 PLAIN = {
-    "add_contact", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic", "free", "from_bytes", "load",
-    "matrix", "mistune", "save", "to_bytes", "wheel",
+    "add_contact", "add_damper", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic", "free", "from_bytes", "load",
+    "matrix", "mistune", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
     "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "higher_peaks", "limit_cycles",
     "mode_point", "point",
     "to_dataframe", "to_xarray",
