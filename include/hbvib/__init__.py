@@ -54,7 +54,7 @@ from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
 from ._types import *
-from ._wheel_studies import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
+from ._wheel_results import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
 __all__ = [
     # errors

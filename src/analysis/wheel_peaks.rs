@@ -48,7 +48,7 @@ impl BladePeak {
 /// Peaks of all blades of a wheel.
 #[derive(Debug)]
 pub struct WheelPeaks {
-    /// Of each blade.
+    /// Peaks of the blades, in the order of the sectors.
     pub blades: Vec<BladePeak>,
     /// Blade with the highest one; `None` without any peak.
     pub largest: Option<usize>,

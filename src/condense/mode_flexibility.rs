@@ -12,7 +12,7 @@ use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, Status, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
-use crate::model::sector_motion::TERMS;
+use crate::model::sector_motion::MOTION_TERMS;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -75,7 +75,7 @@ impl ModeFlexibility {
                     let known = waves.iter().position(|rows| rows.are_of(block, source));
                     let wave = known.unwrap_or(waves.len());
                     if known.is_none() {
-                        let mut row = [None; TERMS];
+                        let mut row = [None; MOTION_TERMS];
                         row[0] = Some((reference_dof, Complex64::ONE));
                         let row = block.row(&row)?;
                         let springs = ModeSums::damps_springs(&block.artificial) || source.is_damped_by_stiffness();

@@ -5,9 +5,9 @@
 //! next sector have φ > 0, those on the other one φ < 0 (Panning, Sextro & Popp, International Journal of Rotating Machinery 9,
 //! 2003, 219 to 228).
 
+use crate::contact::Contact;
 use crate::contact::relative_motion::Frame;
 use crate::contact::rigid_point::RigidPoint;
-use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use crate::model::Model;
@@ -267,24 +267,24 @@ impl Damper<'_> {
                 } else {
                     [3, 4, 5].map(|i| Some(first + i))
                 };
+                let stiffness = (face.stiffness[0] * share, face.stiffness[1] * share);
+                let law = if planar {
+                    Contact::friction_2d([None; 2], [None; 2], stiffness, face.mu, 0.0)
+                } else {
+                    Contact::friction_3d([None; 3], [None; 3], stiffness, face.mu, 0.0)
+                };
                 let contact = Contact {
-                    kind: if planar {
-                        ContactKind::Friction2d
-                    } else {
-                        ContactKind::Friction3d
-                    },
                     dof_a: [Some(first), Some(first + 1), (!planar).then_some(first + 2)],
                     dof_b: face.dofs,
                     frame: Some(frame),
                     sector_offset: face.sector_offset,
-                    kn: face.stiffness[1] * share,
                     gap: face.gap,
                     rigid: Some(RigidPoint {
                         rotations,
                         arm,
                         turn: face.turn,
                     }),
-                    ..Contact::jenkins(0, None, face.stiffness[0] * share, face.mu, 0.0)
+                    ..law
                 };
                 try_push(&mut contacts, contact, CONTEXT)?;
             }

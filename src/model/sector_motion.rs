@@ -25,16 +25,16 @@ pub struct Term {
 }
 
 /// Most terms of a relative motion.
-pub const TERMS: usize = TERMS_A + TERMS_B;
+pub const MOTION_TERMS: usize = TERMS_A + TERMS_B;
 
 /// Relative motion side a minus side b: at most six terms of side a and three of side b.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SectorMotion {
-    terms: [Option<Term>; TERMS],
+    terms: [Option<Term>; MOTION_TERMS],
 }
 
 /// Key of a relative motion: per term its degree of freedom, its sector in 0 .. N and the bits of its coefficient.
-pub type Key = [Option<(usize, i64, u64)>; TERMS];
+pub type Key = [Option<(usize, i64, u64)>; MOTION_TERMS];
 
 /// Coefficients below this share of 1 are rounding.
 const SECTOR_MOTION_ROUNDING: f64 = 1e-12;
@@ -55,7 +55,7 @@ impl SectorMotion {
     /// Row over the degrees of freedom of all sectors of a ring; `place` returns the number of one, from its number
     /// in its sector and the offset of that sector.
     #[must_use]
-    pub fn ring_row(&self, place: impl Fn(usize, i64) -> usize) -> [Option<(usize, f64)>; TERMS] {
+    pub fn ring_row(&self, place: impl Fn(usize, i64) -> usize) -> [Option<(usize, f64)>; MOTION_TERMS] {
         self.terms
             .map(|term| term.map(|t| (place(t.dof, t.sector), t.coefficient)))
     }
@@ -104,7 +104,7 @@ impl SectorMotion {
 
 /// Places of the terms of a side.
 fn places_of(side: usize) -> Range<usize> {
-    if side == 0 { 0..TERMS_A } else { TERMS_A..TERMS }
+    if side == 0 { 0..TERMS_A } else { TERMS_A..MOTION_TERMS }
 }
 
 /// Reason why a motion cannot be written.

@@ -17,7 +17,7 @@ use crate::contact::time_piece::Instant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
-use crate::model::sector_motion::{SectorMotion, TERMS};
+use crate::model::sector_motion::{MOTION_TERMS, SectorMotion};
 use crate::model::structure::Structure;
 
 const CONTEXT: &str = "the contacts";
@@ -51,7 +51,7 @@ pub(crate) struct Spring {
 }
 
 /// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
-pub(crate) type Row = [Option<(usize, f64)>; TERMS];
+pub(crate) type Row = [Option<(usize, f64)>; MOTION_TERMS];
 
 impl Spring {
     /// A spring along a relative motion whose side a lies in sector `s` of the unrolled structure.

@@ -4,8 +4,8 @@
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
     BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, Frame, Hooks, MatrixKind,
-    MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, VerifyOptions, band, floquet, freedom,
-    parameter_response, sensitivity, verify,
+    MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, VerifyOptions, band, band_curve, floquet,
+    freedom, parameter_response, sensitivity, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -201,6 +201,34 @@ fn a_band_at_a_frequency_has_its_extrema_between_the_limits() {
             );
         }
     }
+}
+
+#[test]
+fn curves_have_the_band_of_each_point() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = harmonics(5);
+    let branch = sweep(&model, &solver, 1.18, 1.22, &[]);
+    let mut hooks = Hooks::default();
+    let options = BandOptions::default();
+    let all = band_curve(&model, &branch, &[], &solver, &options, &mut hooks).unwrap();
+    assert_eq!(all.len(), branch.omega().len());
+    for (i, one) in all.iter().enumerate() {
+        let found = band(&model, &branch, i, &solver, &options, &mut hooks).unwrap();
+        assert_eq!(
+            [one.lower, one.upper].map(f64::to_bits),
+            [found.lower.value, found.upper.value].map(f64::to_bits)
+        );
+        assert!(one.point == i && one.sliders == 1 && one.is_complete && one.solved == found.solved);
+        assert!(one.lower <= one.value * (1.0 + 1e-9) && one.value <= one.upper * (1.0 + 1e-9));
+    }
+    let last = band_curve(&model, &branch, &[2], &solver, &options, &mut hooks).unwrap();
+    assert_eq!(last, [all[2]]);
+    let of_peak = BandOptions {
+        of: BandOf::PeakAmplitude,
+        ..options
+    };
+    let refusal = band_curve(&model, &branch, &[2], &solver, &of_peak, &mut hooks).unwrap_err();
+    assert!(refusal.to_string().contains("amplitude at each frequency"));
 }
 
 /// The contact with the platform as two of half its stiffness: a band of two sliders, whose limits allow no more.
