@@ -142,6 +142,8 @@ module hbvib
       HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
    ! hbvib_band_of
    integer(c_int32_t), parameter, public :: HBVIB_BAND_AMPLITUDE = 0, HBVIB_BAND_PEAK_AMPLITUDE = 1, HBVIB_BAND_PEAK_OMEGA = 2
+   ! hbvib_mode_band_of
+   integer(c_int32_t), parameter, public :: HBVIB_MODE_BAND_DAMPING = 0, HBVIB_MODE_BAND_OMEGA = 1
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -1896,6 +1898,26 @@ module hbvib
          integer(c_int64_t), intent(inout) :: count
          integer(c_int32_t) :: status
       end function hbvib_band_curve
+
+      function hbvib_mode_band(model, branch, point, solver, mode, of, contacts_len, contacts, hooks, info, capacity, contact, &
+         direction, ends, states_capacity, states) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_mode_options), intent(in), optional :: mode
+         integer(c_int32_t), value :: of
+         integer(c_int64_t), value :: contacts_len
+         integer(c_int64_t), intent(in), optional :: contacts(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_band_info), intent(inout) :: info
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: contact(*), direction(*)
+         real(c_double), intent(inout), optional :: ends(*)
+         integer(c_int64_t), value :: states_capacity
+         real(c_double), intent(inout), optional :: states(*)
+         integer(c_int32_t) :: status
+      end function hbvib_mode_band
 
       function hbvib_static_history(model, solver, steps, factors, speeds, hooks, motion, motion_len, places, places_len, &
          forces, forces_len) bind(c) result(status)

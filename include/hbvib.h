@@ -4406,6 +4406,66 @@ hbvib_status hbvib_band_curve(const hbvib_model *model,
                               int64_t *complete,
                               int64_t *count);
 
+/// Results of a nonlinear mode that a band bounds.
+typedef enum {
+  /// The damping ratio at the amplitude of the point.
+  HBVIB_MODE_BAND_DAMPING = 0,
+  /// The angular frequency there.
+  HBVIB_MODE_BAND_OMEGA = 1,
+} hbvib_mode_band_of;
+
+/// The band of a stored point of a nonlinear mode: the least and the largest damping ratio or
+/// frequency at its amplitude over all places of the sliders that stick through its period, and the
+/// states that attain them. With one slider all of its places are scanned and each end is refined;
+/// with several one after another is, until nothing is gained: the bounds are attained ones, beyond
+/// which others may lie. A mode of the model with hbvib_model_set_slider of the places has them.
+///
+/// model            the model of which the branch is a result, unchanged since.
+/// branch           a nonlinear mode.
+/// point            number of a stored point.
+/// solver           options; NULL: the defaults. Harmonics and tolerance have no effect.
+/// mode             options of the mode, whose amplitudes have no effect; NULL: the defaults.
+/// of               a value of enum hbvib_mode_band_of.
+/// contacts_len     number of contacts whose sliders are free; 0: all that stick.
+/// contacts         their numbers, or NULL with 0.
+/// hooks            log, phase and cancellation; NULL: none.
+/// info             receives the numbers of the band.
+/// capacity         numbers that fit into contact and direction, at least twice as many as the
+///                  model has
+///                  contacts, unless these and the states are NULL.
+/// contact          receives the contacts of the free sliders, numbers, or NULL.
+/// direction        receives their directions, numbers, or NULL.
+/// ends             receives for the least result, then the largest, the places of the sliders,
+///                  angular
+///                  frequency and damping ratio, 2 * (capacity + 2) doubles, each place at the
+///                  number of
+///                  its slider, the results behind `capacity` places; or NULL.
+/// states_capacity  states that fit into the next array.
+/// states           receives place, angular frequency and damping ratio of each state of one
+///                  slider that
+///                  was scanned, three numbers a state, as many as fit; or NULL.
+/// Errors: HBVIB_E_INDEX (point, contacts), HBVIB_E_ARGUMENT (another model, of),
+/// HBVIB_E_UNSUPPORTED (a forced response), HBVIB_E_DIMENSION (capacity), those of
+/// hbvib_nonlinear_mode; nothing is written then. HBVIB_STOPPED_BY_CALLER likewise. Threads: any
+/// number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_mode_band(const hbvib_model *model,
+                             const hbvib_branch *branch,
+                             int64_t point,
+                             const hbvib_solver_options *solver,
+                             const hbvib_mode_options *mode,
+                             int32_t of,
+                             int64_t contacts_len,
+                             const int64_t *contacts,
+                             const hbvib_hooks *hooks,
+                             hbvib_band_info *info,
+                             int64_t capacity,
+                             int64_t *contact,
+                             int64_t *direction,
+                             double *ends,
+                             int64_t states_capacity,
+                             double *states);
+
 /// Static states of a model along a load history, with friction: constant forces and speeds that
 /// rise and fall, between straight steps. Sliders begin at the places of hbvib_model_set_slider and
 /// are dragged along; the places of a step are the residual state that the history has left there,

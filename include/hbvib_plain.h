@@ -292,6 +292,10 @@ typedef enum {
   HBVIB_BAND_PEAK_AMPLITUDE = 1,
   HBVIB_BAND_PEAK_OMEGA = 2
 } hbvib_band_of;
+typedef enum {
+  HBVIB_MODE_BAND_DAMPING = 0,
+  HBVIB_MODE_BAND_OMEGA = 1
+} hbvib_mode_band_of;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
@@ -952,6 +956,7 @@ hbvib_status hbvib_band_options_init(hbvib_band_options *o, size_t size_of_o);
 hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);
 hbvib_status hbvib_band(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_solver_options *solver, const hbvib_band_options *options, const hbvib_hooks *hooks, hbvib_band_info *info, int64_t capacity, int64_t *contact, int64_t *direction, double *lower_place, double *upper_place, int64_t states_capacity, double *states, hbvib_branch **lower, hbvib_branch **upper);
 hbvib_status hbvib_band_curve(const hbvib_model *model, const hbvib_branch *branch, int64_t points_len, const int64_t *points, const hbvib_solver_options *solver, const hbvib_band_options *options, const hbvib_hooks *hooks, int64_t capacity, double *omega, double *lower, double *upper, int64_t *sliders, int64_t *complete, int64_t *count);
+hbvib_status hbvib_mode_band(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_solver_options *solver, const hbvib_mode_options *mode, int32_t of, int64_t contacts_len, const int64_t *contacts, const hbvib_hooks *hooks, hbvib_band_info *info, int64_t capacity, int64_t *contact, int64_t *direction, double *ends, int64_t states_capacity, double *states);
 hbvib_status hbvib_static_history(const hbvib_model *model, const hbvib_solver_options *solver, int64_t steps, const double *factors, const double *speeds, const hbvib_hooks *hooks, double *motion, int64_t motion_len, double *places, int64_t places_len, double *forces, int64_t forces_len);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);

@@ -133,6 +133,7 @@ pub use analysis::harmonic_residual::{
 };
 pub use analysis::interference::{Interference, interference};
 pub use analysis::linear_contacts::LinearContacts;
+pub use analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::parameter_range::{Follow, ParameterRange};
 pub use analysis::parameter_response::parameter_response;

@@ -46,6 +46,7 @@ from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
+from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
@@ -61,7 +62,7 @@ __all__ = [
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve",
+    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions

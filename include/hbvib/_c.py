@@ -10,7 +10,7 @@ __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block
     "AeroForm", "SectorFrame", "Mistuning", "ContactKind", "Tangent", "Flexibility", "Stability", "LogLevel", "Phase",
     "Measure", "Component", "Field", "Reading", "FlexibilityWay", "State", "ContactState", "DampingForm",
     "ModeMultiple", "SynthesisFlag", "SteadyMethod", "Waves", "MultiplierClass", "Grazing", "Bifurcation",
-    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf"]
+    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf", "ModeBandOf"]
 
 
 class Status(enum.IntEnum):
@@ -817,6 +817,20 @@ class BandOf(enum.IntEnum):
     PEAK_AMPLITUDE = 1
     PEAK_OMEGA = 2
 
+
+class ModeBandOf(enum.IntEnum):
+    """Results of a nonlinear mode that a band bounds.
+
+    DAMPING   The damping ratio at the amplitude of the point.
+    OMEGA   The angular frequency there.
+
+    >>> import hbvib
+    >>> hbvib.ModeBandOf(0)
+    <ModeBandOf.DAMPING: 0>
+    """
+    DAMPING = 0
+    OMEGA = 1
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -1059,6 +1073,7 @@ band_options_init: band_options z
 band_info_init: band_info z
 band: h h l solver_options band_options hooks band_info l p p p p l p p p
 band_curve: h h l p solver_options band_options hooks l p p p p p p
+mode_band: h h l solver_options mode_options i l p hooks band_info l p p p l p
 static_history: h solver_options l p p hooks p l p l p l
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
@@ -1288,6 +1303,9 @@ if TYPE_CHECKING:
         def hbvib_band_curve(self, model: Any, branch: Any, points_len: int, points: Any, solver: Any, options: Any,
             hooks: Any, capacity: int, omega: Any, lower: Any, upper: Any, sliders: Any, complete: Any, count:
             Any) -> int: ...
+        def hbvib_mode_band(self, model: Any, branch: Any, point: int, solver: Any, mode: Any, of: int, contacts_len:
+            int, contacts: Any, hooks: Any, info: Any, capacity: int, contact: Any, direction: Any, ends: Any,
+            states_capacity: int, states: Any) -> int: ...
         def hbvib_static_history(self, model: Any, solver: Any, steps: int, factors: Any, speeds: Any, hooks: Any,
             motion: Any, motion_len: int, places: Any, places_len: int, forces: Any, forces_len: int) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:

@@ -31,6 +31,7 @@ mod inside_start;
 pub mod interference;
 mod known_curve;
 pub mod linear_contacts;
+pub mod mode_band;
 mod mode_discretised;
 mod mode_equations;
 mod mode_guess;
@@ -75,6 +76,7 @@ pub use crate::analysis::freedom::{FreeSlider, freedom, freedom_with};
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
+pub use crate::analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
 pub use crate::analysis::parameter_range::{Follow, ParameterRange};
 pub use crate::analysis::parameter_response::parameter_response;

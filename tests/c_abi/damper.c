@@ -86,6 +86,34 @@ int main(void)
     t.places_len = 2;
     WORKS("time", hbvib_time_response(model, &t, NULL, NULL, 0, NULL, 0, NULL));
     EXPECT("places", places[0] > 0 && places[0] < 9);
+    {
+        hbvib_branch *mode = NULL;
+        hbvib_mode_options m;
+        hbvib_band_info info;
+        int64_t direction[4], own[4], third = 9;
+        double ends[12], states[6];
+        WORKS("init", hbvib_mode_options_init(&m, sizeof m));
+        m.log10_start = -0.4;
+        m.log10_stop = -0.35;
+        s.max_points = 1;
+        WORKS("speed", hbvib_model_clear_forces(model));
+        WORKS("centrifugal", hbvib_model_add_centrifugal(model, 2, 0.25));
+        EXPECT("mode", hbvib_nonlinear_mode(model, &s, &m, NULL, &mode) == HBVIB_STOPPED_MAX_POINTS);
+        WORKS("init", hbvib_band_info_init(&info, sizeof info));
+        WORKS("band", hbvib_mode_band(model, mode, 0, NULL, NULL, HBVIB_MODE_BAND_DAMPING, 0, NULL, NULL, &info, 4, own, direction, ends, 2,
+                                      states));
+        EXPECT("band", info.sliders == 1 && info.complete == 1 && own[0] == 0 && direction[0] == 0 && info.states > 10);
+        EXPECT("ends", ends[5] == info.lower && ends[11] == info.upper && ends[4] == info.lower_omega && info.upper > 1.1 * info.lower);
+        REFUSED("of", hbvib_mode_band(model, mode, 0, NULL, NULL, 2, 0, NULL, NULL, &info, 0, NULL, NULL, NULL, 0, NULL), HBVIB_E_ARGUMENT,
+                6, "of = 2");
+        REFUSED("contacts", hbvib_mode_band(model, mode, 0, NULL, NULL, 0, 1, &third, NULL, &info, 0, NULL, NULL, NULL, 0, NULL),
+                HBVIB_E_INDEX, 8, "contacts");
+        REFUSED("capacity", hbvib_mode_band(model, mode, 0, NULL, NULL, 0, 0, NULL, NULL, &info, 3, own, NULL, NULL, 0, NULL),
+                HBVIB_E_DIMENSION, 11, "needs 4");
+        REFUSED("response", hbvib_mode_band(model, branch, 0, NULL, NULL, 0, 0, NULL, NULL, &info, 0, NULL, NULL, NULL, 0, NULL),
+                HBVIB_E_UNSUPPORTED, 0, "no nonlinear mode");
+        WORKS("free", hbvib_branch_free(mode));
+    }
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(model));
     return failures > 0;

@@ -105,6 +105,7 @@ pub const SECTIONS: [Section; 13] = [
             "wheel_peaks",
             "band",
             "band_curves",
+            "mode_bands",
             "static_history",
         ],
     },

@@ -51,7 +51,7 @@ fn a_wheel_has_its_largest_blade_and_amplification() {
 fn a_wheel_that_cannot_be_made_is_refused_by_its_part() {
     for (name, keys, words) in [
         ("length", "dofs = [0]\npattern = [0.1]", "[wheel]"),
-        ("dofs", "dofs = [9]\npattern = [0.1]", "[wheel] dofs"),
+        ("dofs", &format!("dofs = [9]\npattern = {PATTERN}"), "9"),
         ("kind", "kind = 'colour'\npattern = [0.1]", "colour"),
     ] {
         let (output, _) = run(name, &format!("[wheel]\n{keys}\nfrom_hz = 209.0\nto_hz = 211.0\n"));

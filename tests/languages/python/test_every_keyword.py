@@ -132,6 +132,7 @@ damper.add_force(2, 1, harmonic=0)
 damper.add_force(0, 0.02)
 damped, free_damped = (damper.forced_response(omega, harmonics=3) for omega in ((1.23, 1.27), (1.235, 1.265)))
 top = int(damped.peaks().point[0])
+swinging = damper.nonlinear_mode((-0.6, -0.5), harmonics=5, tolerance=0)
 
 
 pressed = hbvib.Model(mass=1, stiffness=1)
@@ -222,6 +223,11 @@ ANALYSES = {
     "band_curve": (*analysis(lambda **o: np.array(damper.band_curve(**o)[:3]), branch=damped, points=[0], contacts=[0], starts=1), {
         "branch": [(CHANGES, free_damped), (refused("model"), branch)], "points": [(CHANGES, [1]), (refused("point"), [-1])],
         "contacts": [(CHANGES, [1]), (refused("contacts"), [2])], "starts": [(refused("starts"), 0)]}),
+    "mode_band": (*analysis(lambda **o: np.array([damper.mode_band(**o).lower.value]), branch=swinging, point=0, of="damping", contacts=[0],
+                            diameter=None), {
+        "branch": [(refused("nonlinear mode"), damped)], "point": [(refused("point"), -1)],
+        "of": [(CHANGES, "omega"), (refused("omega"), "mean")], "contacts": [(CHANGES, [1]), (refused("contacts"), [2])],
+        "diameter": [(refused("diameter"), 3)]}),
     "static_history": (*analysis(lambda **o: pressed.static_history(**o).forces, factors=[1.0, 1.0], speeds=[1.0, 0.5]), {
         "factors": [(CHANGES, [1.0, 0.5]), (refused("factors"), [NAN, 1.0])],
         "speeds": [(CHANGES, [1.0, 0.7]), (refused("speeds"), [NAN, 1.0])]}),
