@@ -10,20 +10,17 @@
 
 use crate::error::{Error, Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::COPIED_UP_TO;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::compensated_product::Rows;
-use crate::linalg::hermitian;
+use crate::linalg::orthonormal_block::{adjoint_product, norms, orthonormalise, orthonormalise_again};
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::{Entry, Triangle};
+use crate::linalg::triangle_product::multiply;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the reduced structure";
-
-/// Size of a new direction, relative to the image that it comes from, below which it is rounding.
-const EXHAUSTED: f64 = 1e-12;
 
 /// A vector by its entries.
 pub type SparseVector = Vec<(usize, Complex64)>;
@@ -157,18 +154,7 @@ impl<T: Entry> BlockKrylov<T> {
 
     /// y = A x for columns of n numbers.
     fn weigh(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
-        /// Columns of one pass over the matrix.
-        const AT_ONCE: usize = 4;
-        self.stiffness.multiply(x, y, interrupt)?;
-        let mut of_mass = try_vec(AT_ONCE * self.n, T::NONE, CONTEXT)?;
-        let columns = AT_ONCE * self.n.max(1);
-        for (x, y) in x.chunks(columns).zip(y.chunks_mut(columns)) {
-            self.mass.multiply(x, &mut of_mass[..x.len()], interrupt)?;
-            for (y, m) in y.iter_mut().zip(&of_mass) {
-                *y += m.scaled(self.shift);
-            }
-        }
-        Ok(())
+        multiply(&[(1.0, &self.stiffness), (self.shift, &self.mass)], x, y, interrupt)
     }
 
     /// y = A x for one column, rounded once.
@@ -188,7 +174,7 @@ impl<T: Entry> BlockKrylov<T> {
     fn image(&self, operator: usize, adjoint: bool, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
         let a = match &self.damping {
             Some(damping) if operator > 0 => damping,
-            _ => return self.mass.multiply(x, y, interrupt),
+            _ => return multiply(&[(1.0, &self.mass)], x, y, interrupt),
         };
         for (x, y) in x.chunks_exact(a.rows).zip(y.chunks_exact_mut(a.rows)) {
             interrupt.check_before(2 * a.values.len() as u64)?;
@@ -223,15 +209,17 @@ impl<T: Entry> BlockKrylov<T> {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn products(&self, coordinates: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
-        let (n, order) = (self.n.max(1), self.order());
+        let (n, order) = (self.n.max(1), self.order().max(1));
+        let mut forces = try_vec(coordinates.len() / order * n, T::NONE, CONTEXT)?;
+        for (force, z) in forces.chunks_exact_mut(n).zip(coordinates.chunks_exact(order)) {
+            self.weigh_exactly(&self.motion(z)?, force, interrupt)?;
+        }
+        let mut products = try_vec(coordinates.len(), T::NONE, CONTEXT)?;
+        interrupt.check_before((4 * order * forces.len()) as u64)?;
+        adjoint_product(&self.basis, &forces, n, &mut products);
         let mut found = try_vec(coordinates.len(), Complex64::ZERO, CONTEXT)?;
-        let mut force = try_vec(self.n, T::NONE, CONTEXT)?;
-        let columns = found.chunks_exact_mut(order.max(1));
-        for (found, z) in columns.zip(coordinates.chunks_exact(order.max(1))) {
-            self.weigh_exactly(&self.motion(z)?, &mut force, interrupt)?;
-            for (found, v) in found.iter_mut().zip(self.basis.chunks_exact(n)) {
-                *found = dot(v, &force);
-            }
+        for (found, product) in found.iter_mut().zip(products) {
+            *found = product.complex();
         }
         Ok(found)
     }
@@ -385,157 +373,4 @@ impl<T: Entry> BlockKrylov<T> {
         );
         Ok(())
     }
-}
-
-/// out = Vᴴ X for columns of n numbers.
-fn adjoint_product<T: Entry>(v: &[T], x: &[T], n: usize, out: &mut [T]) {
-    let (rows, columns) = (v.len() / n.max(1), x.len() / n.max(1));
-    if rows == 0 || columns == 0 {
-        return;
-    }
-    if rows * columns * n <= COPIED_UP_TO {
-        for (out, x) in out.chunks_exact_mut(rows).zip(x.chunks_exact(n)) {
-            for (out, v) in out.iter_mut().zip(v.chunks_exact(n)) {
-                *out = conjugate_sum(v, x);
-            }
-        }
-        return;
-    }
-    matmul(
-        MatMut::from_column_major_slice_mut(out, rows, columns),
-        Accum::Replace,
-        MatRef::from_column_major_slice(v, n, rows).adjoint(),
-        MatRef::from_column_major_slice(x, n, columns),
-        T::of(Complex64::ONE),
-        Par::Seq,
-    );
-}
-
-/// Norms of columns whose products with A are given.
-fn norms<T: Entry>(block: &[T], weighted: &[T], n: usize) -> Vec<f64> {
-    let columns = block.chunks_exact(n.max(1)).zip(weighted.chunks_exact(n.max(1)));
-    columns.map(|(u, w)| dot(u, w).re.max(0.0).sqrt()).collect()
-}
-
-fn dot<T: Entry>(u: &[T], w: &[T]) -> Complex64 {
-    conjugate_sum(u, w).complex()
-}
-
-/// uᴴ w
-fn conjugate_sum<T: Entry>(u: &[T], w: &[T]) -> T {
-    let mut sum = T::NONE;
-    for (&u, &w) in u.iter().zip(w) {
-        sum.add_conjugate_product(u, w);
-    }
-    sum
-}
-
-/// Orthonormalises columns B that nearly are: with Bᴴ A B = L Lᴴ the columns of B L⁻ᴴ. `false` where they are not independent.
-fn orthonormalise_again<T: Entry>(
-    block: &mut Vec<T>,
-    weighted: &[T],
-    n: usize,
-    interrupt: &Interrupt<'_>,
-) -> Result<bool> {
-    let columns = block.len() / n.max(1);
-    if columns == 0 {
-        return Ok(true);
-    }
-    let mut gram = try_vec(columns * columns, T::NONE, CONTEXT)?;
-    interrupt.check_before((4 * columns * block.len()) as u64)?;
-    adjoint_product(block, weighted, n, &mut gram);
-    let mut l = try_vec(columns * columns, Complex64::ZERO, CONTEXT)?;
-    let mut turn = try_vec(columns * columns, Complex64::ZERO, CONTEXT)?;
-    for (to, from) in l.iter_mut().zip(&gram) {
-        *to = from.complex();
-    }
-    for k in 0..columns {
-        turn[k * columns + k] = Complex64::ONE;
-    }
-    if !hermitian::cholesky(&mut l, columns, interrupt)? {
-        return Ok(false);
-    }
-    hermitian::solve_triangular(&l, columns, true, &mut turn, interrupt)?;
-    for (to, from) in gram.iter_mut().zip(&turn) {
-        *to = T::of(*from);
-    }
-    let mut turned = try_vec(block.len(), T::NONE, CONTEXT)?;
-    interrupt.check_before((4 * columns * block.len()) as u64)?;
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut turned, n, columns),
-        Accum::Replace,
-        MatRef::from_column_major_slice(block, n, columns),
-        MatRef::from_column_major_slice(&gram, columns, columns),
-        T::of(Complex64::ONE),
-        Par::Seq,
-    );
-    *block = turned;
-    Ok(true)
-}
-
-/// Share of the square of a norm that is left, below which the square is computed anew.
-const DOWNDATED: f64 = 1e-4;
-
-/// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns
-/// their number.
-fn orthonormalise<T: Entry>(
-    (block, weighted): (&mut [T], &mut [T]),
-    n: usize,
-    sizes: &[f64],
-    interrupt: &Interrupt<'_>,
-) -> Result<usize> {
-    let n = n.max(1);
-    let columns = block.len() / n;
-    let mut sizes = try_copy(sizes, CONTEXT)?;
-    // Squares of the norms, and what they were when they were computed.
-    let mut squares = try_vec(columns, (0.0, 0.0), CONTEXT)?;
-    for ((square, u), w) in squares
-        .iter_mut()
-        .zip(block.chunks_exact(n))
-        .zip(weighted.chunks_exact(n))
-    {
-        let own = dot(u, w).re.max(0.0);
-        *square = (own, own);
-    }
-    for k in 0..columns {
-        interrupt.check_before((6 * (columns - k) * n) as u64)?;
-        // The largest share that is still new.
-        let share = |j: usize| squares[j].0.sqrt() / sizes[j].max(f64::MIN_POSITIVE);
-        let best = (k..columns).fold(k, |best, j| if share(j) > share(best) { j } else { best });
-        if share(best) <= EXHAUSTED {
-            return Ok(k);
-        }
-        if best != k {
-            for x in [&mut *block, &mut *weighted] {
-                let (left, right) = x.split_at_mut(best * n);
-                left[k * n..(k + 1) * n].swap_with_slice(&mut right[..n]);
-            }
-            sizes.swap(k, best);
-            squares.swap(k, best);
-        }
-        let (u, later) = block[k * n..].split_at_mut(n);
-        let (w, later_weighted) = weighted[k * n..].split_at_mut(n);
-        let norm = dot(u, w).re.max(0.0).sqrt();
-        if norm <= EXHAUSTED * sizes[k] {
-            return Ok(k);
-        }
-        for x in u.iter_mut().chain(w.iter_mut()) {
-            *x = x.scaled(1.0 / norm);
-        }
-        let columns = later.chunks_exact_mut(n).zip(later_weighted.chunks_exact_mut(n));
-        for ((x, y), square) in columns.zip(&mut squares[k + 1..]) {
-            let part = dot(u, y);
-            let c = T::of(-part);
-            for ((x, &u), (y, &w)) in x.iter_mut().zip(&*u).zip(y.iter_mut().zip(&*w)) {
-                x.add_product(c, u);
-                y.add_product(c, w);
-            }
-            square.0 -= part.norm_sqr();
-            if square.0 <= DOWNDATED * square.1 {
-                let own = dot(x, y).re.max(0.0);
-                *square = (own, own);
-            }
-        }
-    }
-    Ok(columns)
 }

@@ -64,7 +64,7 @@ fn solutions_by_both_orders<T: Entry>(side: usize) {
     let x: Vec<T> = (0..a.n).map(|k| T::of(Complex64::cis(k as f64))).collect();
     let [first, second] = [Order::Degrees, Order::Dissection].map(|order| {
         let mut b = vec![T::NONE; a.n];
-        a.multiply(&x, &mut b, &interrupt).unwrap();
+        multiply(&[(1.0, &a)], &x, &mut b, &interrupt).unwrap();
         let factor = Cholesky::by_order(&a, order, |_| Ok(()), &interrupt).unwrap();
         factor.unwrap().solve(&mut b, &interrupt).unwrap();
         b
@@ -122,7 +122,7 @@ fn products_by_the_triangle_are_those_of_the_matrix() {
     let triangle = Triangle::<Complex64>::sum(&a, (0.5, &m), &interrupt).unwrap();
     let x: Vec<Complex64> = (0..n).map(|k| Complex64::cis(k as f64)).collect();
     let mut y = vec![Complex64::ZERO; n];
-    triangle.multiply(&x, &mut y, &interrupt).unwrap();
+    multiply(&[(1.0, &triangle)], &x, &mut y, &interrupt).unwrap();
     let mut exact = a.times(&x, "a test").unwrap();
     m.multiply_add(0.5.into(), &x, &mut exact);
     assert!(y.iter().zip(&exact).all(|(y, e)| (y - e).norm() < 1e-12));

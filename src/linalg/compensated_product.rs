@@ -79,6 +79,7 @@ impl<T: Entry> WithSimd for Product<'_, T> {
 mod tests {
     use super::*;
     use crate::linalg::sparse::Csc;
+    use crate::linalg::triangle_product::multiply;
 
     /// A path graph's Laplacian in stiff units with a soft one of 1e-14 of it: the image of the constant vector is that of
     /// the soft part alone, which a plain product loses.
@@ -115,7 +116,7 @@ mod tests {
             assert!((b - a - soft(i) * x).norm() < 1e-3 * soft(i), "row {i}");
         }
         let mut plain = vec![Complex64::ZERO; N];
-        stiff.multiply(&x, &mut plain, &interrupt).unwrap();
+        multiply(&[(1.0, &stiff)], &x, &mut plain, &interrupt).unwrap();
         let worst = plain.iter().zip(&own).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(worst > 1e-16, "a plain product loses digits here: {worst:.1e}");
     }

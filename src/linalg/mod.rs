@@ -22,6 +22,7 @@ pub mod linear_system;
 pub mod lu;
 pub mod matrix_view;
 mod nested_dissection;
+pub mod orthonormal_block;
 pub mod quadratic;
 mod real_pencil;
 mod reflections;
@@ -33,6 +34,7 @@ mod small_sum;
 mod sorted_columns;
 pub mod sparse;
 pub mod triangle;
+pub mod triangle_product;
 mod tridiagonal;
 mod vectors;
 

@@ -6,15 +6,12 @@
 use crate::error::{Error, Result, try_room, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::compensated_sum::Sum;
-use crate::linalg::row_index::{Row, check_order, narrow, wide};
+use crate::linalg::row_index::{Row, check_order, narrow};
 use crate::linalg::sparse::Columns;
 use faer::traits::ComplexField;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "a Hermitian matrix";
-
-/// Columns of a product that are computed together.
-const AT_ONCE: usize = 4;
 
 /// A real or complex number.
 pub trait Entry:
@@ -22,6 +19,8 @@ pub trait Entry:
 {
     /// Zero.
     const NONE: Self;
+    /// Whether it has an imaginary part.
+    const IS_COMPLEX: bool;
     /// The number, without its imaginary part where it has none.
     fn of(z: Complex64) -> Self;
     /// The number as a complex one.
@@ -42,6 +41,7 @@ pub trait Entry:
 
 impl Entry for f64 {
     const NONE: Self = 0.0;
+    const IS_COMPLEX: bool = false;
 
     #[inline]
     fn of(z: Complex64) -> Self {
@@ -81,6 +81,7 @@ impl Entry for f64 {
 
 impl Entry for Complex64 {
     const NONE: Self = Self::ZERO;
+    const IS_COMPLEX: bool = true;
 
     #[inline]
     fn of(z: Complex64) -> Self {
@@ -173,65 +174,6 @@ impl<T: Entry> Triangle<T> {
             row_idx,
             values,
         })
-    }
-
-    /// Y = A X for column-major X and Y.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
-    pub fn multiply(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
-        let n = self.n.max(1);
-        for (x, y) in x.chunks(AT_ONCE * n).zip(y.chunks_mut(AT_ONCE * n)) {
-            interrupt.check_before(2 * (x.len() / n * self.values.len()) as u64)?;
-            y.fill(T::NONE);
-            if x.len() == AT_ONCE * n {
-                self.add_together(x, y);
-            } else {
-                for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
-                    self.add_one(x, y);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn add_one(&self, x: &[T], y: &mut [T]) {
-        for (j, &xj) in x.iter().enumerate() {
-            let mut above = T::NONE;
-            let range = self.col_ptr[j]..self.col_ptr[j + 1];
-            for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
-                let i = wide(i);
-                y[i].add_product(a, xj);
-                if i != j {
-                    above.add_conjugate_product(a, x[i]);
-                }
-            }
-            y[j].add_product(above, T::of(Complex64::ONE));
-        }
-    }
-
-    /// Several columns with one pass over the matrix, which is what takes the time.
-    fn add_together(&self, x: &[T], y: &mut [T]) {
-        let n = self.n;
-        for j in 0..n {
-            let mut above = [T::NONE; AT_ONCE];
-            let xj: [T; AT_ONCE] = core::array::from_fn(|c| x[c * n + j]);
-            let range = self.col_ptr[j]..self.col_ptr[j + 1];
-            for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
-                let i = wide(i);
-                for c in 0..AT_ONCE {
-                    y[c * n + i].add_product(a, xj[c]);
-                }
-                if i != j {
-                    for (c, above) in above.iter_mut().enumerate() {
-                        above.add_conjugate_product(a, x[c * n + i]);
-                    }
-                }
-            }
-            for (c, above) in above.into_iter().enumerate() {
-                y[c * n + j].add_product(above, T::of(Complex64::ONE));
-            }
-        }
     }
 }
 
