@@ -304,6 +304,7 @@ fn friction_in_a_plane_has_the_band_of_its_line() {
 fn plane_in_time(motion: &[Complex64], places: [f64; 2], force: f64, omega: f64) -> (f64, f64) {
     const STEPS: usize = 6000;
     const PERIODS: usize = 80;
+    const HELD: usize = 50;
     let r = FRAC_1_SQRT_2;
     let (mass, damping, stiffness) = (
         [1.0, 0.01, 0.01, 0.01],
@@ -316,7 +317,7 @@ fn plane_in_time(motion: &[Complex64], places: [f64; 2], force: f64, omega: f64)
         rates.map(|(h, row)| -(h as f64) * omega * row[dof].im).sum::<f64>()
     });
     let mut platform = places;
-    // The contact with the blade slips, and forgets its place.
+    // The contact with the blade slips, and forgets its place while that at the platform is held.
     let mut blade = 0.0;
     let dt = std::f64::consts::TAU / omega / STEPS as f64;
     let mut forces = |x: &[f64; 4], v: &[f64; 4], t: f64| -> [f64; 4] {
@@ -326,7 +327,12 @@ fn plane_in_time(motion: &[Complex64], places: [f64; 2], force: f64, omega: f64)
         let (along, load) = (r * (u + outward), closing(r * (outward - u)));
         let stretch = [along - platform[0], across - platform[1]];
         let size = stretch[0].hypot(stretch[1]);
-        let share = if size > 0.6 * load { 0.6 * load / size } else { 1.0 };
+        let is_held = omega * t < std::f64::consts::TAU * HELD as f64;
+        let share = if size > 0.6 * load && !is_held {
+            0.6 * load / size
+        } else {
+            1.0
+        };
         let pull = stretch.map(|s| s * share);
         platform = [along - pull[0], across - pull[1]];
         let (other, pressed) = (r * (q - u + outward), closing(r * (u + outward - q)));
