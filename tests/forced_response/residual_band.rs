@@ -387,7 +387,7 @@ fn the_ends_with_friction_in_a_plane_are_motions_in_time() {
         let motion = crate::common::all_harmonics(end.branch.as_ref().unwrap(), 0);
         let (amplitude, moved) = plane_in_time(&motion, places, force, omega);
         println!("{} in time {amplitude}, dragged by {moved:.1e}", end.value);
-        assert!((amplitude / end.value - 1.0).abs() < 5e-3 && moved < 1e-2);
+        assert!((amplitude / end.value - 1.0).abs() < 1e-3 && moved < 1e-3);
         // A state just within.
         let places = [0, 1].map(|k| 0.95 * end.places[k] + 0.05 * other.places[k]);
         let mut placed = model.try_clone().unwrap();
