@@ -119,9 +119,9 @@ pub unsafe extern "C" fn hbvib_wheel_peaks(
             omega_stop,
             ..ForcedOptions::default()
         };
+        check_pointer(count, 12, "count")?;
         options.check().with_argument(5)?;
         let hooks = unsafe { load_hooks(hooks, 7) }?;
-        check_pointer(count, 12, "count")?;
         if !info.is_null() {
             unsafe { check_out(info, 13) }?;
         }

@@ -207,7 +207,11 @@ impl Damper<'_> {
         let square = self.radius * self.radius;
         let across = self.mass * (3.0 * square + self.length * self.length) / 12.0;
         let solid = [across, across, 0.5 * self.mass * square];
-        let inertia = if self.inertia == [0.0; 3] { solid } else { self.inertia };
+        let inertia = if self.inertia.iter().all(|x| *x == 0.0) {
+            solid
+        } else {
+            self.inertia
+        };
         let needed = if self.motions == 3 { &inertia[2..] } else { &inertia[..] };
         if needed.contains(&0.0) {
             return fail!(

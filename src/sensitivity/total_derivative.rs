@@ -73,7 +73,7 @@ impl<'a> TotalDerivative<'a> {
                 let Speed::Fixed(speed) = self.model.speed() else {
                     return Ok((f64::NAN, Reason::ZeroConstant));
                 };
-                let mut sum = -with_speed(model, condensed, adjoint, speed)? + self.by_centrifugal(speed)?;
+                let mut sum = -with_speed(model, condensed, adjoint, speed)? + self.by_centrifugal(speed);
                 for load in self.model.speed_loads() {
                     let slope = 2.0 * load.per_speed2 * speed;
                     if slope == 0.0 {
@@ -108,7 +108,7 @@ impl<'a> TotalDerivative<'a> {
     }
 
     /// The derivative by the speed of the constant forces that follow it.
-    fn by_centrifugal(&self, speed: f64) -> Result<f64> {
+    fn by_centrifugal(&self, speed: f64) -> f64 {
         let condensed = self.condensed;
         let forces = self.model.excitation().forces().iter();
         let mut sum = 0.0;
@@ -121,7 +121,7 @@ impl<'a> TotalDerivative<'a> {
                 }
             }
         }
-        Ok(sum)
+        sum
     }
 
     /// The derivative by a constant of one contact, 0 where its law does not have it; `None` where it exists on one

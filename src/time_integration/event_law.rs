@@ -55,10 +55,10 @@ pub(crate) type Row = [Option<(usize, f64)>; MOTION_TERMS];
 
 impl Spring {
     /// A spring along a relative motion whose side a lies in sector `s` of the unrolled structure.
-    pub fn new(structure: &Structure, motion: SectorMotion, s: usize, stiffness: f64) -> Self {
+    pub fn new(structure: &Structure, motion: &SectorMotion, s: usize, stiffness: f64) -> Self {
         Self {
-            row: row(structure, &motion, s),
-            motion,
+            row: row(structure, motion, s),
+            motion: *motion,
             sector: s,
             stiffness,
         }
@@ -101,7 +101,7 @@ pub(super) fn unroll(
             interrupt.check_before(OF_ONE_SECTOR)?;
             if stiffness != 0.0 {
                 let motion = structure.contact_motion(c, 0);
-                try_push(springs, Spring::new(structure, motion, s, stiffness), CONTEXT)?;
+                try_push(springs, Spring::new(structure, &motion, s, stiffness), CONTEXT)?;
             }
             if let Some((first, part)) = &law {
                 let (mut rows, mut motions) = (Vec::new(), Vec::new());
