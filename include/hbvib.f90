@@ -142,6 +142,8 @@ module hbvib
       HBVIB_FOLLOW_MODE_MAX_DAMPING = 3, HBVIB_FOLLOW_PEAK_THROUGH_FOLDS = 4
    ! hbvib_band_of
    integer(c_int32_t), parameter, public :: HBVIB_BAND_AMPLITUDE = 0, HBVIB_BAND_PEAK_AMPLITUDE = 1, HBVIB_BAND_PEAK_OMEGA = 2
+   ! hbvib_mode_band_of
+   integer(c_int32_t), parameter, public :: HBVIB_MODE_BAND_DAMPING = 0, HBVIB_MODE_BAND_OMEGA = 1
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -171,10 +173,29 @@ module hbvib
 
    !> A contact between two degrees of freedom, or between one and the ground.
    type, bind(c) :: hbvib_contact
-      integer(c_int32_t) :: struct_size = 168, kind = 0
+      integer(c_int32_t) :: struct_size = 224, kind = 0
       integer(c_int64_t) :: dof_a(3) = HBVIB_GROUND, dof_b(3) = HBVIB_GROUND, sector_offset = 0
       real(c_double) :: kt = 0, kn = 0, mu = 0, preload = 0, gap = 0, cubic = 0, velocity = 0, normal(3) = 0, tangent(3) = 0
+      integer(c_int64_t) :: rotation(3) = HBVIB_GROUND
+      real(c_double) :: arm(3) = 0, turn = 0
    end type hbvib_contact
+
+   !> A face of a damper on a platform.
+   type, bind(c) :: hbvib_damper_face
+      integer(c_int32_t) :: struct_size = 136, reserved = 0
+      integer(c_int64_t) :: dofs(3) = HBVIB_GROUND, sector_offset = 0
+      real(c_double) :: angle = 0, turn = 0, centre(3) = 0, width = 0
+      integer(c_int64_t) :: points_across = 1, points_along = 1
+      real(c_double) :: kt = 0, kn = 0, mu = 0, gap = 0
+   end type hbvib_damper_face
+
+   !> A damper under platforms, a rigid body.
+   type, bind(c) :: hbvib_damper
+      integer(c_int32_t) :: struct_size = 112, motions = 3
+      real(c_double) :: mass = 0, inertia(3) = 0, radius = 0, length = 0, orbit = 0, support(2) = 0, support_damping(2) = 0
+      type(c_ptr) :: faces = c_null_ptr
+      integer(c_int64_t) :: faces_len = 0
+   end type hbvib_damper
 
    !> One period for which a force callback computes its force.
    type, bind(c) :: hbvib_force_call
@@ -351,13 +372,15 @@ module hbvib
 
    !> Options of hbvib_time_response.
    type, bind(c) :: hbvib_time_options
-      integer(c_int32_t) :: struct_size = 64, method = 0
+      integer(c_int32_t) :: struct_size = 80, method = 0
       real(c_double) :: omega = 0
       integer(c_int64_t) :: harmonics = 9, samples = 0
       real(c_double) :: tolerance = 1e-11_c_double
       integer(c_int64_t) :: max_periods = 10000
       type(c_ptr) :: start = c_null_ptr
       integer(c_int64_t) :: start_len = 0
+      type(c_ptr) :: places = c_null_ptr
+      integer(c_int64_t) :: places_len = 0
    end type hbvib_time_options
 
    !> Numbers of a periodic response in time.
@@ -435,6 +458,13 @@ module hbvib
       type(c_ptr) :: responses = c_null_ptr
       integer(c_int64_t) :: responses_len = 0
    end type hbvib_batch_options
+
+   !> Numbers of the peaks of a wheel.
+   type, bind(c) :: hbvib_wheel_info
+      integer(c_int32_t) :: struct_size = 48, reserved = 0
+      integer(c_int64_t) :: blade = 0
+      real(c_double) :: largest = 0, tuned = 0, tuned_omega = 0, amplification = 0
+   end type hbvib_wheel_info
 
    !> Options of hbvib_band.
    type, bind(c) :: hbvib_band_options
@@ -648,6 +678,14 @@ module hbvib
          real(c_double), value :: preload, per_speed2
          integer(c_int32_t) :: status
       end function hbvib_model_set_preload_at_speed
+
+      function hbvib_model_add_centrifugal(model, dof, mass_radius) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: dof
+         real(c_double), value :: mass_radius
+         integer(c_int32_t) :: status
+      end function hbvib_model_add_centrifugal
 
       function hbvib_model_add_unbalance(model, dof_x, dof_y, m_e, phase) bind(c) result(status)
          import
@@ -929,6 +967,28 @@ module hbvib
          integer(c_int64_t), intent(inout), optional :: first_id
          integer(c_int32_t) :: status
       end function hbvib_model_add_patch
+
+      function hbvib_damper_face_init(f, size_of_f) bind(c) result(status)
+         import
+         type(hbvib_damper_face), intent(inout) :: f
+         integer(c_size_t), value :: size_of_f
+         integer(c_int32_t) :: status
+      end function hbvib_damper_face_init
+
+      function hbvib_damper_init(d, size_of_d) bind(c) result(status)
+         import
+         type(hbvib_damper), intent(inout) :: d
+         integer(c_size_t), value :: size_of_d
+         integer(c_int32_t) :: status
+      end function hbvib_damper_init
+
+      function hbvib_model_add_damper(model, damper, first_dof, first_contact) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_damper), intent(in) :: damper
+         integer(c_int64_t), intent(inout), optional :: first_dof, first_contact
+         integer(c_int32_t) :: status
+      end function hbvib_model_add_damper
 
       function hbvib_model_contact(model, id, out, per_speed2) bind(c) result(status)
          import
@@ -1790,6 +1850,29 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_batch_branch
 
+      function hbvib_wheel_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_wheel_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_wheel_info_init
+
+      function hbvib_wheel_peaks(wheel, cyclic, blade, solver, omega_start, omega_stop, hooks, capacity, amplitude, omega, &
+         error, count, info, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: wheel, cyclic
+         type(hbvib_response), intent(in), optional :: blade
+         type(hbvib_solver_options), intent(in), optional :: solver
+         real(c_double), value :: omega_start, omega_stop
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: amplitude(*), omega(*), error(*)
+         integer(c_int64_t), intent(inout) :: count
+         type(hbvib_wheel_info), intent(inout), optional :: info
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_wheel_peaks
+
       function hbvib_branch_freedom(model, branch, point, capacity, contact, direction, place, derivative, count, &
          hooks) bind(c) result(status)
          import
@@ -1833,6 +1916,42 @@ module hbvib
          type(c_ptr), intent(inout) :: lower, upper
          integer(c_int32_t) :: status
       end function hbvib_band
+
+      function hbvib_band_curve(model, branch, points_len, points, solver, options, hooks, capacity, omega, lower, upper, &
+         sliders, complete, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: points_len
+         integer(c_int64_t), intent(in), optional :: points(*)
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_band_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: omega(*), lower(*), upper(*)
+         integer(c_int64_t), intent(inout), optional :: sliders(*), complete(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_band_curve
+
+      function hbvib_mode_band(model, branch, point, solver, mode, of, contacts_len, contacts, hooks, info, capacity, contact, &
+         direction, ends, states_capacity, states) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_mode_options), intent(in), optional :: mode
+         integer(c_int32_t), value :: of
+         integer(c_int64_t), value :: contacts_len
+         integer(c_int64_t), intent(in), optional :: contacts(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_band_info), intent(inout) :: info
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: contact(*), direction(*)
+         real(c_double), intent(inout), optional :: ends(*)
+         integer(c_int64_t), value :: states_capacity
+         real(c_double), intent(inout), optional :: states(*)
+         integer(c_int32_t) :: status
+      end function hbvib_mode_band
 
       function hbvib_static_history(model, solver, steps, factors, speeds, hooks, motion, motion_len, places, places_len, &
          forces, forces_len) bind(c) result(status)
@@ -2228,7 +2347,7 @@ contains
       type(hbvib_contact), intent(inout) :: contact
       integer(i64), intent(in) :: ndof
       integer(i64) :: zero
-      character(8) :: name
+      character(11) :: name
       integer :: side, i
       do side = 1, 2
          do i = 1, 3
@@ -2241,6 +2360,11 @@ contains
                if (status == HBVIB_OK) contact%dof_b(i) = zero
             end if
          end do
+      end do
+      do i = 1, 3
+         write (name, '(a, i0, a)') 'rotation(', i, ')'
+         call to_zero(status, name, contact%rotation(i), ndof, zero, HBVIB_GROUND)
+         if (status == HBVIB_OK) contact%rotation(i) = zero
       end do
    end subroutine struct_dofs
 

@@ -508,6 +508,16 @@ hbvib_status hbvib_model_set_preload_at_speed(hbvib_model *model,
                                               double preload,
                                               double per_speed2);
 
+/// Adds the constant force mass_radius * Omega^2 on a degree of freedom, the centrifugal force of a
+/// mass at a radius, at the speed Omega of the model. hbvib_model_clear_forces removes it, too.
+///
+/// dof          0 .. ndof - 1.
+/// mass_radius  mass times radius, finite, of any sign.
+/// Errors: HBVIB_E_INDEX (dof), HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
+hbvib_status hbvib_model_add_centrifugal(hbvib_model *model, int64_t dof, double mass_radius);
+
 /// Adds the force of an unbalance that rotates with the frequency omega of the response:
 /// m_e omega^2 cos(omega t + phase) on dof_x and m_e omega^2 sin(omega t + phase) on dof_y.
 /// hbvib_model_clear_forces removes it, too.
@@ -1008,6 +1018,14 @@ typedef struct {
   /// Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane,
   /// for HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
   double tangent[3];
+  /// Side a is a point of a rigid body: rotations of the body about the axes of `dof_a`, which are
+  /// then the translations of its centre of mass, or HBVIB_GROUND; with `normal` only.
+  int64_t rotation[3];
+  /// The point of the contact from the centre of mass of that body, in the axes of `dof_a`.
+  double arm[3];
+  /// Angle in radians by which the axes of `dof_b` are turned about the third one of `dof_a`; with
+  /// `normal` only, which is in the axes of `dof_a`.
+  double turn;
 } hbvib_contact;
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
@@ -1249,6 +1267,105 @@ hbvib_status hbvib_model_add_patch(hbvib_model *model,
                                    const double *pressure,
                                    const double *gap,
                                    int64_t *first_id);
+
+/// A face of a damper on a platform. Fill it by hbvib_damper_face_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// Must be 0.
+  int32_t reserved;
+  /// Degrees of freedom of the platform along x, y and z of the damper, or HBVIB_GROUND.
+  int64_t dofs[3];
+  /// Cyclic models: the platform belongs to sector s + sector_offset.
+  int64_t sector_offset;
+  /// Angle between the platform and the direction along the wheel in radians: positive on the side
+  /// of the next sector, negative on the other one.
+  double angle;
+  /// Angle in radians by which the axes of `dofs` are turned about z against those of the damper.
+  double turn;
+  /// Middle of the face from the centre of mass; without effect on a cylinder.
+  double centre[3];
+  /// Width across z, over which points are spread; without effect on a cylinder.
+  double width;
+  /// Points across z, >= 1; one on a cylinder.
+  int64_t points_across;
+  /// Points along z, >= 1; one with 3 motions.
+  int64_t points_along;
+  /// Tangential stiffness of the whole face, force per length, >= 0.
+  double kt;
+  /// Normal stiffness of the whole face, force per length, > 0.
+  double kn;
+  /// Friction coefficient, >= 0.
+  double mu;
+  /// Play along the normal, of any sign.
+  double gap;
+} hbvib_damper_face;
+
+/// Fills a face: the ground, one point, the rest zero.
+///
+/// f          the struct; untouched on error.
+/// size_of_f  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_damper_face_init(hbvib_damper_face *f, size_t size_of_f);
+
+/// A damper under platforms, a rigid body. Its axes: x along the wheel towards the next sector, y
+/// outward, z along the axis of rotation. Fill it by hbvib_damper_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 3: motions along x and y and the roll about z; 6: translations along x, y and z and rotations
+  /// about them.
+  int32_t motions;
+  /// Mass, > 0.
+  double mass;
+  /// Moments of inertia about x, y and z through the centre of mass; all zero: those of a solid
+  /// cylinder of radius and length.
+  double inertia[3];
+  /// Radius of a cylinder, whose faces are lines; 0: faces have their centres and widths.
+  double radius;
+  /// Length along z, over which points are spread.
+  double length;
+  /// Distance of the centre of mass from the axis of rotation: the force mass * orbit * Omega^2
+  /// acts outward.
+  double orbit;
+  /// Stiffness between the ground and each translation, and each rotation, >= 0.
+  double support[2];
+  /// Damping constants of the same, >= 0.
+  double support_damping[2];
+  /// Faces, at least one.
+  const hbvib_damper_face *faces;
+  /// Number of faces.
+  int64_t faces_len;
+} hbvib_damper;
+
+/// Fills a damper: 3 motions, the rest zero.
+///
+/// d          the struct; untouched on error.
+/// size_of_d  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_damper_init(hbvib_damper *d, size_t size_of_d);
+
+/// Adds a damper under platforms: its motions are new degrees of freedom behind all others, so that
+/// the model has `motions` more, and matrices that are set later have the new size. Its faces are
+/// contacts HBVIB_FRICTION_2D (3 motions) or HBVIB_FRICTION_3D under the load that presses them.
+/// Its mass, support and centrifugal force are added. In a cyclic model each sector has one.
+/// Rayleigh damping applies to its mass and support as well.
+///
+/// damper         the description.
+/// first_dof      receives the number of its first motion; the others follow. Or NULL.
+/// first_contact  receives the number of its first contact; the others follow, face after face,
+///                across z and then along it. Or NULL.
+/// Errors: HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE and HBVIB_E_INDEX (fields of the damper or of a
+/// face, which is named), HBVIB_E_DIMENSION (too many degrees of freedom), HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; the model is unchanged then.
+/// Threads: one at a time per model.
+HBVIB_NODISCARD
+hbvib_status hbvib_model_add_damper(hbvib_model *model,
+                                    const hbvib_damper *damper,
+                                    int64_t *first_dof,
+                                    int64_t *first_contact);
 
 /// Describes a contact of a model as hbvib_model_add_contact takes it: preload and gap as they were
 /// given, whatever the speed; normal and tangent as unit vectors; contacts of an Iwan joint or a
@@ -3242,6 +3359,11 @@ typedef struct {
   const double *start;
   /// Complex numbers in start.
   int64_t start_len;
+  /// Receives the place of the slider along t1 of each contact at the end, the residual state for
+  /// hbvib_model_set_slider, 0 for contacts without slider; or NULL.
+  double *places;
+  /// Doubles in places: the number of contacts; 0 with NULL.
+  int64_t places_len;
 } hbvib_time_options;
 
 /// Fills the options of a response in time with their defaults: shooting from rest, harmonics = 9,
@@ -4119,6 +4241,72 @@ hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 HBVIB_NODISCARD
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 
+/// Numbers of the peaks of a wheel. Fill it by hbvib_wheel_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Blade with the highest peak, from 0; -1 without any.
+  int64_t blade;
+  /// That peak; NaN without one.
+  double largest;
+  /// Peak of the tuned wheel; NaN without one within the range.
+  double tuned;
+  /// Angular frequency of the peak of the tuned wheel.
+  double tuned_omega;
+  /// Amplification factor: largest over tuned.
+  double amplification;
+} hbvib_wheel_info;
+
+/// Fills the numbers of the peaks of a wheel with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_wheel_info_init(hbvib_wheel_info *i, size_t size_of_i);
+
+/// The highest peak of each blade of a wheel within a range of frequency, and the amplification
+/// against the tuned wheel. All blades are watched in one response, so that a tolerance holds for
+/// each of them; the tuned wheel is the wave of its sector.
+///
+/// wheel        made by hbvib_wheel_new of `cyclic`, mistuned or not.
+/// cyclic       the model of the sector.
+/// blade        response of a sector that is watched, in degrees of freedom of the sector; NULL:
+///              the fundamental of the response degree of freedom of the solver.
+/// solver       options, the response degree of freedom is one of the sector; NULL: the defaults.
+/// omega_start  first angular frequency of the range, > 0.
+/// omega_stop   last one.
+/// hooks        progress, log, phase and cancellation; NULL: none.
+/// capacity     numbers that fit into each array: at least the number of sectors.
+/// amplitude    receives the peaks, NaN where a blade has none; or NULL.
+/// omega        receives their angular frequencies, or NULL.
+/// error        receives their estimated relative errors, NaN where no tolerance asked for them; or
+///              NULL.
+/// count        receives the number of sectors, also when `capacity` is too small.
+/// info         receives the numbers of the largest one; fill it by hbvib_wheel_info_init before;
+///              or NULL.
+/// out          receives the response of the wheel, whose response s is that of blade s; or NULL.
+/// Positive statuses are those of hbvib_forced_response, of the response of the wheel.
+/// Errors: HBVIB_E_DIMENSION (the wheel of another model, capacity), HBVIB_E_INDEX (blade),
+/// HBVIB_E_ARGUMENT (range), those of hbvib_forced_response. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_wheel_peaks(const hbvib_model *wheel,
+                               const hbvib_model *cyclic,
+                               const hbvib_response *blade,
+                               const hbvib_solver_options *solver,
+                               double omega_start,
+                               double omega_stop,
+                               const hbvib_hooks *hooks,
+                               int64_t capacity,
+                               double *amplitude,
+                               double *omega,
+                               double *error,
+                               int64_t *count,
+                               hbvib_wheel_info *info,
+                               hbvib_branch **out);
+
 /// The sliders of a stored point of a forced response that stick through the period and change its
 /// vibration: each may lie anywhere within the limit of its friction, and every such state is a
 /// solution. None where no contact sticks all the time, or none of the others slips or opens.
@@ -4270,6 +4458,103 @@ hbvib_status hbvib_band(const hbvib_model *model,
                         double *states,
                         hbvib_branch **lower,
                         hbvib_branch **upper);
+
+/// The lower and the upper curve of a forced response: the band of the amplitude (hbvib_band) at
+/// points of a branch, in their order.
+///
+/// model       the model of which the branch is a result, unchanged since.
+/// points_len  number of points; 0: all points of the curve.
+/// points      numbers of points of the curve, or of peaks, folds or requested solutions; NULL with
+///             0.
+/// solver      options; NULL: the defaults. Harmonics and tolerance have no effect.
+/// options     the amplitude and what is free; NULL: the defaults.
+/// hooks       log, phase and cancellation; NULL: none.
+/// capacity    numbers that fit into each array: at least points_len, or all points of the curve.
+/// omega       receives the angular frequencies, or NULL.
+/// lower       receives the least amplitudes found, or NULL.
+/// upper       receives the largest ones, or NULL.
+/// sliders     receives numbers of free sliders, 0 where there is no band; or NULL.
+/// complete    receives numbers, 1 where one slider was followed to both of its limits, or each
+///             search ended at an extremum, else 0; or NULL.
+/// count       receives how many points there are, also when `capacity` is too small.
+/// Errors: those of hbvib_band, naming the point; HBVIB_E_DIMENSION (capacity too small: the arrays
+/// are untouched). HBVIB_STOPPED_BY_CALLER: nothing is written. Threads: any number on one model
+/// and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_band_curve(const hbvib_model *model,
+                              const hbvib_branch *branch,
+                              int64_t points_len,
+                              const int64_t *points,
+                              const hbvib_solver_options *solver,
+                              const hbvib_band_options *options,
+                              const hbvib_hooks *hooks,
+                              int64_t capacity,
+                              double *omega,
+                              double *lower,
+                              double *upper,
+                              int64_t *sliders,
+                              int64_t *complete,
+                              int64_t *count);
+
+/// Results of a nonlinear mode that a band bounds.
+typedef enum {
+  /// The damping ratio at the amplitude of the point.
+  HBVIB_MODE_BAND_DAMPING = 0,
+  /// The angular frequency there.
+  HBVIB_MODE_BAND_OMEGA = 1,
+} hbvib_mode_band_of;
+
+/// The band of a stored point of a nonlinear mode: the least and the largest damping ratio or
+/// frequency at its amplitude over all places of the sliders that stick through its period, and the
+/// states that attain them. With one slider all of its places are scanned and each end is refined;
+/// with several one after another is, until nothing is gained: the bounds are attained ones, beyond
+/// which others may lie. A mode of the model with hbvib_model_set_slider of the places has them.
+///
+/// model            the model of which the branch is a result, unchanged since.
+/// branch           a nonlinear mode.
+/// point            number of a stored point.
+/// solver           options; NULL: the defaults. Harmonics and tolerance have no effect.
+/// mode             options of the mode, whose amplitudes have no effect; NULL: the defaults.
+/// of               a value of enum hbvib_mode_band_of.
+/// contacts_len     number of contacts whose sliders are free; 0: all that stick.
+/// contacts         their numbers, or NULL with 0.
+/// hooks            log, phase and cancellation; NULL: none.
+/// info             receives the numbers of the band.
+/// capacity         numbers that fit into contact and direction, at least twice as many as the
+///                  model has
+///                  contacts, unless these and the states are NULL.
+/// contact          receives the contacts of the free sliders, numbers, or NULL.
+/// direction        receives their directions, numbers, or NULL.
+/// ends             receives for the least result, then the largest, the places of the sliders,
+///                  angular
+///                  frequency and damping ratio, 2 * (capacity + 2) doubles, each place at the
+///                  number of
+///                  its slider, the results behind `capacity` places; or NULL.
+/// states_capacity  states that fit into the next array.
+/// states           receives place, angular frequency and damping ratio of each state of one
+///                  slider that
+///                  was scanned, three numbers a state, as many as fit; or NULL.
+/// Errors: HBVIB_E_INDEX (point, contacts), HBVIB_E_ARGUMENT (another model, of),
+/// HBVIB_E_UNSUPPORTED (a forced response), HBVIB_E_DIMENSION (capacity), those of
+/// hbvib_nonlinear_mode; nothing is written then. HBVIB_STOPPED_BY_CALLER likewise. Threads: any
+/// number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_mode_band(const hbvib_model *model,
+                             const hbvib_branch *branch,
+                             int64_t point,
+                             const hbvib_solver_options *solver,
+                             const hbvib_mode_options *mode,
+                             int32_t of,
+                             int64_t contacts_len,
+                             const int64_t *contacts,
+                             const hbvib_hooks *hooks,
+                             hbvib_band_info *info,
+                             int64_t capacity,
+                             int64_t *contact,
+                             int64_t *direction,
+                             double *ends,
+                             int64_t states_capacity,
+                             double *states);
 
 /// Static states of a model along a load history, with friction: constant forces and speeds that
 /// rise and fall, between straight steps. Sliders begin at the places of hbvib_model_set_slider and

@@ -293,9 +293,15 @@ typedef enum {
   HBVIB_BAND_PEAK_AMPLITUDE = 1,
   HBVIB_BAND_PEAK_OMEGA = 2
 } hbvib_band_of;
+typedef enum {
+  HBVIB_MODE_BAND_DAMPING = 0,
+  HBVIB_MODE_BAND_OMEGA = 1
+} hbvib_mode_band_of;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
+typedef struct hbvib_damper_face hbvib_damper_face;
+typedef struct hbvib_damper hbvib_damper;
 typedef struct hbvib_force_call hbvib_force_call;
 typedef struct hbvib_user_force hbvib_user_force;
 typedef struct hbvib_jacobian_gap hbvib_jacobian_gap;
@@ -325,6 +331,7 @@ typedef struct hbvib_kick hbvib_kick;
 typedef struct hbvib_parameter hbvib_parameter;
 typedef struct hbvib_parameter_options hbvib_parameter_options;
 typedef struct hbvib_batch_options hbvib_batch_options;
+typedef struct hbvib_wheel_info hbvib_wheel_info;
 typedef struct hbvib_band_options hbvib_band_options;
 typedef struct hbvib_band_info hbvib_band_info;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
@@ -379,6 +386,38 @@ struct hbvib_contact {
   double velocity;
   double normal[3];
   double tangent[3];
+  int64_t rotation[3];
+  double arm[3];
+  double turn;
+};
+struct hbvib_damper_face {
+  uint32_t struct_size;
+  int32_t reserved;
+  int64_t dofs[3];
+  int64_t sector_offset;
+  double angle;
+  double turn;
+  double centre[3];
+  double width;
+  int64_t points_across;
+  int64_t points_along;
+  double kt;
+  double kn;
+  double mu;
+  double gap;
+};
+struct hbvib_damper {
+  uint32_t struct_size;
+  int32_t motions;
+  double mass;
+  double inertia[3];
+  double radius;
+  double length;
+  double orbit;
+  double support[2];
+  double support_damping[2];
+  const hbvib_damper_face *faces;
+  int64_t faces_len;
 };
 struct hbvib_force_call {
   uint32_t struct_size;
@@ -641,6 +680,8 @@ struct hbvib_time_options {
   int64_t max_periods;
   const double *start;
   int64_t start_len;
+  double *places;
+  int64_t places_len;
 };
 struct hbvib_time_info {
   uint32_t struct_size;
@@ -740,6 +781,15 @@ struct hbvib_batch_options {
   const hbvib_response *responses;
   int64_t responses_len;
 };
+struct hbvib_wheel_info {
+  uint32_t struct_size;
+  int32_t reserved;
+  int64_t blade;
+  double largest;
+  double tuned;
+  double tuned_omega;
+  double amplification;
+};
 struct hbvib_band_options {
   uint32_t struct_size;
   int32_t of;
@@ -786,6 +836,7 @@ hbvib_status hbvib_model_set_modal_damping(hbvib_model *model, int64_t n, const 
 hbvib_status hbvib_model_set_speed(hbvib_model *model, double speed);
 hbvib_status hbvib_model_set_speed_per_omega(hbvib_model *model, double per_omega);
 hbvib_status hbvib_model_set_preload_at_speed(hbvib_model *model, int64_t id, double preload, double per_speed2);
+hbvib_status hbvib_model_add_centrifugal(hbvib_model *model, int64_t dof, double mass_radius);
 hbvib_status hbvib_model_add_unbalance(hbvib_model *model, int64_t dof_x, int64_t dof_y, double m_e, double phase);
 hbvib_status hbvib_model_wave(const hbvib_model *model, int64_t *engine_order);
 hbvib_status hbvib_model_matrix(const hbvib_model *model, int32_t which, int32_t block, int64_t capacity, int64_t *row, int64_t *column, double *value, int64_t *count);
@@ -816,6 +867,9 @@ hbvib_status hbvib_model_add_spring_damper(hbvib_model *model, int64_t dof_a, in
 hbvib_status hbvib_model_add_polynomial(hbvib_model *model, const int64_t *dofs, int64_t n_dofs, int64_t n_terms, const int64_t *direction, const double *coefficient, const int32_t *x_powers, const int32_t *v_powers, int64_t *id);
 hbvib_status hbvib_model_add_stiffness_tensors(hbvib_model *model, const int64_t *dofs, int64_t n, const double *quadratic, const double *cubic, int64_t *id);
 hbvib_status hbvib_model_add_patch(hbvib_model *model, const hbvib_contact *law, int64_t n, const int64_t *dof_a, const int64_t *dof_b, const double *normal, const double *tangent, const double *area, const double *pressure, const double *gap, int64_t *first_id);
+hbvib_status hbvib_damper_face_init(hbvib_damper_face *f, size_t size_of_f);
+hbvib_status hbvib_damper_init(hbvib_damper *d, size_t size_of_d);
+hbvib_status hbvib_model_add_damper(hbvib_model *model, const hbvib_damper *damper, int64_t *first_dof, int64_t *first_contact);
 hbvib_status hbvib_model_contact(const hbvib_model *model, int64_t id, hbvib_contact *out, double *per_speed2);
 hbvib_status hbvib_user_force_init(hbvib_user_force *o, size_t size_of_o);
 hbvib_status hbvib_model_add_user_force(hbvib_model *model, const hbvib_user_force *o, int64_t *id);
@@ -911,10 +965,14 @@ hbvib_status hbvib_batch_peaks(const hbvib_batch *batch, int64_t capacity, doubl
 hbvib_status hbvib_batch_response_peaks(const hbvib_batch *batch, int64_t response, int64_t capacity, double *amplitude, double *omega);
 hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
+hbvib_status hbvib_wheel_info_init(hbvib_wheel_info *i, size_t size_of_i);
+hbvib_status hbvib_wheel_peaks(const hbvib_model *wheel, const hbvib_model *cyclic, const hbvib_response *blade, const hbvib_solver_options *solver, double omega_start, double omega_stop, const hbvib_hooks *hooks, int64_t capacity, double *amplitude, double *omega, double *error, int64_t *count, hbvib_wheel_info *info, hbvib_branch **out);
 hbvib_status hbvib_branch_freedom(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int64_t capacity, int64_t *contact, int64_t *direction, double *place, double *derivative, int64_t *count, const hbvib_hooks *hooks);
 hbvib_status hbvib_band_options_init(hbvib_band_options *o, size_t size_of_o);
 hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);
 hbvib_status hbvib_band(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_solver_options *solver, const hbvib_band_options *options, const hbvib_hooks *hooks, hbvib_band_info *info, int64_t capacity, int64_t *contact, int64_t *direction, double *lower_place, double *upper_place, int64_t states_capacity, double *states, hbvib_branch **lower, hbvib_branch **upper);
+hbvib_status hbvib_band_curve(const hbvib_model *model, const hbvib_branch *branch, int64_t points_len, const int64_t *points, const hbvib_solver_options *solver, const hbvib_band_options *options, const hbvib_hooks *hooks, int64_t capacity, double *omega, double *lower, double *upper, int64_t *sliders, int64_t *complete, int64_t *count);
+hbvib_status hbvib_mode_band(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_solver_options *solver, const hbvib_mode_options *mode, int32_t of, int64_t contacts_len, const int64_t *contacts, const hbvib_hooks *hooks, hbvib_band_info *info, int64_t capacity, int64_t *contact, int64_t *direction, double *ends, int64_t states_capacity, double *states);
 hbvib_status hbvib_static_history(const hbvib_model *model, const hbvib_solver_options *solver, int64_t steps, const double *factors, const double *speeds, const hbvib_hooks *hooks, double *motion, int64_t motion_len, double *places, int64_t places_len, double *forces, int64_t forces_len);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);

@@ -100,10 +100,12 @@ pub use contact::laws::table::Table;
 pub use contact::laws::user_law::{Call, States, User, UserForce};
 pub use contact::patch::Patch;
 pub use contact::relative_motion::{Direction, Frame};
+pub use contact::rigid_point::RigidPoint;
 pub use contact::{Contact, ContactKind};
 pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
+pub use model::damper::{Damper, DamperFace, DamperPlace};
 pub use model::linear_modes::{ContactState, LinearModes};
 pub use model::mistuning::{BladeProperty, Mistuning};
 pub use model::sector_faces::{SectorDescription, SectorFrame};
@@ -117,6 +119,7 @@ pub use sensitivity::{Parameter, Reason};
 
 // Analyses.
 pub use analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
+pub use analysis::band_curve::{BandPoint, band_curve};
 pub use analysis::batch::{Batch, batch};
 pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
@@ -130,6 +133,7 @@ pub use analysis::harmonic_residual::{
 };
 pub use analysis::interference::{Interference, interference};
 pub use analysis::linear_contacts::LinearContacts;
+pub use analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::parameter_range::{Follow, ParameterRange};
 pub use analysis::parameter_response::parameter_response;
@@ -141,6 +145,7 @@ pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};
+pub use analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{

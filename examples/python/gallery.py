@@ -124,9 +124,55 @@ def rotor() -> Any:
     return ax.figure
 
 
+def underplatform_damper() -> Any:
+    """A cylinder under the platforms of two blades: its response under three speeds, and the band over its residual force."""
+    ax: Any = None
+    for speed, color in ((1.4, "tab:green"), (2.0, "tab:blue"), (2.8, "tab:purple")):
+        sector = hbvib.Model.cyclic(sectors=24, engine_order=3, mass=1, stiffness=1, damping=0.02)
+        faces = [dict(dofs=[0, -1, -1], angle=angle, kt=1, kn=1.5, mu=mu, sector_offset=offset)
+                 for angle, mu, offset in ((-np.pi / 4, 0.6, 0), (np.pi / 4, 0.15, 1))]
+        sector.add_damper(faces, mass=0.01, radius=0.05, length=0.2, orbit=25, support=(1e-3, 1e-4), support_damping=(4e-3, 1e-5))
+        sector.set_speed(speed)
+        sector.add_force(0, 0.06)
+        branch = sector.forced_response((1.0, 1.4), harmonics=5, tolerance=0, response_dof=0)
+        ax = sector.band_curve(branch).plot(ax, color=color, label=f"speed {speed:g}")
+        ax.plot(branch.omega, branch.amplitude, color=color)
+    ax.set(xlabel="angular frequency", ylabel="amplitude of the blade")
+    ax.legend()
+    return ax.figure
+
+
+def mistuned_wheel() -> Any:
+    """Blades of a wheel of 12 with friction: all responses of a random pattern, and the largest blade of 40 patterns."""
+    sector = hbvib.Model.cyclic(sectors=12, engine_order=2, mass=np.diag([1.0, 2.0]), stiffness=[[1.0, -1.0], [-1.0, 5.2]],
+                                coupling=dict(stiffness=np.diag([0, -2.0])), rayleigh=(0, 0.01))
+    sector.add_contact("jenkins", 1, kt=0.5, mu=0.3, preload=0.1)
+    sector.add_force(0, 0.02)
+    patterns = 0.01 * np.random.default_rng(3).standard_normal((40, 12))
+    options: Any = dict(harmonics=3, tolerance=0)
+    wheel = sector.wheel()
+    wheel.mistune(sector, "frequency", patterns[0], dofs=[0])
+    peaks = wheel.wheel_peaks(sector, (0.7, 0.95), **options)
+    study = sector.wheel_study((0.7, 0.95), patterns, kind="frequency", dofs=[0], **options)
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 4), layout="constrained")
+    for one in peaks.branch.responses:
+        left.plot(peaks.branch.omega, one.amplitude, color="0.7", linewidth=0.8)
+    left.plot(*peaks.envelope(), color="tab:red", label="largest blade")
+    left.axhline(peaks.tuned, color="black", linestyle="--", label="tuned")
+    left.set(xlabel="angular frequency", ylabel="amplitude")
+    left.legend()
+    right.plot(np.sort(study.amplification), np.arange(1, 41) / 40, drawstyle="steps-post", label="40 wheels")
+    levels = np.linspace(0.002, 0.999, 400)
+    fit = study.weibull()
+    right.plot([fit.quantile(level) for level in levels], levels, label="Weibull")
+    right.set(xlabel="amplification", ylabel="share of the wheels")
+    right.legend()
+    return figure
+
+
 FIGURES: Dict[str, Callable[[], Any]] = dict(
     contact_laws=contact_laws, friction_damper=friction_damper, hysteresis=hysteresis, duffing=duffing,
-    nonlinear_mode=nonlinear_mode, rotor=rotor)
+    nonlinear_mode=nonlinear_mode, rotor=rotor, underplatform_damper=underplatform_damper, mistuned_wheel=mistuned_wheel)
 
 
 def main(arguments: List[str]) -> None:

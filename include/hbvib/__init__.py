@@ -41,10 +41,12 @@ from ._branch import Branch
 from ._c import *
 from ._caller_law import ForceCall
 from ._calls import CancelFlag
+from ._damper import DamperPlace
 from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError, NumericalError, OutOfMemoryError,
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
+from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
@@ -53,14 +55,16 @@ from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
 from ._types import *
+from ._wheel_results import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
 __all__ = [
     # errors
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve",
-    "FreeSlider", "StaticHistory", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
+    "FreeSlider", "StaticHistory", "DamperPlace",
+    "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
     "get_include",

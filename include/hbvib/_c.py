@@ -10,7 +10,7 @@ __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block
     "AeroForm", "SectorFrame", "Mistuning", "ContactKind", "Tangent", "Flexibility", "Stability", "LogLevel", "Phase",
     "Measure", "Component", "Field", "Reading", "FlexibilityWay", "State", "ContactState", "DampingForm",
     "ModeMultiple", "SynthesisFlag", "SteadyMethod", "Waves", "MultiplierClass", "Grazing", "Bifurcation",
-    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf"]
+    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf", "ModeBandOf"]
 
 
 class Status(enum.IntEnum):
@@ -819,6 +819,20 @@ class BandOf(enum.IntEnum):
     PEAK_AMPLITUDE = 1
     PEAK_OMEGA = 2
 
+
+class ModeBandOf(enum.IntEnum):
+    """Results of a nonlinear mode that a band bounds.
+
+    DAMPING   The damping ratio at the amplitude of the point.
+    OMEGA   The angular frequency there.
+
+    >>> import hbvib
+    >>> hbvib.ModeBandOf(0)
+    <ModeBandOf.DAMPING: 0>
+    """
+    DAMPING = 0
+    OMEGA = 1
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -829,7 +843,11 @@ sector: uint32 struct_size; int32 frame; int64 ndof sectors engine_order compone
     pointer right; int64 right_len; pointer fixed; int64 fixed_len; double axis[3]; int32 direction reserved; pointer
     left_coordinates right_coordinates
 contact: uint32 struct_size; int32 kind; int64 dof_a[3] dof_b[3] sector_offset; double kt kn mu preload gap cubic
-    velocity normal[3] tangent[3]
+    velocity normal[3] tangent[3]; int64 rotation[3]; double arm[3] turn
+damper_face: uint32 struct_size; int32 reserved; int64 dofs[3] sector_offset; double angle turn centre[3] width; int64
+    points_across points_along; double kt kn mu gap
+damper: uint32 struct_size; int32 motions; double mass inertia[3] radius length orbit support[2] support_damping[2];
+    pointer faces; int64 faces_len
 force_call: uint32 struct_size; int32 reserved; double omega; int64 samples n states; pointer u v z0 f df_du df_dv z
     dz_dz dz_du_before dz_du dz_dv_before dz_dv dz_domega df_dz
 user_force: uint32 struct_size; int32 uses_velocity is_odd reserved; pointer dofs; int64 n states samples; force_fn
@@ -869,7 +887,7 @@ mode_info: uint32 struct_size; int32 multiple; int64 mode_index multiplicity ref
     amplitude_contact; double omega linear_up_to slip_from lift_off_from
 synthesis_options: uint32 struct_size; int32 model_damping; double force_factor damping_ratio
 time_options: uint32 struct_size; int32 method; double omega; int64 harmonics samples; double tolerance; int64
-    max_periods; pointer start; int64 start_len
+    max_periods; pointer start; int64 start_len; pointer places; int64 places_len
 time_info: uint32 struct_size; int32 reserved; double period residual; int64 periods events
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
@@ -884,6 +902,7 @@ parameter_options: uint32 struct_size; int32 follow; pointer parameter; double s
     at_len; double log10_start log10_stop; pointer response
 batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved; pointer responses;
     int64 responses_len
+wheel_info: uint32 struct_size; int32 reserved; int64 blade; double largest tuned tuned_omega amplification
 band_options: uint32 struct_size; int32 of; pointer contacts; int64 contacts_len starts
 band_info: uint32 struct_size; int32 complete; int64 sliders states solved; double lower upper lower_omega upper_omega
     lower_gain upper_gain; int64 lower_at_limit upper_at_limit
@@ -924,6 +943,7 @@ model_set_modal_damping: h l p
 model_set_speed: h d
 model_set_speed_per_omega: h d
 model_set_preload_at_speed: h l d d
+model_add_centrifugal: h l d
 model_add_unbalance: h l l d d
 model_wave: h p
 model_matrix: h i i l p p p p
@@ -954,6 +974,9 @@ model_add_spring_damper: h l l l l p l p p
 model_add_polynomial: h p l l p p p p p
 model_add_stiffness_tensors: h p l p p p
 model_add_patch: h contact l p p p p p p p p
+damper_face_init: damper_face z
+damper_init: damper z
+model_add_damper: h damper p p
 model_contact: h l contact p
 user_force_init: user_force z
 model_add_user_force: h user_force p
@@ -1049,10 +1072,14 @@ batch_peaks: h l p p p p
 batch_response_peaks: h l l p p
 batch_status: h l
 batch_branch: h l p
+wheel_info_init: wheel_info z
+wheel_peaks: h h response solver_options d d hooks l p p p p wheel_info p
 branch_freedom: h h l l p p p p p hooks
 band_options_init: band_options z
 band_info_init: band_info z
 band: h h l solver_options band_options hooks band_info l p p p p l p p p
+band_curve: h h l p solver_options band_options hooks l p p p p p p
+mode_band: h h l solver_options mode_options i l p hooks band_info l p p p l p
 static_history: h solver_options l p p hooks p l p l p l
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
@@ -1091,6 +1118,7 @@ if TYPE_CHECKING:
         def hbvib_model_set_speed(self, model: Any, speed: float) -> int: ...
         def hbvib_model_set_speed_per_omega(self, model: Any, per_omega: float) -> int: ...
         def hbvib_model_set_preload_at_speed(self, model: Any, id: int, preload: float, per_speed2: float) -> int: ...
+        def hbvib_model_add_centrifugal(self, model: Any, dof: int, mass_radius: float) -> int: ...
         def hbvib_model_add_unbalance(self, model: Any, dof_x: int, dof_y: int, m_e: float, phase: float) -> int: ...
         def hbvib_model_wave(self, model: Any, engine_order: Any) -> int: ...
         def hbvib_model_matrix(self, model: Any, which: int, block: int, capacity: int, row: Any, column: Any, value:
@@ -1134,6 +1162,9 @@ if TYPE_CHECKING:
             Any) -> int: ...
         def hbvib_model_add_patch(self, model: Any, law: Any, n: int, dof_a: Any, dof_b: Any, normal: Any, tangent: Any,
             area: Any, pressure: Any, gap: Any, first_id: Any) -> int: ...
+        def hbvib_damper_face_init(self, f: Any, size_of_f: int) -> int: ...
+        def hbvib_damper_init(self, d: Any, size_of_d: int) -> int: ...
+        def hbvib_model_add_damper(self, model: Any, damper: Any, first_dof: Any, first_contact: Any) -> int: ...
         def hbvib_model_contact(self, model: Any, id: int, out: Any, per_speed2: Any) -> int: ...
         def hbvib_user_force_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_model_add_user_force(self, model: Any, o: Any, id: Any) -> int: ...
@@ -1269,6 +1300,10 @@ if TYPE_CHECKING:
             Any) -> int: ...
         def hbvib_batch_status(self, batch: Any, design: int) -> int: ...
         def hbvib_batch_branch(self, batch: Any, design: int, out: Any) -> int: ...
+        def hbvib_wheel_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_wheel_peaks(self, wheel: Any, cyclic: Any, blade: Any, solver: Any, omega_start: float, omega_stop:
+            float, hooks: Any, capacity: int, amplitude: Any, omega: Any, error: Any, count: Any, info: Any, out:
+            Any) -> int: ...
         def hbvib_branch_freedom(self, model: Any, branch: Any, point: int, capacity: int, contact: Any, direction: Any,
             place: Any, derivative: Any, count: Any, hooks: Any) -> int: ...
         def hbvib_band_options_init(self, o: Any, size_of_o: int) -> int: ...
@@ -1276,6 +1311,12 @@ if TYPE_CHECKING:
         def hbvib_band(self, model: Any, branch: Any, point: int, solver: Any, options: Any, hooks: Any, info: Any,
             capacity: int, contact: Any, direction: Any, lower_place: Any, upper_place: Any, states_capacity: int,
             states: Any, lower: Any, upper: Any) -> int: ...
+        def hbvib_band_curve(self, model: Any, branch: Any, points_len: int, points: Any, solver: Any, options: Any,
+            hooks: Any, capacity: int, omega: Any, lower: Any, upper: Any, sliders: Any, complete: Any, count:
+            Any) -> int: ...
+        def hbvib_mode_band(self, model: Any, branch: Any, point: int, solver: Any, mode: Any, of: int, contacts_len:
+            int, contacts: Any, hooks: Any, info: Any, capacity: int, contact: Any, direction: Any, ends: Any,
+            states_capacity: int, states: Any) -> int: ...
         def hbvib_static_history(self, model: Any, solver: Any, steps: int, factors: Any, speeds: Any, hooks: Any,
             motion: Any, motion_len: int, places: Any, places_len: int, forces: Any, forces_len: int) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:

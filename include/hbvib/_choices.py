@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Literal, Union
 
 from ._c import (AeroForm, BandOf, Block, Component, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind,
-                 Measure, Mistuning, ParameterKind, Part, Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
+                 Measure, Mistuning, ModeBandOf, ParameterKind, Part, Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
 
 AeroForms = Union[AeroForm, Literal["displacement", "velocity"], int]
 BandOfs = Union[BandOf, Literal["amplitude", "peak_amplitude", "peak_omega"], int]
@@ -26,6 +26,7 @@ MatrixKinds = Union[
     MatrixKind, Literal["mass", "damping", "stiffness", "structural", "gyroscopic", "stiffness_speed2"], int]
 Measures = Union[Measure, Literal["fundamental", "harmonic", "peak", "rms", "range"], int]
 Mistunings = Union[Mistuning, Literal["stiffness", "frequency", "mass", "damping", "preload", "force"], int]
+ModeBandOfs = Union[ModeBandOf, Literal["damping", "omega"], int]
 ParameterKinds = Union[
     ParameterKind,
     Literal["force", "preload", "mu", "kt", "kn", "gap", "mass", "damping", "stiffness", "speed", "slider_t1",

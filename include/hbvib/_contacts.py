@@ -58,6 +58,8 @@ class _Contacts(_Owner):
         names = [name for name in ContactConstants.__annotations__ if name != "sector_offset"]
         values = {name: getattr(law, name) for name in names}
         given = {name: tuple(value) if isinstance(value, ctypes.Array) else value for name, value in values.items()}
+        if all(dof == GROUND for dof in given["rotation"]):
+            given["rotation"] = ()
         kind = ContactKind(law.kind)
         needed = _REQUIRED.get(kind, ())
         constants = {name: value for name, value in given.items()
@@ -73,32 +75,38 @@ class _Contacts(_Owner):
     @overload
     def add_contact(self, kind: Literal["jenkins", ContactKind.JENKINS], a: ArrayLike, b: ArrayLike = GROUND, *,
                     kt: float, mu: float, preload: float, sector_offset: int = 0, normal: ArrayLike = (0, 0, 0),
-                    tangent: ArrayLike = (0, 0, 0)) -> int: ...
+                    tangent: ArrayLike = (0, 0, 0), rotation: ArrayLike = (-1, -1, -1), arm: ArrayLike = (0, 0, 0),
+                    turn: float = 0) -> int: ...
 
     @overload
     def add_contact(self, kind: Literal["friction_2d", ContactKind.FRICTION_2D], a: ArrayLike, b: ArrayLike = GROUND,
                     *, kt: float, kn: float, mu: float, preload: float = 0, gap: float = 0, sector_offset: int = 0,
-                    normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0)) -> int: ...
+                    normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0), rotation: ArrayLike = (-1, -1, -1), arm: ArrayLike = (0, 0, 0),
+                    turn: float = 0) -> int: ...
 
     @overload
     def add_contact(self, kind: Literal["friction_3d", ContactKind.FRICTION_3D], a: ArrayLike, b: ArrayLike = GROUND,
                     *, kt: float, mu: float, kn: float = 0, preload: float = 0, gap: float = 0,
-                    sector_offset: int = 0, normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0)) -> int: ...
+                    sector_offset: int = 0, normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0), rotation: ArrayLike = (-1, -1, -1), arm: ArrayLike = (0, 0, 0),
+                    turn: float = 0) -> int: ...
 
     @overload
     def add_contact(self, kind: Literal["unilateral", ContactKind.UNILATERAL], a: ArrayLike, b: ArrayLike = GROUND, *,
                     kn: float, preload: float = 0, gap: float = 0, sector_offset: int = 0,
-                    normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0)) -> int: ...
+                    normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0), rotation: ArrayLike = (-1, -1, -1), arm: ArrayLike = (0, 0, 0),
+                    turn: float = 0) -> int: ...
 
     @overload
     def add_contact(self, kind: Literal["cubic", ContactKind.CUBIC], a: ArrayLike, b: ArrayLike = GROUND, *,
                     cubic: float, kt: float = 0, sector_offset: int = 0, normal: ArrayLike = (0, 0, 0),
-                    tangent: ArrayLike = (0, 0, 0)) -> int: ...
+                    tangent: ArrayLike = (0, 0, 0), rotation: ArrayLike = (-1, -1, -1), arm: ArrayLike = (0, 0, 0),
+                    turn: float = 0) -> int: ...
 
     @overload
     def add_contact(self, kind: Literal["regularised", ContactKind.REGULARISED], a: ArrayLike, b: ArrayLike = GROUND,
                     *, mu: float, preload: float, velocity: float, sector_offset: int = 0,
-                    normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0)) -> int: ...
+                    normal: ArrayLike = (0, 0, 0), tangent: ArrayLike = (0, 0, 0), rotation: ArrayLike = (-1, -1, -1), arm: ArrayLike = (0, 0, 0),
+                    turn: float = 0) -> int: ...
 
     @overload
     def add_contact(self, kind: ContactKind, a: ArrayLike, b: ArrayLike = GROUND,
@@ -120,6 +128,9 @@ class _Contacts(_Owner):
         kt and kn are forces per length, preload a force, gap a length, velocity a length per time, y = x_a - x_b.
         normal, tangent   directions in the axes of three degrees of freedom a side.
         sector_offset     side b lies in sector s + sector_offset of a cyclic model.
+        rotation, arm     side a is a point of a rigid body: its three rotations (-1: none), and the point from the centre
+                          of mass, whose translations are a.
+        turn              angle by which the axes of b are turned about the third one of a.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])

@@ -283,7 +283,8 @@ class ContactForce(NamedTuple):
 
 
 class TimeResponse(NamedTuple):
-    """A periodic response in time: harmonics (H + 1, ndof), samples (samples, ndof), TimeInfo, Status.
+    """A periodic response in time: harmonics (H + 1, ndof), samples (samples, ndof), TimeInfo, Status; places of the slider
+    along t1 of each contact at the end, the residual state for Model.set_slider.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -297,6 +298,7 @@ class TimeResponse(NamedTuple):
     samples: FloatArray
     info: TimeInfo
     status: Status
+    places: FloatArray
 
 
 class Verification(NamedTuple):

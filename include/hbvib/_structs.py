@@ -22,7 +22,8 @@ def _new(name: str, **values: Any) -> Any:
     for key, value in values.items():
         kind = kinds[key]
         if hasattr(kind, "_length_"):
-            value = kind(*_array(key, value, shape=[kind._length_]))
+            number: Any = np.int64 if kind._type_ is ctypes.c_int64 else np.float64
+            value = kind(*_array(key, value, number, [kind._length_]).tolist())
         elif kind is ctypes.c_void_p and value is not None:
             struct.__dict__.setdefault("arrays", []).append(value)
             value = _pointer(value)

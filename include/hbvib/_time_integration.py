@@ -40,7 +40,8 @@ class _TimeIntegration(_Matrices, _Contacts):
         harmonics, samples   highest harmonic of the result; equidistant times a period at which the motion is returned.
         {options}
         progress   after each period; log, log_level, cancel and phase as in forced_response.
-        Returns harmonics (harmonics + 1, ndof) complex, samples (samples, ndof) at equidistant times, info, and status:
+        Returns harmonics (harmonics + 1, ndof) complex, samples (samples, ndof) at equidistant times, info, places of the
+        sliders of all contacts at the end (for set_slider), and status:
         STOPPED_BY_CALLER where the results are those of the last period, not steady, or NaN after cancel.
 
         >>> import hbvib
@@ -52,16 +53,19 @@ class _TimeIntegration(_Matrices, _Contacts):
         0.2000
         """
         settings = _options(
-            "time_response", "hbvib_time_options", options, "start start_len", omega=omega, harmonics=harmonics,
+            "time_response", "hbvib_time_options", options, "start start_len places places_len", omega=omega, harmonics=harmonics,
             samples=samples, method=_member(SteadyMethod, method),
             **_counted_array("start", start, np.complex128, [None, self.ndof]))
         shapes = (max(settings.harmonics, -1) + 1, self.ndof), (max(settings.samples, 0), self.ndof)
         x, times, info = np.empty(shapes[0], complex), np.empty(shapes[1]), _new("hbvib_time_info")
+        places = np.empty(self.contacts)
+        if places.size:
+            settings.places, settings.places_len = places.ctypes.data, places.size
         with _Guard() as guard:
             hooks = _hooks(guard, progress, log, log_level, cancel, phase)
             status = _call("hbvib_time_response", self.handle, settings, hooks, x, x.size,
                            times if times.size else None, times.size, info, guard=guard)
-        return TimeResponse(x, times, _record(TimeInfo, info), Status(status))
+        return TimeResponse(x, times, _record(TimeInfo, info), Status(status), places)
 
     @_with_options("hbvib_verify_options", VerifyOptions)
     def verify(self, branch: Branch, point: int, *, method: SteadyMethods = SteadyMethod.SHOOTING,

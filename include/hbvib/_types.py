@@ -190,6 +190,12 @@ class ContactConstants(TypedDict, total=False):
         the degrees of freedom lie along t1, t2 and n themselves. Default: (0.0, 0.0, 0.0).
     tangent   Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane, for
         ContactKind.FRICTION_3D and ContactKind.UNILATERAL alone. Default: (0.0, 0.0, 0.0).
+    rotation   Side a is a point of a rigid body: rotations of the body about the axes of `dof_a`, which are then the
+        translations of its centre of mass, or GROUND; with `normal` only. Default: (-1, -1, -1).
+    arm   The point of the contact from the centre of mass of that body, in the axes of `dof_a`. Default: (0.0, 0.0,
+        0.0).
+    turn   Angle in radians by which the axes of `dof_b` are turned about the third one of `dof_a`; with `normal` only,
+        which is in the axes of `dof_a`. Default: 0.0.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -207,6 +213,9 @@ class ContactConstants(TypedDict, total=False):
     velocity: float
     normal: Tuple[float, float, float]
     tangent: Tuple[float, float, float]
+    rotation: Tuple[int, int, int]
+    arm: Tuple[float, float, float]
+    turn: float
 
 
 class Energy(NamedTuple):

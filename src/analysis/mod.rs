@@ -2,6 +2,7 @@
 
 mod all_solutions;
 pub mod band;
+pub mod band_curve;
 mod band_line;
 mod band_search;
 pub mod batch;
@@ -31,6 +32,7 @@ pub mod interference;
 mod kicked_motion;
 mod known_curve;
 pub mod linear_contacts;
+pub mod mode_band;
 mod mode_discretised;
 mod mode_equations;
 mod mode_guess;
@@ -63,8 +65,10 @@ mod unbounded_response;
 mod verified_responses;
 pub mod verify;
 mod watched_responses;
+pub mod wheel_peaks;
 
 pub use crate::analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
+pub use crate::analysis::band_curve::{BandPoint, band_curve};
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::design_peak::DesignPeak;
@@ -74,6 +78,7 @@ pub use crate::analysis::freedom::{FreeSlider, freedom, freedom_with};
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
+pub use crate::analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
 pub use crate::analysis::parameter_range::{Follow, ParameterRange};
 pub use crate::analysis::parameter_response::parameter_response;
@@ -85,3 +90,4 @@ pub use crate::analysis::static_history::{LoadHistory, StaticStep, static_histor
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};
 pub use crate::analysis::time_response::time_response;
 pub use crate::analysis::verify::{Verification, verify};
+pub use crate::analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};

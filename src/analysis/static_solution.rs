@@ -57,7 +57,9 @@ pub(super) fn static_state(
     }
     // Gyroscopic forces need a velocity, which a static state has not.
     let follows = matches!(model.speed(), Speed::PerOmega(p) if p != 0.0)
-        && (model.structure().has(MatrixKind::StiffnessSpeed2) || !model.speed_loads().is_empty());
+        && (model.structure().has(MatrixKind::StiffnessSpeed2)
+            || !model.speed_loads().is_empty()
+            || model.excitation().has_centrifugal());
     let refused = || -> Result<StaticState> {
         fail!(
             Unsupported,

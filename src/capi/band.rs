@@ -255,16 +255,11 @@ pub unsafe extern "C" fn hbvib_band(
         let kept = read::<KeptBranch>(branch, 2)?;
         let point = index(point, kept.branch.stored(), 3, "point")?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
-        let o = if options.is_null() {
-            hbvib_band_options::defaults()
-        } else {
-            unsafe { load(options, 5) }?
-        };
-        let free = unsafe { chosen(&o, model.contacts().len()) }?;
+        let (of, free, starts) = unsafe { band_options(options, model.contacts().len(), 5) }?;
         let options = BandOptions {
-            of: band_of(o.of).with_argument(5)?,
+            of,
             contacts: &free,
-            starts: usize::try_from(o.starts).unwrap_or(0),
+            starts,
         };
         let hooks = unsafe { load_hooks(hooks, 6) }?;
         unsafe { check_out(info, 7) }?;
@@ -378,10 +373,25 @@ fn numbers_of(found: &Band) -> hbvib_band_info {
     }
 }
 
-unsafe fn chosen(o: &hbvib_band_options, contacts: usize) -> Result<Vec<usize>> {
-    let n = count(o.contacts_len, 5, "contacts_len")?;
-    let given = unsafe { input(o.contacts, n, 5, "contacts") }?;
-    indices(given, contacts, 5, "contacts")
+/// The result, the contacts and the number of starts of the options, argument `argument`; NULL: the defaults.
+///
+/// # Safety
+/// The caller of the C function states that the struct and its array lie there.
+pub(super) unsafe fn band_options(
+    options: *const hbvib_band_options,
+    contacts: usize,
+    argument: i32,
+) -> Result<(BandOf, Vec<usize>, usize)> {
+    let o = if options.is_null() {
+        hbvib_band_options::defaults()
+    } else {
+        unsafe { load(options, argument) }?
+    };
+    let n = count(o.contacts_len, argument, "contacts_len")?;
+    let given = unsafe { input(o.contacts, n, argument, "contacts") }?;
+    let free = indices(given, contacts, argument, "contacts")?;
+    let of = band_of(o.of).with_argument(argument)?;
+    Ok((of, free, usize::try_from(o.starts).unwrap_or(0)))
 }
 
 fn band_of(of: i32) -> Result<BandOf> {

@@ -10,6 +10,7 @@ use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::contact::relative_motion::Frame;
+use crate::contact::rigid_point::RigidPoint;
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
@@ -90,6 +91,14 @@ pub struct hbvib_contact {
     /// Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane,
     /// for HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
     pub tangent: [f64; 3],
+    /// Side a is a point of a rigid body: rotations of the body about the axes of `dof_a`, which are
+    /// then the translations of its centre of mass, or HBVIB_GROUND; with `normal` only.
+    pub rotation: [i64; 3],
+    /// The point of the contact from the centre of mass of that body, in the axes of `dof_a`.
+    pub arm: [f64; 3],
+    /// Angle in radians by which the axes of `dof_b` are turned about the third one of `dof_a`; with
+    /// `normal` only, which is in the axes of `dof_a`.
+    pub turn: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_contact {
@@ -112,6 +121,9 @@ unsafe impl VersionedStruct for hbvib_contact {
             velocity: 0.0,
             normal: [0.0; 3],
             tangent: [0.0; 3],
+            rotation: [GROUND; 3],
+            arm: [0.0; 3],
+            turn: 0.0,
         }
     }
 }
@@ -162,6 +174,7 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
             frame: frame(&c, &law).with_argument(2)?,
             dof_a: side(c.dof_a, model.ndof(), "dof_a").with_argument(2)?,
             dof_b: side(c.dof_b, model.ndof(), "dof_b").with_argument(2)?,
+            rigid: rigid(&c, model.ndof()).with_argument(2)?,
             ..law
         };
         let number = model.add_contact(&contact).with_argument(2)?;
@@ -260,6 +273,7 @@ pub(super) fn law(c: &hbvib_contact) -> Result<Contact> {
         velocity: c.velocity,
         slider: [0.0; 2],
         dofs: Vec::new(),
+        rigid: None,
     })
 }
 
@@ -281,6 +295,16 @@ fn frame(c: &hbvib_contact, law: &Contact) -> Result<Option<Frame>> {
         Ok(frame) => Ok(Some(frame)),
         Err(e) => Err(e.at(format_args!("hbvib_contact"))),
     }
+}
+
+/// The rigid body of side a; none where nothing turns.
+fn rigid(c: &hbvib_contact, ndof: usize) -> Result<Option<RigidPoint>> {
+    let rigid = RigidPoint {
+        rotations: side(c.rotation, ndof, "rotation")?,
+        arm: c.arm,
+        turn: c.turn,
+    };
+    Ok((!rigid.is_plain()).then_some(rigid))
 }
 
 /// The degrees of freedom of one side.

@@ -39,6 +39,7 @@ pub unsafe extern "C" fn hbvib_model_contact(
         let contact = &model.contacts()[id];
         let (preload, coefficient, gap) = model.given_load(id).unwrap_or_default();
         let places = |side: [Option<usize>; 3]| side.map(|dof| dof.map_or(GROUND, |dof| dof as i64));
+        let rigid = contact.rigid.unwrap_or_default();
         let [tangent, _, normal] = contact.frame.map_or([[0.0; 3]; 3], |frame| *frame.axes());
         let value = hbvib_contact {
             kind: number(&contact.kind) as i32,
@@ -54,6 +55,9 @@ pub unsafe extern "C" fn hbvib_model_contact(
             velocity: contact.velocity,
             normal,
             tangent,
+            rotation: places(rigid.rotations),
+            arm: rigid.arm,
+            turn: rigid.turn,
             ..hbvib_contact::defaults()
         };
         unsafe { fill_out(out, value) };

@@ -69,6 +69,27 @@ pub unsafe extern "C" fn hbvib_model_set_preload_at_speed(
     })
 }
 
+/// Adds the constant force mass_radius * Omega^2 on a degree of freedom, the centrifugal force of a
+/// mass at a radius, at the speed Omega of the model. hbvib_model_clear_forces removes it, too.
+///
+/// dof          0 .. ndof - 1.
+/// mass_radius  mass times radius, finite, of any sign.
+/// Errors: HBVIB_E_INDEX (dof), HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_add_centrifugal(
+    model: *mut hbvib_model,
+    dof: i64,
+    mass_radius: f64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let dof = index(dof, model.ndof(), 2, "dof")?;
+        model.add_centrifugal(dof, mass_radius).with_argument(3)?;
+        Ok(Status::Ok)
+    })
+}
+
 /// Adds the force of an unbalance that rotates with the frequency omega of the response:
 /// m_e omega^2 cos(omega t + phase) on dof_x and m_e omega^2 sin(omega t + phase) on dof_y.
 /// hbvib_model_clear_forces removes it, too.

@@ -163,7 +163,7 @@ pub unsafe extern "C" fn hbvib_nonlinear_mode(
     })
 }
 
-unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> Result<ModeOptions<'a>> {
+pub(super) unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> Result<ModeOptions<'a>> {
     const MASS: i32 = hbvib_damping_form::HBVIB_DAMPING_MASS as i32;
     const STIFFNESS: i32 = hbvib_damping_form::HBVIB_DAMPING_STIFFNESS as i32;
     let damping_form = match o.damping_form {

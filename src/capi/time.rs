@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{Range, disjoint, input, optional_len, output};
+use super::arrays::{Range, check_pointer, disjoint, exact_len, input, optional_len, output};
 use super::boundary::{WithArgument, call};
 use super::handles::read;
 use super::indices::number;
@@ -51,6 +51,11 @@ pub struct hbvib_time_options {
     pub start: *const f64,
     /// Complex numbers in start.
     pub start_len: i64,
+    /// Receives the place of the slider along t1 of each contact at the end, the residual state for
+    /// hbvib_model_set_slider, 0 for contacts without slider; or NULL.
+    pub places: *mut f64,
+    /// Doubles in places: the number of contacts; 0 with NULL.
+    pub places_len: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_time_options {
@@ -69,6 +74,8 @@ unsafe impl VersionedStruct for hbvib_time_options {
             max_periods: defaults.max_periods as i64,
             start: ptr::null(),
             start_len: 0,
+            places: ptr::null_mut(),
+            places_len: 0,
         }
     }
 }
@@ -168,8 +175,15 @@ pub unsafe extern "C" fn hbvib_time_response(
 ) -> hbvib_status {
     call(|| {
         let model = read::<Model>(model, 1)?;
-        let options = unsafe { load(options, 2) }?;
-        let options = unsafe { time_options(&options, model.ndof()) }.with_argument(2)?;
+        let given = unsafe { load(options, 2) }?;
+        let options = unsafe { time_options(&given, model.ndof()) }.with_argument(2)?;
+        let contacts = model.contacts().len();
+        let places_len = if given.places.is_null() && given.places_len == 0 {
+            0
+        } else {
+            check_pointer(given.places, 2, "places")?;
+            exact_len(given.places_len, contacts, 2, "the number of contacts")?
+        };
         let hooks = unsafe { load_hooks(hooks, 3) }?;
         let coefficients = (options.harmonics + 1).saturating_mul(model.ndof());
         let harmonics_len = optional_len(harmonics, harmonics_len, coefficients, 4, "(harmonics + 1) * ndof")?;
@@ -184,6 +198,7 @@ pub unsafe extern "C" fn hbvib_time_response(
             &[
                 Range::new::<Complex64>(harmonics.cast(), harmonics_len, 4, "harmonics")?,
                 Range::new(samples, samples_len, 6, "samples")?,
+                Range::new(given.places, places_len, 2, "places")?,
             ],
         )?;
         let found = unsafe { with_hooks(&hooks, |hooks| analysis::time_response(&model, &options, hooks)) }?;
@@ -193,6 +208,9 @@ pub unsafe extern "C" fn hbvib_time_response(
         }
         if samples_len > 0 {
             unsafe { output(samples, samples_len, 6, "samples") }?.copy_from_slice(&found.samples);
+        }
+        if places_len > 0 {
+            unsafe { output(given.places, places_len, 2, "places") }?.copy_from_slice(&found.places);
         }
         if !info.is_null() {
             let value = hbvib_time_info {

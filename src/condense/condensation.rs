@@ -81,7 +81,7 @@ impl Condensed {
                 continue;
             }
             model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
-            if block.number == 1 && model.excitation().has_unbalance() {
+            if model.excitation().has_unbalance_in(block.number) {
                 let mut unbalance = try_vec(block.force.len(), Complex64::ZERO, "the forces")?;
                 model.add_unbalance_to(block.number, 1.0 / unit, &mut unbalance);
                 block.unbalance = Some(unbalance);

@@ -10,6 +10,7 @@ use crate::fourier::HarmonicSet;
 use crate::linalg::sparse::Csc;
 use crate::model::degree_map::DegreeMap;
 use crate::model::reduced_wave::MotionRow;
+use crate::model::sector_motion::MOTION_TERMS;
 use crate::model::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -178,7 +179,7 @@ impl Condensed {
         } else {
             self.blocks[i].next
         };
-        let mut row = [None; 6];
+        let mut row = [None; MOTION_TERMS];
         for (entry, (dof, c)) in row.iter_mut().zip(terms) {
             *entry = Some((dof, turn * c));
         }

@@ -8,6 +8,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::{MotionRow, ReducedView};
+use crate::model::sector_motion::MOTION_TERMS;
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
@@ -293,7 +294,7 @@ impl Matrices {
 
 /// Rows of W of some (contact, direction) pairs.
 fn rows_of(model: &Model, contacts: &[(usize, usize)], number: usize) -> Result<Vec<Row>> {
-    let mut rows = try_vec(contacts.len(), [None; 6], "the contacts")?;
+    let mut rows = try_vec(contacts.len(), [None; MOTION_TERMS], "the contacts")?;
     for (r, &(i, k)) in rows.iter_mut().zip(contacts) {
         *r = model.structure().contact_row(&model.contacts()[i], k, number);
     }

@@ -12,6 +12,7 @@ use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, Status, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
+use crate::model::sector_motion::MOTION_TERMS;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -74,7 +75,9 @@ impl ModeFlexibility {
                     let known = waves.iter().position(|rows| rows.are_of(block, source));
                     let wave = known.unwrap_or(waves.len());
                     if known.is_none() {
-                        let row = block.row(&[Some((reference_dof, Complex64::ONE)), None, None, None, None, None])?;
+                        let mut row = [None; MOTION_TERMS];
+                        row[0] = Some((reference_dof, Complex64::ONE));
+                        let row = block.row(&row)?;
                         let springs = ModeSums::damps_springs(&block.artificial) || source.is_damped_by_stiffness();
                         let rows = ModalRows::with_rows((condensed, i), &row, source.clone(), springs)?;
                         try_push(&mut waves, Arc::new(rows), CONTEXT)?;

@@ -17,6 +17,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
 use crate::model::Model;
 use crate::model::reduced_wave::{ReducedView, ReducedWave, WaveKey};
+use crate::model::sector_motion::MOTION_TERMS;
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use crate::options::{Flexibility, SolverOptions};
@@ -365,7 +366,7 @@ fn inputs(request: &Request<'_>, number: usize, interrupt: &Interrupt<'_>) -> Re
     for dof in dofs {
         let (sector, terms) = structure.degrees().image(dof);
         let turn = structure.phase(number, sector);
-        let mut row = [None; 6];
+        let mut row = [None; MOTION_TERMS];
         for (entry, (p, c)) in row.iter_mut().zip(terms) {
             *entry = Some((p, turn * c));
         }

@@ -22,6 +22,7 @@ impl Contact {
             velocity: 0.0,
             slider: [0.0; 2],
             dofs: Vec::new(),
+            rigid: None,
         }
     }
 

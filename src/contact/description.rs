@@ -9,6 +9,7 @@ use crate::contact::force_derivative::{Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Law, LawInTime};
 use crate::contact::laws::registry::ContactKind;
 use crate::contact::relative_motion::{Direction, Frame};
+use crate::contact::rigid_point::RigidPoint;
 use crate::error::Result;
 use std::sync::Arc;
 
@@ -51,6 +52,8 @@ pub struct Contact {
     /// Degrees of freedom on whose motions over the ground a law of the caller or a polynomial acts, in its
     /// order. Empty: the law acts on one motion, that between `dof_a` and `dof_b` along t1.
     pub dofs: Vec<usize>,
+    /// Side a is a point of a rigid body that turns, or the axes of side b are turned; it needs a frame. `None`: two nodes.
+    pub rigid: Option<RigidPoint>,
 }
 
 impl Contact {
@@ -133,10 +136,13 @@ impl Contact {
         let place = self.places()[k];
         match &self.frame {
             None => Direction::between(self.dof_a[place], self.dof_b[place]),
-            Some(frame) => Direction {
-                a: frame.side(self.dof_a, place),
-                b: frame.side(self.dof_b, place),
-            },
+            Some(frame) => {
+                let rigid = self.rigid.unwrap_or_default();
+                Direction {
+                    a: rigid.side_a(frame, self.dof_a, place),
+                    b: frame.seen_from(rigid.turn).side(self.dof_b, place),
+                }
+            }
         }
     }
 

@@ -17,6 +17,7 @@ pub mod piece;
 pub mod plane_path;
 pub mod radau;
 pub mod relative_motion;
+pub mod rigid_point;
 pub mod samples;
 mod saved_contact;
 pub mod time_piece;

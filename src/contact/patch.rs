@@ -116,6 +116,7 @@ impl Patch<'_> {
             gap,
             cubic: law.cubic * area,
             dofs: Vec::new(),
+            rigid: None,
             ..*law
         })
     }

@@ -2,8 +2,12 @@
 
 use crate::error::{Result, fail};
 
-/// One side of a relative motion, Σ coefficient · x of a degree of freedom; empty is the ground.
-pub type Side = [Option<(usize, f64)>; 3];
+/// Most degrees of freedom that move side a, a point of a rigid body; and side b, a node.
+pub const TERMS_A: usize = 6;
+pub const TERMS_B: usize = 3;
+
+/// One side of a relative motion, Σ coefficient · x of a degree of freedom; empty is the ground. Side b has three at most.
+pub type Side = [Option<(usize, f64)>; TERMS_A];
 
 /// A relative motion y, side a minus side b.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,14 +22,18 @@ impl Direction {
     /// The motion of one degree of freedom over another; `None` is the ground.
     #[must_use]
     pub fn between(a: Option<usize>, b: Option<usize>) -> Self {
-        let side = |dof: Option<usize>| [dof.map(|d| (d, 1.0)), None, None];
+        let side = |dof: Option<usize>| {
+            let mut side = [None; TERMS_A];
+            side[0] = dof.map(|d| (d, 1.0));
+            side
+        };
         Self { a: side(a), b: side(b) }
     }
 
     /// A key that differs between different directions, and orders them.
     #[must_use]
-    pub fn key(&self) -> [Option<(usize, u64)>; 6] {
-        let mut key = [None; 6];
+    pub fn key(&self) -> [Option<(usize, u64)>; 2 * TERMS_A] {
+        let mut key = [None; 2 * TERMS_A];
         for (k, term) in key.iter_mut().zip(self.a.iter().chain(&self.b)) {
             *k = term.map(|(dof, c)| (dof, c.to_bits()));
         }
@@ -98,11 +106,23 @@ impl Frame {
         (0..3).all(|i| (0..=i).all(|j| near(i, j))).then_some(Self { axes })
     }
 
+    /// The same directions in axes that are turned by an angle about the third one.
+    #[must_use]
+    pub(crate) fn seen_from(&self, turn: f64) -> Self {
+        if turn == 0.0 {
+            return *self;
+        }
+        let (s, c) = turn.sin_cos();
+        Self {
+            axes: self.axes.map(|[x, y, z]| [c * x + s * y, c * y - s * x, z]),
+        }
+    }
+
     /// One side's motion along t1, t2 or n (0, 1 or 2). Degrees of freedom without share are left out.
     #[must_use]
     #[doc(hidden)]
     pub fn side(&self, dofs: [Option<usize>; 3], direction: usize) -> Side {
-        let mut side = [None; 3];
+        let mut side = [None; TERMS_A];
         for ((s, dof), &c) in side.iter_mut().zip(dofs).zip(&self.axes[direction]) {
             *s = dof.filter(|_| c != 0.0).map(|d| (d, c));
         }

@@ -4,6 +4,7 @@ use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::description::Contact;
 use crate::contact::laws::registry::load_kind;
 use crate::contact::relative_motion::Frame;
+use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, try_push};
 
 /// Largest deviation of the products of the axes of a frame from those of unit vectors.
@@ -50,6 +51,37 @@ impl Contact {
         for &dof in &self.dofs {
             out.count(dof);
         }
+    }
+
+    /// Writes the rigid body of side a.
+    pub(crate) fn rigid_to(&self, out: &mut ByteWriter<'_>) {
+        out.bool(self.rigid.is_some());
+        let Some(rigid) = &self.rigid else { return };
+        for dof in rigid.rotations {
+            out.optional(dof);
+        }
+        for x in rigid.arm.iter().chain([&rigid.turn]) {
+            out.f64(*x);
+        }
+    }
+
+    /// Reads the rigid body of side a.
+    ///
+    /// # Errors
+    /// `Argument` for bytes that are none.
+    pub(crate) fn load_rigid(&mut self, input: &mut ByteReader<'_>) -> Result<()> {
+        if !input.bool()? {
+            return Ok(());
+        }
+        let mut rigid = RigidPoint::default();
+        for dof in &mut rigid.rotations {
+            *dof = input.optional()?;
+        }
+        for x in rigid.arm.iter_mut().chain([&mut rigid.turn]) {
+            *x = input.finite()?;
+        }
+        self.rigid = Some(rigid);
+        Ok(())
     }
 
     /// Reads a contact; its model checks constants and degrees of freedom.
@@ -100,6 +132,7 @@ impl Contact {
             velocity,
             slider: [0.0; 2],
             dofs,
+            rigid: None,
         })
     }
 }

@@ -191,12 +191,14 @@ impl<T: Entry> WithSimd for Removal<'_, T> {
     }
 }
 
+/// Sums of a product that are made side by side: registers of the processor.
+const PARTIAL_SUMS: usize = 8;
+
 /// uᴴ w by sums side by side.
 #[inline(always)]
 fn partial_sums<T: Entry>(u: &[T], w: &[T]) -> T {
-    const SUMS: usize = 8;
-    let ((u, u_rest), (w, w_rest)) = (u.as_chunks::<SUMS>(), w.as_chunks::<SUMS>());
-    let mut sums = [T::NONE; SUMS];
+    let ((u, u_rest), (w, w_rest)) = (u.as_chunks::<PARTIAL_SUMS>(), w.as_chunks::<PARTIAL_SUMS>());
+    let mut sums = [T::NONE; PARTIAL_SUMS];
     for (u, w) in u.iter().zip(w) {
         for (sum, (&u, &w)) in sums.iter_mut().zip(u.iter().zip(w)) {
             sum.add_conjugate_product(u, w);

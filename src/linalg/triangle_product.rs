@@ -11,13 +11,13 @@ use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns side by side.
-const SIDE_BY_SIDE: usize = 8;
+const PANEL_COLUMNS: usize = 8;
 
 /// Columns from which on they are laid side by side; fewer are multiplied one after the other.
 const WORTH_A_PANEL: usize = 3;
 
 /// Real or imaginary parts of one row.
-type Lane = [f64; SIDE_BY_SIDE];
+type Lane = [f64; PANEL_COLUMNS];
 
 /// Y = (Σ f A) X for factors f with matrices A of one order n, at least one, and column-major X and Y.
 ///
@@ -34,7 +34,7 @@ pub fn multiply<T: Entry>(
     };
     let entries: usize = terms.iter().map(|(_, a)| a.values.len()).sum();
     let (mut panel, mut product) = (Vec::new(), Vec::new());
-    for (x, y) in x.chunks(SIDE_BY_SIDE * n).zip(y.chunks_mut(SIDE_BY_SIDE * n)) {
+    for (x, y) in x.chunks(PANEL_COLUMNS * n).zip(y.chunks_mut(PANEL_COLUMNS * n)) {
         let columns = x.len() / n;
         interrupt.check_before(2 * (columns * entries) as u64)?;
         if columns < WORTH_A_PANEL {
@@ -47,11 +47,11 @@ pub fn multiply<T: Entry>(
             continue;
         }
         if panel.is_empty() {
-            let room = || try_vec(n * if T::IS_COMPLEX { 2 } else { 1 }, [0.0; SIDE_BY_SIDE], "a product");
+            let room = || try_vec(n * if T::IS_COMPLEX { 2 } else { 1 }, [0.0; PANEL_COLUMNS], "a product");
             (panel, product) = (room()?, room()?);
         }
         lay(x, &mut panel, n);
-        product.fill([0.0; SIDE_BY_SIDE]);
+        product.fill([0.0; PANEL_COLUMNS]);
         for &(factor, a) in terms {
             Arch::new().dispatch(Pass {
                 factor,
@@ -133,13 +133,13 @@ impl<T: Entry> Pass<'_, T> {
         let Self { factor, a, x, y } = self;
         for j in 0..a.n {
             let xj = x[j].map(|x| factor * x);
-            let mut above = [0.0; SIDE_BY_SIDE];
+            let mut above = [0.0; PANEL_COLUMNS];
             let range = a.col_ptr[j]..a.col_ptr[j + 1];
             for (&i, &value) in a.row_idx[range.clone()].iter().zip(&a.values[range]) {
                 let (i, value) = (wide(i), value.complex().re);
                 let (xi, yi) = (&x[i], &mut y[i]);
                 let other = if i == j { 0.0 } else { factor * value };
-                for c in 0..SIDE_BY_SIDE {
+                for c in 0..PANEL_COLUMNS {
                     yi[c] += value * xj[c];
                     above[c] += other * xi[c];
                 }
@@ -156,13 +156,13 @@ impl<T: Entry> Pass<'_, T> {
         let (x, y) = (x.as_chunks::<2>().0, y.as_chunks_mut::<2>().0);
         for j in 0..a.n {
             let [xj_re, xj_im] = x[j].map(|part| part.map(|x| factor * x));
-            let (mut above_re, mut above_im) = ([0.0; SIDE_BY_SIDE], [0.0; SIDE_BY_SIDE]);
+            let (mut above_re, mut above_im) = ([0.0; PANEL_COLUMNS], [0.0; PANEL_COLUMNS]);
             let range = a.col_ptr[j]..a.col_ptr[j + 1];
             for (&i, &value) in a.row_idx[range.clone()].iter().zip(&a.values[range]) {
                 let (i, value) = (wide(i), value.complex());
                 let ([xi_re, xi_im], [yi_re, yi_im]) = (&x[i], &mut y[i]);
                 let other = if i == j { Complex64::ZERO } else { factor * value };
-                for c in 0..SIDE_BY_SIDE {
+                for c in 0..PANEL_COLUMNS {
                     yi_re[c] += value.re * xj_re[c] - value.im * xj_im[c];
                     yi_im[c] += value.re * xj_im[c] + value.im * xj_re[c];
                     // Above the diagonal stands the conjugate number.

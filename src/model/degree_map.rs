@@ -125,6 +125,19 @@ impl DegreeMap {
         Self::new(marked(fixed, dofs)?, faces)
     }
 
+    /// The same map with `count` independent degrees of freedom behind all others.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn extended(&self, count: usize) -> Result<Self> {
+        let Some(images) = self.images.as_deref() else {
+            return Ok(Self::identity(self.given + count));
+        };
+        let mut fixed = try_vec(self.given + count, false, CONTEXT)?;
+        fixed[..self.given].copy_from_slice(&images.fixed);
+        Self::new(fixed, images.faces.as_ref().map(Faces::try_clone).transpose()?)
+    }
+
     /// The map onto `order` other independent degrees of freedom, the first of which are the given old ones; the images of
     /// the others are empty.
     ///

@@ -1,6 +1,7 @@
 //! Forces per degree of freedom and harmonic.
 
 use crate::error::{Result, fail, try_extend, try_push};
+use crate::model::speed::Speed;
 use crate::options::MAX_HARMONIC;
 use num_complex::Complex64;
 
@@ -15,6 +16,8 @@ pub struct Force {
     pub value: Complex64,
     /// Whether the force is that of an unbalance, which grows with the square of the frequency ω of the response.
     pub per_omega2: bool,
+    /// Force over Ω² of a constant force that follows the speed of rotation, of which `value` is that at the present speed; else 0.
+    pub per_speed2: f64,
 }
 
 impl Force {
@@ -55,8 +58,35 @@ impl Excitation {
             harmonic,
             value,
             per_omega2: false,
+            per_speed2: 0.0,
         };
         try_push(&mut self.forces, force, "the forces")
+    }
+
+    /// Adds the constant force c·Ω² on a degree of freedom; [`Self::follow_speed`] gives it its value.
+    pub(super) fn add_centrifugal(&mut self, ndof: usize, dof: usize, per_speed2: f64) -> Result<()> {
+        self.add(ndof, dof, 0, per_speed2.into())?;
+        if let Some(last) = self.forces.last_mut() {
+            (last.value, last.per_speed2) = (Complex64::ZERO, per_speed2);
+        }
+        Ok(())
+    }
+
+    /// Gives constant forces that follow the speed their value at it.
+    pub(super) fn follow_speed(&mut self, speed: Speed) {
+        for force in self.forces.iter_mut().filter(|force| force.per_speed2 != 0.0) {
+            let (speed, tied) = match speed {
+                Speed::Fixed(speed) => (speed, false),
+                Speed::PerOmega(p) => (p, true),
+            };
+            force.value = (force.per_speed2 * speed * speed).into();
+            force.per_omega2 = tied;
+        }
+    }
+
+    /// Whether a constant force follows a speed.
+    pub(crate) fn has_centrifugal(&self) -> bool {
+        self.forces.iter().any(|force| force.per_speed2 != 0.0)
     }
 
     /// Adds a force that was checked before it was saved, again.
@@ -68,6 +98,21 @@ impl Excitation {
         Ok(())
     }
 
+    /// Reads the force over Ω² of each force.
+    pub(super) fn load_centrifugal(&mut self, mut next: impl FnMut() -> Result<f64>) -> Result<()> {
+        for (i, force) in self.forces.iter_mut().enumerate() {
+            force.per_speed2 = next()?;
+            if force.per_speed2 != 0.0 && force.harmonic != 0 {
+                return fail!(
+                    Argument,
+                    "damaged: force {i} in harmonic {} follows the speed",
+                    force.harmonic
+                );
+            }
+        }
+        Ok(())
+    }
+
     /// Adds fundamental forces that grow with ω².
     pub(super) fn add_unbalance(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
         let force = |(dof, value)| Force {
@@ -75,6 +120,7 @@ impl Excitation {
             harmonic: 1,
             value,
             per_omega2: true,
+            per_speed2: 0.0,
         };
         try_extend(&mut self.forces, &forces.map(force), "the forces")
     }
@@ -83,6 +129,7 @@ impl Excitation {
     pub(super) fn scale(&mut self, factor: f64) {
         for force in &mut self.forces {
             force.value *= factor;
+            force.per_speed2 *= factor;
         }
     }
 
@@ -90,6 +137,7 @@ impl Excitation {
     pub(super) fn scale_each(&mut self, factor: impl Fn(usize) -> f64) {
         for force in &mut self.forces {
             force.value *= factor(force.dof);
+            force.per_speed2 *= factor(force.dof);
         }
     }
 
@@ -126,6 +174,13 @@ impl Excitation {
     #[must_use]
     pub fn has_unbalance(&self) -> bool {
         self.forces.iter().any(|f| f.per_omega2 && f.value != Complex64::ZERO)
+    }
+
+    /// Whether one of a harmonic does.
+    #[must_use]
+    pub fn has_unbalance_in(&self, harmonic: usize) -> bool {
+        let mut own = self.forces.iter().filter(|f| f.harmonic == harmonic);
+        own.any(|f| f.per_omega2 && f.value != Complex64::ZERO)
     }
 
     /// A copy, allocated fallibly.

@@ -108,6 +108,9 @@ impl Model {
                         out.f64(force.value.re);
                         out.f64(force.value.im);
                         out.bool(force.per_omega2);
+                        if force.per_speed2 != 0.0 {
+                            out.f64(force.per_speed2);
+                        }
                     })
                 })
                 // In any order.
@@ -177,6 +180,9 @@ impl Contact {
     fn digest_to(&self, out: &mut ByteWriter<'_>) {
         self.kind.digest_to(out);
         self.places_to(out);
+        if self.rigid.is_some() {
+            self.rigid_to(out);
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::linalg::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
 use crate::model::reduced_wave::KeptWaves;
 use crate::model::sector_faces::SectorDescription;
-use crate::model::speed::SpeedLoad;
+use crate::model::speed::{Speed, SpeedLoad};
 use crate::model::spring::Spring;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
@@ -111,6 +111,13 @@ impl Model {
             self.kept = KeptWaves::default();
         }
         checked
+    }
+
+    /// Adds degrees of freedom without matrices behind all others.
+    pub(super) fn extend(&mut self, count: usize) -> Result<()> {
+        self.structure = self.structure.extended(count)?;
+        self.kept = KeptWaves::default();
+        Ok(())
     }
 
     /// The structure for a change of its matrices: nothing that was prepared for them is kept.
@@ -360,6 +367,14 @@ impl Model {
 
     pub(super) fn add_unbalance_forces(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
         self.excitation.add_unbalance(forces)
+    }
+
+    pub(super) fn add_centrifugal_force(&mut self, dof: usize, mass_radius: f64) -> Result<()> {
+        self.excitation.add_centrifugal(self.ndof(), dof, mass_radius)
+    }
+
+    pub(super) fn forces_at_speed(&mut self, speed: Speed) {
+        self.excitation.follow_speed(speed);
     }
 
     pub(super) fn fix_unbalance(&mut self, omega: f64) {

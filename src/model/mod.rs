@@ -6,6 +6,7 @@ mod complex_stiffness;
 pub mod contents;
 pub mod cyclic;
 pub mod damped_mode;
+pub mod damper;
 pub mod degree_map;
 pub mod excitation;
 mod face_coordinates;

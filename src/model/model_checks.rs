@@ -41,7 +41,8 @@ impl Model {
         let mut felt = try_vec(self.ndof(), false, "the guess")?;
         for contact in self.contacts() {
             let sides = contact.dof_a.iter().chain(&contact.dof_b).flatten();
-            for &dof in sides.chain(&contact.dofs) {
+            let rotations = contact.rigid.iter().flat_map(|rigid| &rigid.rotations).flatten();
+            for &dof in sides.chain(&contact.dofs).chain(rotations) {
                 felt[dof] = true;
             }
         }
@@ -60,9 +61,36 @@ impl Model {
             }
         }
         self.check_list("dofs", &contact.dofs)?;
+        self.check_rigid(contact)?;
         for k in 0..contact.directions() {
             let node_b = contact.frame.map(|_| contact.dof_b);
             self.check_sides("contact", &contact.direction(k), contact.sector_offset, node_b)?;
+        }
+        Ok(())
+    }
+
+    /// Rotations on side a are degrees of freedom beside its translations; they need directions.
+    fn check_rigid(&self, contact: &Contact) -> Result<()> {
+        let Some(rigid) = contact.rigid else { return Ok(()) };
+        if let Some(x) = rigid.arm.iter().chain([&rigid.turn]).find(|x| !x.is_finite()) {
+            return fail!(NotFinite, "contact: arm or turn = {x}, needs finite numbers");
+        }
+        if contact.frame.is_none() && !rigid.is_plain() {
+            return fail!(
+                Argument,
+                "contact: rotation or turn without directions; give normal and tangent"
+            );
+        }
+        for (i, dof) in rigid.rotations.iter().enumerate() {
+            let Some(dof) = *dof else { continue };
+            self.check_dof("rotation", i, dof)?;
+            let before = &rigid.rotations[..i];
+            if before.contains(&Some(dof)) || contact.dof_a.contains(&Some(dof)) {
+                return fail!(
+                    Argument,
+                    "contact: rotation[{i}] = {dof} is named twice on side a, needs different degrees of freedom"
+                );
+            }
         }
         Ok(())
     }

@@ -101,6 +101,16 @@ impl Model {
         self.add_unbalance_forces([(dof_x, value), (dof_y, value * -Complex64::I)])
     }
 
+    /// Adds the constant force `mass_radius`·Ω² on a degree of freedom: the centrifugal force of a mass on a radius.
+    ///
+    /// # Errors
+    /// `Index` or `NotFinite`, naming the argument.
+    pub fn add_centrifugal(&mut self, dof: usize, mass_radius: f64) -> Result<()> {
+        self.add_centrifugal_force(dof, mass_radius)?;
+        self.apply_speed();
+        Ok(())
+    }
+
     /// Contacts whose load depends on the speed get that of the present one; with a speed tied to the frequency a
     /// load above zero, which stands for all.
     pub(super) fn apply_speed(&mut self) {
@@ -116,6 +126,7 @@ impl Model {
             };
         }
         *self.speed_loads_mut() = loads;
+        self.forces_at_speed(speed);
     }
 
     /// ∂ln|N|/∂ω of a normal load that is tied to the frequency.

@@ -2,8 +2,8 @@
 //! about results is in them; a loaded model solves to the same bits.
 //!
 //! Little-endian: mark (8 bytes), version (4), 0 (4), length L of the model (8), the model (L), checksum of all
-//! bytes before it (8). Version 2 adds the aerodynamic influence, version 3 the places of sliders; a model
-//! without is written as an earlier version.
+//! bytes before it (8). Version 2 adds the aerodynamic influence, version 3 the places of sliders, version 4 rigid bodies and
+//! centrifugal forces; a model without is written as an earlier version.
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
@@ -20,7 +20,7 @@ use num_complex::Complex64;
 const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Bytes before the model.
 const HEAD: usize = 24;
@@ -57,11 +57,14 @@ impl Model {
     pub fn save_into(&self, buffer: &mut [u8]) -> Result<usize> {
         let mut out = ByteWriter::new(buffer);
         out.bytes(&MARK);
-        out.u32(match (self.has_places(), self.structure.has_aero()) {
-            (true, _) => VERSION,
-            (false, true) => 2,
-            (false, false) => 1,
-        });
+        out.u32(
+            match (self.has_bodies(), self.has_places(), self.structure.has_aero()) {
+                (true, _, _) => VERSION,
+                (false, true, _) => 3,
+                (false, false, true) => 2,
+                (false, false, false) => 1,
+            },
+        );
         out.u32(0);
         // The length is known at the end.
         out.count(0);
@@ -122,20 +125,34 @@ impl Model {
                 out.f64(value);
             }
         }
-        if self.has_places() {
+        let has_places = self.has_places() || self.has_bodies();
+        if has_places {
             out.bool(self.structure.has_aero());
         }
         if self.structure.has_aero() {
             self.save_aero(out);
         }
-        if self.has_places() {
+        if has_places {
             for contact in &self.contacts {
                 for place in contact.slider {
                     out.f64(place);
                 }
             }
         }
+        if self.has_bodies() {
+            for contact in &self.contacts {
+                contact.rigid_to(out);
+            }
+            for force in self.excitation.forces() {
+                out.f64(force.per_speed2);
+            }
+        }
         Ok(())
+    }
+
+    /// Whether a contact is at a rigid body, or a force follows the speed.
+    fn has_bodies(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.rigid.is_some()) || self.excitation.has_centrifugal()
     }
 
     /// Whether the place of a slider is given.
@@ -177,6 +194,7 @@ impl Model {
                 harmonic: input.count()?,
                 value: Complex64::new(input.finite()?, input.finite()?),
                 per_omega2: input.bool()?,
+                per_speed2: 0.0,
             };
             model.excitation.restore(model.structure.degrees().given(), force)?;
         }
@@ -207,6 +225,14 @@ impl Model {
             contact
                 .check_constants()
                 .map_err(|e| e.at(format_args!("contact {i}")))?;
+        }
+        if version >= 4 {
+            for i in 0..model.contacts.len() {
+                model.contacts[i].load_rigid(input)?;
+                let checked = model.check_contact(&model.contacts[i]);
+                checked.map_err(|e| e.at(format_args!("contact {i}")))?;
+            }
+            model.excitation.load_centrifugal(|| input.finite())?;
         }
         Ok(model)
     }

@@ -4,13 +4,14 @@
 //! are turned, and its motion is turned into the axes of this one.
 
 use crate::contact::Contact;
-use crate::contact::relative_motion::{Direction, Side};
+use crate::contact::relative_motion::{Direction, Side, TERMS_A, TERMS_B};
 use crate::error::{Result, fail};
 use crate::model::sector_faces::Faces;
 use crate::model::spring::{Row, Spring};
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::Structure;
 use num_complex::Complex64;
+use std::ops::Range;
 
 /// A term of a relative motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +24,17 @@ pub struct Term {
     pub coefficient: f64,
 }
 
-/// Relative motion side a minus side b: at most three terms per side.
+/// Most terms of a relative motion.
+pub const MOTION_TERMS: usize = TERMS_A + TERMS_B;
+
+/// Relative motion side a minus side b: at most six terms of side a and three of side b.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SectorMotion {
-    terms: [Option<Term>; 6],
+    terms: [Option<Term>; MOTION_TERMS],
 }
 
 /// Key of a relative motion: per term its degree of freedom, its sector in 0 .. N and the bits of its coefficient.
-pub type Key = [Option<(usize, i64, u64)>; 6];
+pub type Key = [Option<(usize, i64, u64)>; MOTION_TERMS];
 
 /// Coefficients below this share of 1 are rounding.
 const SECTOR_MOTION_ROUNDING: f64 = 1e-12;
@@ -51,14 +55,14 @@ impl SectorMotion {
     /// Row over the degrees of freedom of all sectors of a ring; `place` returns the number of one, from its number
     /// in its sector and the offset of that sector.
     #[must_use]
-    pub fn ring_row(&self, place: impl Fn(usize, i64) -> usize) -> [Option<(usize, f64)>; 6] {
+    pub fn ring_row(&self, place: impl Fn(usize, i64) -> usize) -> [Option<(usize, f64)>; MOTION_TERMS] {
         self.terms
             .map(|term| term.map(|t| (place(t.dof, t.sector), t.coefficient)))
     }
 
     /// Adds a term to side `side`, and returns whether there is room.
     fn add(&mut self, side: usize, term: Term, sectors: usize) -> bool {
-        let places = &mut self.terms[3 * side..3 * side + 3];
+        let places = &mut self.terms[places_of(side)];
         let alike = |t: &Term| t.dof == term.dof && (t.sector - term.sector).rem_euclid(sectors as i64) == 0;
         for place in places {
             match place {
@@ -85,7 +89,7 @@ impl SectorMotion {
 
     /// Whether a side does not move at all.
     fn is_still(&self, side: usize) -> bool {
-        self.terms[3 * side..3 * side + 3].iter().all(Option::is_none)
+        self.terms[places_of(side)].iter().all(Option::is_none)
     }
 
     /// Whether both sides move alike whatever the motion.
@@ -96,6 +100,11 @@ impl SectorMotion {
             sum.abs() <= SECTOR_MOTION_ROUNDING
         })
     }
+}
+
+/// Places of the terms of a side.
+fn places_of(side: usize) -> Range<usize> {
+    if side == 0 { 0..TERMS_A } else { TERMS_A..MOTION_TERMS }
 }
 
 /// Reason why a motion cannot be written.

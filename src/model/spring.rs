@@ -1,5 +1,6 @@
 //! Linear springs between degrees of freedom, and the rows of relative motions.
 
+use crate::contact::relative_motion::{TERMS_A, TERMS_B};
 use num_complex::Complex64;
 
 /// A linear spring. Rayleigh damping excludes it.
@@ -15,8 +16,8 @@ pub struct Spring {
     pub stiffness: f64,
 }
 
-/// Row of a relative motion: at most three entries per side, each (degree of freedom, coefficient).
-pub type Row = [Option<(usize, Complex64)>; 6];
+/// Row of a relative motion: at most six entries of side a and three of side b, each (degree of freedom, coefficient).
+pub type Row = [Option<(usize, Complex64)>; TERMS_A + TERMS_B];
 
 /// r·x, the relative motion of a row.
 #[must_use]

@@ -242,6 +242,51 @@ impl Structure {
         })
     }
 
+    /// The same structure with `count` degrees of freedom without matrices behind all others.
+    ///
+    /// # Errors
+    /// `Dimension` for too many; `OutOfMemory`.
+    pub(super) fn extended(&self, count: usize) -> Result<Self> {
+        let given = self.degrees.given();
+        if count > MAX_DOF - given {
+            return fail!(
+                Dimension,
+                "ndof = {}, needs 1 .. {MAX_DOF}",
+                given.saturating_add(count)
+            );
+        }
+        let degrees = self.degrees.extended(count)?;
+        let wider = |a: &Option<KeptMatrix>| -> Result<Option<KeptMatrix>> {
+            let Some(a) = a else { return Ok(None) };
+            let mut wide = a.expanded()?;
+            let end = wide.values.len();
+            for _ in 0..count {
+                try_push(&mut wide.col_ptr, end, "the matrices")?;
+            }
+            (wide.rows, wide.cols) = (wide.rows + count, wide.cols + count);
+            Ok(Some(KeptMatrix::new(wide)?))
+        };
+        let all = |list: &[Option<KeptMatrix>]| -> Result<Vec<Option<KeptMatrix>>> {
+            let mut wide = Vec::new();
+            for a in list {
+                try_push(&mut wide, wider(a)?, "the matrices per diameter")?;
+            }
+            Ok(wide)
+        };
+        let mut blocks: [Blocks; KINDS] = Default::default();
+        for (new, old) in blocks.iter_mut().zip(self.blocks.iter()) {
+            (new.own, new.next, new.previous) = (wider(&old.own)?, wider(&old.next)?, wider(&old.previous)?);
+            new.diameters = all(&old.diameters)?;
+        }
+        Ok(Self {
+            degrees,
+            blocks: Arc::new(blocks),
+            modal_damping: all(&self.modal_damping)?,
+            aero: self.aero.clone(),
+            ..*self
+        })
+    }
+
     /// Aerodynamic influence by its form.
     pub(super) fn aero(&self) -> &[Option<Arc<AeroInfluence>>; FORMS] {
         &self.aero

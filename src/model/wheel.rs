@@ -205,5 +205,9 @@ fn placed(contact: &Contact, s: usize, n: usize, sectors: usize) -> Result<Conta
     for dof in &mut placed.dofs {
         *dof += s * n;
     }
+    let rotations = placed.rigid.iter_mut().flat_map(|rigid| &mut rigid.rotations);
+    for dof in rotations.flatten() {
+        *dof += s * n;
+    }
     Ok(placed)
 }

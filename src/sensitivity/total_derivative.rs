@@ -73,7 +73,7 @@ impl<'a> TotalDerivative<'a> {
                 let Speed::Fixed(speed) = self.model.speed() else {
                     return Ok((f64::NAN, Reason::ZeroConstant));
                 };
-                let mut sum = -with_speed(model, condensed, adjoint, speed)?;
+                let mut sum = -with_speed(model, condensed, adjoint, speed)? + self.by_centrifugal(speed);
                 for load in self.model.speed_loads() {
                     let slope = 2.0 * load.per_speed2 * speed;
                     if slope == 0.0 {
@@ -105,6 +105,23 @@ impl<'a> TotalDerivative<'a> {
             sum += crate::linalg::inner(field, &force).re;
         }
         Ok(sum)
+    }
+
+    /// The derivative by the speed of the constant forces that follow it.
+    fn by_centrifugal(&self, speed: f64) -> f64 {
+        let condensed = self.condensed;
+        let forces = self.model.excitation().forces().iter();
+        let mut sum = 0.0;
+        for force in forces.filter(|force| force.per_speed2 != 0.0) {
+            let (_, terms) = self.at_frequency.structure().degrees().image(force.dof);
+            for (dof, c) in terms {
+                for i in (0..condensed.blocks().len()).filter(|&i| condensed.blocks()[i].number == 0) {
+                    let (_, field) = self.adjoint.harmonic(condensed, i);
+                    sum += 2.0 * force.per_speed2 * speed * c * field[dof].re;
+                }
+            }
+        }
+        sum
     }
 
     /// The derivative by a constant of one contact, 0 where its law does not have it; `None` where it exists on one

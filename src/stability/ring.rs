@@ -6,7 +6,7 @@
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
-use crate::model::sector_motion::SectorMotion;
+use crate::model::sector_motion::{MOTION_TERMS, SectorMotion};
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;
 use crate::stability::closure::Closure;
@@ -19,7 +19,7 @@ const CONTEXT: &str = "the equations of perturbations";
 const RING_ROUNDING: f64 = 1e-14;
 
 /// Row of a relative motion: entries (degree of freedom of the ring, coefficient).
-pub(super) type Row = [Option<(usize, Complex64)>; 6];
+pub(super) type Row = [Option<(usize, Complex64)>; MOTION_TERMS];
 
 /// An element of the ring.
 pub(super) struct RingElement {

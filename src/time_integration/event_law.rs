@@ -17,7 +17,7 @@ use crate::contact::time_piece::Instant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
-use crate::model::sector_motion::SectorMotion;
+use crate::model::sector_motion::{MOTION_TERMS, SectorMotion};
 use crate::model::structure::Structure;
 
 const CONTEXT: &str = "the contacts";
@@ -51,14 +51,14 @@ pub(crate) struct Spring {
 }
 
 /// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
-pub(crate) type Row = [Option<(usize, f64)>; 6];
+pub(crate) type Row = [Option<(usize, f64)>; MOTION_TERMS];
 
 impl Spring {
     /// A spring along a relative motion whose side a lies in sector `s` of the unrolled structure.
-    pub fn new(structure: &Structure, motion: SectorMotion, s: usize, stiffness: f64) -> Self {
+    pub fn new(structure: &Structure, motion: &SectorMotion, s: usize, stiffness: f64) -> Self {
         Self {
-            row: row(structure, &motion, s),
-            motion,
+            row: row(structure, motion, s),
+            motion: *motion,
             sector: s,
             stiffness,
         }
@@ -101,7 +101,7 @@ pub(super) fn unroll(
             interrupt.check_before(OF_ONE_SECTOR)?;
             if stiffness != 0.0 {
                 let motion = structure.contact_motion(c, 0);
-                try_push(springs, Spring::new(structure, motion, s, stiffness), CONTEXT)?;
+                try_push(springs, Spring::new(structure, &motion, s, stiffness), CONTEXT)?;
             }
             if let Some((first, part)) = &law {
                 let (mut rows, mut motions) = (Vec::new(), Vec::new());

@@ -48,6 +48,9 @@ pub struct TimeResponse {
     pub harmonics: Vec<Complex64>,
     /// Displacements at equidistant times from 0 on, time by time.
     pub samples: Vec<f64>,
+    /// Places of the slider along t1 of each contact (of sector 1) at the end, for [`Model::set_slider`]; 0 for contacts
+    /// without slider. NaN if the caller stopped before.
+    pub places: Vec<f64>,
 }
 
 /// Integrates the response of a model to its forces until it is periodic.
@@ -95,6 +98,7 @@ impl TimeResponse {
             ndof,
             harmonics: try_vec((options.harmonics + 1).saturating_mul(ndof), nothing, "the harmonics")?,
             samples: try_vec(options.samples.saturating_mul(ndof), f64::NAN, "the samples")?,
+            places: try_vec(model.contacts().len(), f64::NAN, "the places of sliders")?,
         })
     }
 }
@@ -140,6 +144,12 @@ fn integrate(
         }
         Err(e) => return Err(e),
     };
+    let mut places = try_vec(model.contacts().len(), 0.0, "the places of sliders")?;
+    for (element, stretch) in system.elements.iter().zip(&steady.state.e) {
+        if element.sector == 0 && element.slider().is_some() {
+            places[element.family] = element.relative(&steady.state.x)[0] - stretch;
+        }
+    }
     let (harmonics, samples) = recorder.finish_all(&system, model)?;
     Ok(TimeResponse {
         status: steady.status,
@@ -152,5 +162,6 @@ fn integrate(
         ndof: model.ndof(),
         harmonics,
         samples,
+        places,
     })
 }

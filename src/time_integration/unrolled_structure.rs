@@ -134,7 +134,7 @@ impl<'s> System<'s> {
                 interrupt.check_before(OF_ONE_SECTOR)?;
                 try_push(
                     &mut springs,
-                    Spring::new(structure, motion, s, spring.stiffness),
+                    Spring::new(structure, &motion, s, spring.stiffness),
                     CONTEXT,
                 )?;
             }

@@ -7,6 +7,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::lu::Scalar;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::Entry;
+use crate::model::sector_motion::MOTION_TERMS;
 use crate::time_integration::unrolled_structure::{OF_ONE_ELEMENT, Sparse, System};
 use num_complex::Complex64;
 
@@ -35,7 +36,7 @@ impl Number for f64 {}
 impl Number for Complex64 {}
 
 /// Row of a relative motion: entries (degree of freedom, coefficient).
-pub(crate) type VariationalRow<T> = [Option<(usize, T)>; 6];
+pub(crate) type VariationalRow<T> = [Option<(usize, T)>; MOTION_TERMS];
 
 /// A contact in these equations.
 pub(crate) struct VariationalElement<T> {

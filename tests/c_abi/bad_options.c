@@ -121,7 +121,7 @@ static void struct_sizes(void)
         EXPECT("66", s.struct_size == bad[i] && s.harmonics == 9);
     }
     REFUSED("66", hbvib_matrix_init((hbvib_matrix *)&larger, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 168");
+    REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 224");
     REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 48");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");

@@ -89,6 +89,33 @@ int main(void)
     REFUSED("frequency", hbvib_wheel_mistune(wheel, cyclic, 1, 0, NULL, &a, 0, SECTORS, none), HBVIB_E_ARGUMENT, 6, "blade");
     REFUSED("contact", hbvib_wheel_mistune(wheel, cyclic, 4, 0, NULL, NULL, 1, SECTORS, none), HBVIB_E_INDEX, 7, "contact");
     REFUSED("length", hbvib_wheel_mistune(wheel, cyclic, 5, 0, NULL, NULL, 0, 4, none), HBVIB_E_DIMENSION, 9, "delta");
+
+    {
+        double amplitude[SECTORS], omega[SECTORS], error[SECTORS];
+        hbvib_wheel_info info;
+        hbvib_solver_options solver;
+        hbvib_branch *branch = NULL;
+        int64_t blades = 0;
+        WORKS("init", hbvib_wheel_info_init(&info, sizeof info));
+        WORKS("init", hbvib_solver_options_init(&solver, sizeof solver));
+        solver.harmonics = 3;
+        solver.tolerance = 0;
+        WORKS("damping", hbvib_model_set_rayleigh(cyclic, 0, 0.02));
+        WORKS("damping", hbvib_model_set_rayleigh(wheel, 0, 0.02));
+        WORKS("peaks", hbvib_wheel_peaks(wheel, cyclic, NULL, &solver, 1, 3, NULL, SECTORS, amplitude, omega, error, &blades, &info,
+                                         &branch));
+        EXPECT("peaks", blades == SECTORS && info.blade >= 0 && info.largest == amplitude[info.blade] && isnan(error[0]));
+        for (s = 0; s < SECTORS; s++) EXPECT("largest", !(amplitude[s] > info.largest));
+        EXPECT("amplification", info.tuned > 0 && info.amplification == info.largest / info.tuned && info.amplification > 1);
+        EXPECT("responses", hbvib_branch_responses(branch) == SECTORS);
+        WORKS("branch", hbvib_branch_free(branch));
+        REFUSED("another wheel", hbvib_wheel_peaks(cyclic, cyclic, NULL, NULL, 1, 3, NULL, SECTORS, NULL, NULL, NULL, &blades, NULL, NULL),
+                HBVIB_E_DIMENSION, 0, "needs the wheel");
+        REFUSED("range", hbvib_wheel_peaks(wheel, cyclic, NULL, NULL, 0, 3, NULL, SECTORS, NULL, NULL, NULL, &blades, NULL, NULL),
+                HBVIB_E_ARGUMENT, 5, "omega_start");
+        REFUSED("capacity", hbvib_wheel_peaks(wheel, cyclic, NULL, NULL, 1, 3, NULL, 2, amplitude, NULL, NULL, &blades, NULL, NULL),
+                HBVIB_E_DIMENSION, 8, "capacity = 2");
+    }
     WORKS("wheel", hbvib_model_free(wheel));
     WORKS("cyclic", hbvib_model_free(cyclic));
     return verdict(90);

@@ -81,7 +81,7 @@ static void bad_input(void)
     x[0] = 77;
 
     REFUSED("NULL", hbvib_time_options_init(NULL, sizeof o), HBVIB_E_NULL, 1, "hbvib_time_options");
-    REFUSED("size", hbvib_time_options_init(&o, 8), HBVIB_E_STRUCT_SIZE, 2, "needs 64");
+    REFUSED("size", hbvib_time_options_init(&o, 8), HBVIB_E_STRUCT_SIZE, 2, "needs 80");
     REFUSED("NULL", hbvib_time_info_init(NULL, sizeof i), HBVIB_E_NULL, 1, "hbvib_time_info");
     REFUSED("size", hbvib_time_info_init(&i, 8), HBVIB_E_STRUCT_SIZE, 2, "needs 40");
     REFUSED("NULL", hbvib_time_response(NULL, &o, NULL, x, COUNT, NULL, 0, &i), HBVIB_E_HANDLE, 1, "NULL");

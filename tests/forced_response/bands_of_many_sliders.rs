@@ -2,8 +2,12 @@
 //! peak is one of two; friction in a plane at eight nodes against random residual states.
 
 use crate::common::{harmonics, solve_at, sweep};
-use hbvib::{BandOf, BandOptions, Contact, ContactKind, Frame, Hooks, MatrixKind, MatrixView, Model, band, freedom};
+use hbvib::{
+    BandOf, BandOptions, Contact, ContactKind, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, band,
+    forced_response, freedom,
+};
 use num_complex::Complex64;
+use std::cell::Cell;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
@@ -53,7 +57,27 @@ fn eight_sliders_a_sector_have_the_band_of_one() {
             of: BandOf::PeakAmplitude,
             ..BandOptions::default()
         };
-        band(&model, &branch, peak, &solver, &options, &mut Hooks::default()).unwrap()
+        // Work is counted by the questions whether to stop.
+        let asked = Cell::new(0_u64);
+        let count = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let mut hooks = Hooks {
+            cancelled: Some(&count),
+            ..Hooks::default()
+        };
+        let range = ForcedOptions {
+            omega_start: 1.0,
+            omega_stop: 1.2,
+            ..ForcedOptions::default()
+        };
+        forced_response(&model, &solver, &range, &mut hooks).unwrap();
+        let of_sweep = asked.replace(0);
+        let found = band(&model, &branch, peak, &solver, &options, &mut hooks).unwrap();
+        println!("{parts}: sweep {of_sweep}, band {}", asked.get());
+        assert!(asked.get() < 100 * of_sweep);
+        found
     });
     let [one, many] = &bands;
     println!("{} .. {}, {} solved", many.lower.value, many.upper.value, many.solved);
@@ -64,23 +88,23 @@ fn eight_sliders_a_sector_have_the_band_of_one() {
 }
 
 /// Eight nodes that move in three directions on friction in a plane, every other one with a large limit.
-fn nodes() -> Model {
-    const N: usize = 24;
-    let mut model = Model::new(N).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &[1.0; N]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.03; N]);
-    let mut stiffness = vec![0.0; N * N];
-    for i in 0..N {
-        stiffness[i * N + i] = 1.5 + 0.05 * i as f64;
+fn nodes(count: usize) -> Model {
+    let n = 3 * count;
+    let mut model = Model::new(n).unwrap();
+    diagonal(&mut model, MatrixKind::Mass, &vec![1.0; n]);
+    diagonal(&mut model, MatrixKind::Damping, &vec![0.03; n]);
+    let mut stiffness = vec![0.0; n * n];
+    for i in 0..n {
+        stiffness[i * n + i] = 1.5 + 0.05 * (i % 24) as f64;
         for j in 0..i {
             let coupled = -0.12 / (1.0 + (i - j) as f64);
-            (stiffness[i * N + j], stiffness[j * N + i]) = (coupled, coupled);
+            (stiffness[i * n + j], stiffness[j * n + i]) = (coupled, coupled);
         }
     }
     model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &stiffness))
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
         .unwrap();
-    for node in 0..8 {
+    for node in 0..count {
         let dofs = [3 * node, 3 * node + 1, 3 * node + 2].map(Some);
         let (mu, load) = if node % 2 == 0 { (0.15, 0.1) } else { (0.5, 0.3) };
         model
@@ -89,12 +113,26 @@ fn nodes() -> Model {
     }
     model.add_force(0, 1, Complex64::new(0.06, 0.0)).unwrap();
     model.add_force(4, 1, Complex64::new(0.0, 0.03)).unwrap();
+    // Far nodes with a small limit slip as well.
+    for node in (8..count).step_by(2) {
+        model.add_force(3 * node, 1, Complex64::new(0.06, 0.0)).unwrap();
+    }
     model
 }
 
 #[test]
 fn no_random_residual_state_lies_outside_the_band() {
-    let model = nodes();
+    outside_of(8, 6, 30);
+}
+
+#[test]
+#[ignore = "twenty nodes, of which half stick"]
+fn no_random_residual_state_of_twenty_nodes_lies_outside_the_band() {
+    outside_of(20, 16, 10);
+}
+
+fn outside_of(count: usize, least: usize, trials: usize) {
+    let model = nodes(count);
     let solver = harmonics(3);
     let omega = 1.35;
     let branch = solve_at(&model, &solver, omega);
@@ -112,9 +150,9 @@ fn no_random_residual_state_lies_outside_the_band() {
         upper.value,
         found.solved
     );
-    assert!(found.is_complete && free.len() >= 6 && upper.value > 1.002 * lower.value);
+    assert!(found.is_complete && free.len() >= least && upper.value > 1.002 * lower.value);
     let mut most = [f64::INFINITY, 0.0];
-    for trial in 0..30 {
+    for trial in 0..trials {
         let mut other = model.try_clone().unwrap();
         for (i, slider) in free.iter().enumerate() {
             // Anywhere; a place beyond the limit acts as the nearest one within.
@@ -136,5 +174,5 @@ fn no_random_residual_state_lies_outside_the_band() {
         assert!((amplitude / end.value - 1.0).abs() < 1e-7, "{amplitude}");
     }
     println!("random states {most:?}");
-    assert!(most[1] - most[0] > 0.2 * (upper.value - lower.value));
+    assert!(most[1] - most[0] > 0.05 * (upper.value - lower.value));
 }

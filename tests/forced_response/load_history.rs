@@ -3,8 +3,8 @@
 
 use crate::common::{harmonics, solve_at};
 use hbvib::{
-    Contact, ContactKind, Frame, Interrupt, LoadHistory, MatrixKind, MatrixView, Model, SolverOptions, Speed, freedom,
-    static_history,
+    Contact, ContactKind, Frame, Hooks, Interrupt, LoadHistory, MatrixKind, MatrixView, Model, SolverOptions, Speed,
+    SteadyMethod, TimeOptions, freedom, static_history, time_response,
 };
 use num_complex::Complex64;
 
@@ -150,4 +150,44 @@ fn histories_that_are_none_are_refused_by_name() {
     assert!(with(&[], &[]).contains("0 steps"));
     assert!(with(&[1.0, 2.0], &[1.0]).contains("2 factors and 1 speeds"));
     assert!(with(&[f64::NAN], &[]).contains("factors[0] = NaN"));
+}
+
+/// A slider that a vibration drags until it sticks. Shooting finds the motion whose largest value is just at the limit; marching from rest
+/// overshoots and drags it further. Harmonic balance from either place is the motion in time.
+#[test]
+fn integration_in_time_leaves_the_slider_where_the_vibration_has_dragged_it() {
+    let mut model = Model::new(1).unwrap();
+    for (which, value) in [
+        (MatrixKind::Mass, 1.0),
+        (MatrixKind::Damping, 0.1),
+        (MatrixKind::Stiffness, 1.0),
+    ] {
+        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
+    model.add_force(0, 0, Complex64::new(0.6, 0.0)).unwrap();
+    model.add_force(0, 1, Complex64::new(0.1, 0.0)).unwrap();
+    let mut places = Vec::new();
+    for method in [SteadyMethod::Shooting, SteadyMethod::Marching] {
+        let options = TimeOptions {
+            omega: 0.5,
+            harmonics: 1,
+            samples: 4000,
+            method,
+            ..TimeOptions::default()
+        };
+        let found = time_response(&model, &options, &mut Hooks::default()).unwrap();
+        let place = found.places[0];
+        let largest = found.samples.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+        let least = found.samples.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+        println!("{place} {least} .. {largest}");
+        assert!(place > largest - 0.3 - 1e-6 && place < least + 0.3 + 1e-6);
+        places.push((place, largest));
+        let mut placed = model.try_clone().unwrap();
+        placed.set_slider(0, 0, place).unwrap();
+        let x = crate::common::all_harmonics(&solve_at(&placed, &harmonics(1), 0.5), 0);
+        let gaps = [0, 1].map(|h| (x[h] - found.harmonics[h]).norm());
+        assert!(gaps.iter().all(|gap| *gap < 1e-8), "{gaps:?}");
+    }
+    assert!((places[0].0 - (places[0].1 - 0.3)).abs() < 1e-6 && places[1].0 > places[0].0 + 0.1);
 }

@@ -8,6 +8,7 @@ mod backward_waves;
 mod bands_of_many_sliders;
 mod capacity;
 mod continuation;
+mod dampers;
 mod derivatives;
 mod direct_solutions;
 mod duffing;

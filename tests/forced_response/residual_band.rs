@@ -3,9 +3,9 @@
 
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, Frame, Hooks, MatrixKind,
-    MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, VerifyOptions, band, floquet, freedom,
-    parameter_response, sensitivity, verify,
+    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, ForcedOptions, Frame, Hooks,
+    MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, VerifyOptions, band,
+    band_curve, floquet, forced_response, freedom, parameter_response, sensitivity, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -203,6 +203,34 @@ fn a_band_at_a_frequency_has_its_extrema_between_the_limits() {
     }
 }
 
+#[test]
+fn curves_have_the_band_of_each_point() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = harmonics(5);
+    let branch = sweep(&model, &solver, 1.18, 1.22, &[]);
+    let mut hooks = Hooks::default();
+    let options = BandOptions::default();
+    let all = band_curve(&model, &branch, &[], &solver, &options, &mut hooks).unwrap();
+    assert_eq!(all.len(), branch.omega().len());
+    for (i, one) in all.iter().enumerate() {
+        let found = band(&model, &branch, i, &solver, &options, &mut hooks).unwrap();
+        assert_eq!(
+            [one.lower, one.upper].map(f64::to_bits),
+            [found.lower.value, found.upper.value].map(f64::to_bits)
+        );
+        assert!(one.point == i && one.sliders == 1 && one.is_complete && one.solved == found.solved);
+        assert!(one.lower <= one.value * (1.0 + 1e-9) && one.value <= one.upper * (1.0 + 1e-9));
+    }
+    let last = band_curve(&model, &branch, &[2], &solver, &options, &mut hooks).unwrap();
+    assert_eq!(last, [all[2]]);
+    let of_peak = BandOptions {
+        of: BandOf::PeakAmplitude,
+        ..options
+    };
+    let refusal = band_curve(&model, &branch, &[2], &solver, &of_peak, &mut hooks).unwrap_err();
+    assert!(refusal.to_string().contains("amplitude at each frequency"));
+}
+
 /// The contact with the platform as two of half its stiffness: a band of two sliders, whose limits allow no more.
 #[test]
 fn two_contacts_that_share_a_face_have_the_band_of_one() {
@@ -268,6 +296,156 @@ fn friction_in_a_plane_has_the_band_of_its_line() {
         assert_eq!(two.sliders, [(0, 0), (0, 1)]);
         assert!((one.lower.value / two.lower.value - 1.0).abs() < 1e-5);
         assert!((one.upper.value / two.upper.value - 1.0).abs() < 1e-5);
+    }
+}
+
+/// The wedge with friction in a plane at the platform, integrated in time step by step (velocity Verlet, return to the disc of the limit):
+/// |q₁| after periods from a motion and the places of the sliders at the platform, and how far these were dragged.
+fn plane_in_time(motion: &[Complex64], places: [f64; 2], force: f64, omega: f64) -> (f64, f64) {
+    const STEPS: usize = 6000;
+    const PERIODS: usize = 80;
+    const HELD: usize = 50;
+    let r = FRAC_1_SQRT_2;
+    let (mass, damping, stiffness) = (
+        [1.0, 0.01, 0.01, 0.01],
+        [0.04, 4e-3, 4e-3, 4e-3],
+        [1.0, 1e-3, 1e-3, 1e-3],
+    );
+    let mut x = [0, 1, 2, 3].map(|dof| motion.chunks_exact(4).map(|h| h[dof].re).sum::<f64>());
+    let mut v = [0, 1, 2, 3].map(|dof| {
+        let rates = motion.chunks_exact(4).enumerate();
+        rates.map(|(h, row)| -(h as f64) * omega * row[dof].im).sum::<f64>()
+    });
+    let mut platform = places;
+    // The contact with the blade slips, and forgets its place while that at the platform is held.
+    let mut blade = 0.0;
+    let dt = std::f64::consts::TAU / omega / STEPS as f64;
+    let mut forces = |x: &[f64; 4], v: &[f64; 4], t: f64| -> [f64; 4] {
+        let [q, u, outward, across] = *x;
+        let closing = |n: f64| (1.5 * n).max(0.0);
+        // Tangential motions and loads of both faces.
+        let (along, load) = (r * (u + outward), closing(r * (outward - u)));
+        let stretch = [along - platform[0], across - platform[1]];
+        let size = stretch[0].hypot(stretch[1]);
+        let is_held = omega * t < std::f64::consts::TAU * HELD as f64;
+        let share = if size > 0.6 * load && !is_held {
+            0.6 * load / size
+        } else {
+            1.0
+        };
+        let pull = stretch.map(|s| s * share);
+        platform = [along - pull[0], across - pull[1]];
+        let (other, pressed) = (r * (q - u + outward), closing(r * (u + outward - q)));
+        let drag = (other - blade).clamp(-0.2 * pressed, 0.2 * pressed);
+        blade = other - drag;
+        let f = [
+            r * drag - r * pressed,
+            r * pull[0] - r * load - r * drag + r * pressed,
+            r * pull[0] + r * load + r * drag + r * pressed,
+            pull[1],
+        ];
+        let load = [force * (omega * t).cos(), 0.0, 1.0, 0.0];
+        [0, 1, 2, 3].map(|i| (load[i] - f[i] - damping[i] * v[i] - stiffness[i] * x[i]) / mass[i])
+    };
+    let mut first = Complex64::ZERO;
+    let mut a = forces(&x, &v, 0.0);
+    for step in 0..STEPS * PERIODS {
+        let half: [f64; 4] = core::array::from_fn(|i| v[i] + 0.5 * dt * a[i]);
+        for i in 0..4 {
+            x[i] += dt * half[i];
+        }
+        let t = dt * (step + 1) as f64;
+        let foreseen: [f64; 4] = core::array::from_fn(|i| half[i] + 0.5 * dt * a[i]);
+        a = forces(&x, &foreseen, t);
+        for i in 0..4 {
+            v[i] = half[i] + 0.5 * dt * a[i];
+        }
+        if step >= STEPS * (PERIODS - 1) {
+            first += x[0] * Complex64::from_polar(2.0 / STEPS as f64, -omega * t);
+        }
+    }
+    let moved = (platform[0] - places[0]).hypot(platform[1] - places[1]);
+    (first.norm(), moved)
+}
+
+/// Friction in a plane is not integrated by the library; the ends of its band are motions of an integration of the test.
+#[test]
+fn the_ends_with_friction_in_a_plane_are_motions_in_time() {
+    let (force, omega) = (0.1, 1.3);
+    let model = across(force);
+    let solver = harmonics(15);
+    let branch = solve_at(&model, &solver, omega);
+    let options = BandOptions {
+        starts: 1,
+        ..BandOptions::default()
+    };
+    let found = band(&model, &branch, 0, &solver, &options, &mut Hooks::default()).unwrap();
+    assert!(found.upper.value > 1.4 * found.lower.value);
+    for (end, other) in [(&found.lower, &found.upper), (&found.upper, &found.lower)] {
+        // Fifteen harmonics leave an end beyond the limit by a little, which drags its slider.
+        let places = [end.places[0], end.places[1]];
+        let motion = crate::common::all_harmonics(end.branch.as_ref().unwrap(), 0);
+        let (amplitude, moved) = plane_in_time(&motion, places, force, omega);
+        println!("{} in time {amplitude}, dragged by {moved:.1e}", end.value);
+        assert!((amplitude / end.value - 1.0).abs() < 1e-3 && moved < 1e-3);
+        // A state just within.
+        let places = [0, 1].map(|k| 0.95 * end.places[k] + 0.05 * other.places[k]);
+        let mut placed = model.try_clone().unwrap();
+        for (k, place) in places.iter().enumerate() {
+            placed.set_slider(PLATFORM, k, *place).unwrap();
+        }
+        let within = solve_at(&placed, &solver, omega);
+        let motion = crate::common::all_harmonics(&within, 0);
+        let (amplitude, moved) = plane_in_time(&motion, places, force, omega);
+        println!("{} in time {amplitude}, dragged by {moved:.1e}", within.amplitude()[0]);
+        assert!((amplitude / within.amplitude()[0] - 1.0).abs() < 1e-3 && moved < 1e-9);
+    }
+}
+
+/// Work is counted by the questions whether to stop: a point without band costs less than a twentieth of its branch.
+#[test]
+fn a_point_without_band_costs_hardly_any_work() {
+    let slipping = || {
+        let mut model = Model::new(2).unwrap();
+        for (which, d) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Damping, 0.05),
+            (MatrixKind::Stiffness, 1.0),
+        ] {
+            model
+                .set_matrix(which, &MatrixView::dense(2, &[d, 0.0, 0.0, d]))
+                .unwrap();
+        }
+        model.add_contact(&Contact::jenkins(0, None, 1.0, 0.2, 1.0)).unwrap();
+        model.add_contact(&Contact::jenkins(0, Some(1), 0.5, 0.2, 0.5)).unwrap();
+        model.add_force(0, 1, Complex64::new(0.6, 0.0)).unwrap();
+        model
+    };
+    let ring = crate::common::BASE.sector();
+    let turn = std::f64::consts::TAU;
+    for (model, from, to) in [(slipping(), 0.8, 1.8), (ring, turn * 207.0, turn * 211.0)] {
+        let asked = std::cell::Cell::new(0_u64);
+        let count = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let mut hooks = Hooks {
+            cancelled: Some(&count),
+            ..Hooks::default()
+        };
+        let range = ForcedOptions {
+            omega_start: from,
+            omega_stop: to,
+            ..ForcedOptions::default()
+        };
+        let solver = harmonics(9);
+        let branch = forced_response(&model, &solver, &range, &mut hooks).unwrap();
+        let of_branch = asked.replace(0);
+        let peak = branch.peaks()[0].point;
+        let found = band(&model, &branch, peak, &solver, &BandOptions::default(), &mut hooks).unwrap();
+        println!("{of_branch} and {}", asked.get());
+        assert!(found.sliders.is_empty() && found.solved == 0);
+        assert!(of_branch > 100 && 20 * asked.get() < of_branch);
     }
 }
 

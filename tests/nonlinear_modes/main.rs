@@ -8,6 +8,7 @@ mod derivatives_of_modes;
 mod equal_pairs;
 mod mode_about_static;
 mod mode_balance;
+mod mode_bands;
 mod mode_closed_forms;
 mod mode_conservative;
 mod mode_decay;

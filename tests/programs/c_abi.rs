@@ -183,6 +183,11 @@ fn residual_forces_have_their_freedom_and_band() {
 }
 
 #[test]
+fn a_damper_under_platforms_is_added_and_checked() {
+    silent("damper", |_| vec![]);
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

@@ -269,7 +269,7 @@ fn bytes_that_are_no_saved_model_are_refused_with_their_reason() {
         bytes[place] = value;
         bytes
     };
-    refused(&newer(8, 4), Status::Unsupported, "format 4 is newer than 3");
+    refused(&newer(8, 5), Status::Unsupported, "format 5 is newer than 4");
     refused(
         &[&bytes[..], b"\n"].concat(),
         Status::Argument,

@@ -3,7 +3,7 @@
 
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::analysis::forced_response;
+use hbvib::analysis::{forced_response, wheel_peaks};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -181,6 +181,37 @@ fn the_largest_peak_of_a_mistuned_wheel_is_that_of_another_harmonic_balance() {
         println!("{force} N: amplitude {gap:.1e}, frequency {off:.1e}");
         assert!(gap < 1e-9 && off < 1e-8, "{gap} {off}");
     }
+}
+
+/// All blades in one call: the largest is blade 3, with the same peak; the tuned wheel has equal ones.
+#[test]
+fn all_blades_have_their_peaks_and_the_largest_is_that_of_another_harmonic_balance() {
+    let amplitude = 8.280_100_222_407_677e-4;
+    let sector = sector(1.0);
+    let range = ForcedOptions {
+        omega_start: TAU * 208.5,
+        omega_stop: TAU * 211.5,
+        ..ForcedOptions::default()
+    };
+    let blade = Response {
+        dofs: &[0],
+        ..Response::default()
+    };
+    let peaks =
+        |wheel: &Model| wheel_peaks(wheel, &sector, &blade, &harmonics(3), &range, &mut Hooks::default()).unwrap();
+    let found = peaks(&blades(&SEED_2, 1.0));
+    let gap = (found.blades[3].amplitude / amplitude - 1.0).abs();
+    println!("{gap:.1e}, amplification {}", found.amplification());
+    assert!(found.largest == Some(3) && gap < 1e-9);
+    // That of wheel_worst.json.
+    assert!((found.tuned.amplitude / 7.574_043_561_303_725e-4 - 1.0).abs() < 1e-9);
+    let tuned = peaks(&sector.wheel().unwrap());
+    for one in &tuned.blades {
+        assert!((one.amplitude / tuned.tuned.amplitude - 1.0).abs() < 1e-9);
+    }
+    let other = Model::new(5).unwrap();
+    let refusal = wheel_peaks(&other, &sector, &blade, &harmonics(3), &range, &mut Hooks::default());
+    refused(refusal, Status::Dimension, &["needs the wheel"]);
 }
 
 #[test]

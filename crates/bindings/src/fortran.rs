@@ -11,12 +11,14 @@ const COLUMNS: usize = 130;
 const RENAMED: [(&str, &str); 1] = [("hbvib_energy", "hbvib_energies")];
 
 /// Defaults that differ from those in C, because indices count from 1, or a name replaces a number.
-const OWN_DEFAULTS: [(&str, &str, &str); 5] = [
+const OWN_DEFAULTS: [(&str, &str, &str); 7] = [
     ("hbvib_matrix", "index_base", "1"),
     ("hbvib_mode_options", "mode_index", "1"),
     ("hbvib_mode_options", "diameter", "HBVIB_DIAMETER_OF_ENGINE_ORDER"),
     ("hbvib_contact", "dof_a", "HBVIB_GROUND"),
     ("hbvib_contact", "dof_b", "HBVIB_GROUND"),
+    ("hbvib_contact", "rotation", "HBVIB_GROUND"),
+    ("hbvib_damper_face", "dofs", "HBVIB_GROUND"),
 ];
 
 /// The generated part of the module.

@@ -11,7 +11,16 @@ const OPTIONS: [(&str, &[&str]); 6] = [
     ("hbvib_solver_options", &[]),
     (
         "hbvib_time_options",
-        &["method", "omega", "harmonics", "samples", "start", "start_len"],
+        &[
+            "method",
+            "omega",
+            "harmonics",
+            "samples",
+            "start",
+            "start_len",
+            "places",
+            "places_len",
+        ],
     ),
     ("hbvib_verify_options", &["method"]),
     ("hbvib_floquet_options", &["waves", "refine"]),
@@ -111,6 +120,12 @@ fn options(all: &Declarations, s: &Struct, hidden: &[&str], defaults: &Defaults)
             (Base::Double, n) => {
                 let numbers: Result<Vec<_>> = (0..n)
                     .map(|i| Ok(format!("{:?}", f64::from_ne_bytes(eight(at(i))?))))
+                    .collect();
+                format!("({})", numbers?.join(", "))
+            }
+            (Base::Int64, n) if n > 1 => {
+                let numbers: Result<Vec<_>> = (0..n)
+                    .map(|i| Ok(i64::from_ne_bytes(eight(at(i))?).to_string()))
                     .collect();
                 format!("({})", numbers?.join(", "))
             }

@@ -4,7 +4,7 @@ use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
 use crate::model_report::ModelReport;
-use crate::{band_curve, campbell, map, motion_files, print, study, tornado};
+use crate::{band_curve, campbell, map, motion_files, print, study, tornado, wheel_response};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -90,6 +90,9 @@ pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     }
     if let Some(part) = &job.band {
         band_curve::check(part, built)?;
+    }
+    if let Some(part) = &job.wheel {
+        wheel_response::check(part, built)?;
     }
     Ok(())
 }

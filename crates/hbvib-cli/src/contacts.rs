@@ -122,6 +122,7 @@ pub fn contacts(
                 velocity: part.velocity,
                 slider: [0.0; 2],
                 dofs: Vec::new(),
+                rigid: None,
             })
         })
         .collect();

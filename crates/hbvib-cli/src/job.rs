@@ -4,7 +4,7 @@ use crate::job_faces::FacesPart;
 use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
-use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart};
+use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart, WheelPart};
 use crate::job_surfaces::SurfacesPart;
 use crate::nearest_name::hint;
 use crate::responses::ResponsePart;
@@ -35,6 +35,7 @@ pub struct Job {
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
     pub band: Option<BandPart>,
+    pub wheel: Option<WheelPart>,
     pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
@@ -481,10 +482,11 @@ impl Job {
             self.map.is_some(),
             self.tornado.is_some(),
             self.band.is_some(),
+            self.wheel.is_some(),
         ];
         if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado] or [band]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band] or [wheel]",
                 path.display()
             ));
         }

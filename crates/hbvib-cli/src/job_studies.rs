@@ -1,4 +1,4 @@
-//! The parts of a job that are computed over a quantity: Campbell diagrams, curves over a parameter, maps, tornados and bands.
+//! The parts of a job that are computed over a quantity: Campbell diagrams, curves over a parameter, maps, tornados, bands and wheels.
 
 use crate::job::DofName;
 use schemars::JsonSchema;
@@ -151,6 +151,45 @@ pub struct BandPart {
     pub response_dof: Option<DofName>,
     /// Starts of the search where several sliders are free.
     pub starts: Option<usize>,
+    pub csv: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+}
+
+/// Quantity that differs between the blades of a wheel.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum MistunedName {
+    #[default]
+    Stiffness,
+    /// Frequencies of the clamped blade.
+    Frequency,
+    Mass,
+    Damping,
+    /// Normal loads of all contacts that have one.
+    Preload,
+    Force,
+}
+
+/// All blades of a mistuned wheel and the largest of them.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WheelPart {
+    #[serde(default)]
+    pub kind: MistunedName,
+    /// Degrees of freedom of the blade of a sector; not for preload and force.
+    #[serde(default)]
+    pub dofs: Vec<DofName>,
+    /// One number a sector: the quantity times 1 + that.
+    pub pattern: Vec<f64>,
+    /// Range of frequency.
+    pub from_hz: f64,
+    pub to_hz: f64,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    /// Degree of freedom of the sector that is watched on each blade.
+    pub response_dof: Option<DofName>,
     pub csv: Option<PathBuf>,
     /// SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,

@@ -83,6 +83,7 @@ mod varied;
 mod verification;
 mod vtu;
 mod vtu_series;
+mod wheel_response;
 
 use arguments::{Arguments, LogForm, Verb};
 use build::Outcome;

@@ -13,7 +13,7 @@ use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
     band_curve, campbell, check, contact_tables, html_report, map, motion_files, output, solutions, study, tornado,
-    verification,
+    verification, wheel_response,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -98,6 +98,10 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut File
     if let Some(part) = job.band.as_ref().filter(|_| end.goes_on(stop)) {
         let outcome = watched(stop, |hooks| band_curve::write(part, built, hooks, files));
         ended(outcome, "band", stop, files, end);
+    }
+    if let Some(part) = job.wheel.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| wheel_response::write(part, built, hooks, files));
+        ended(outcome, "wheel", stop, files, end);
     }
 }
 

@@ -36,3 +36,4 @@ mod verify;
 mod brick;
 #[path = "../../../tests/common/decimal_comma.rs"]
 mod comma_locale;
+mod wheels;

@@ -110,6 +110,7 @@ impl Iwan {
                 dof_a: between.dof_a,
                 dof_b: between.dof_b,
                 frame: between.frame,
+                rigid: between.rigid,
                 sector_offset: between.sector_offset,
                 ..Contact::jenkins(0, None, kt, 1.0, slip)
             };

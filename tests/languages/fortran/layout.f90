@@ -9,6 +9,8 @@ program layout
    call matrix()
    call sector()
    call contact()
+   call damper_face()
+   call damper()
    call force_call()
    call user_force()
    call jacobian_gap()
@@ -38,6 +40,7 @@ program layout
    call parameter()
    call parameter_options()
    call batch_options()
+   call wheel_info()
    call band_options()
    call band_info()
    ! END GENERATED
@@ -115,7 +118,45 @@ contains
       call field('velocity', c_loc(s), c_loc(s%velocity), c_sizeof(s%velocity))
       call field('normal', c_loc(s), c_loc(s%normal), c_sizeof(s%normal))
       call field('tangent', c_loc(s), c_loc(s%tangent), c_sizeof(s%tangent))
+      call field('rotation', c_loc(s), c_loc(s%rotation), c_sizeof(s%rotation))
+      call field('arm', c_loc(s), c_loc(s%arm), c_sizeof(s%arm))
+      call field('turn', c_loc(s), c_loc(s%turn), c_sizeof(s%turn))
    end subroutine contact
+
+   subroutine damper_face()
+      type(hbvib_damper_face), target :: s
+      call whole('hbvib_damper_face', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('dofs', c_loc(s), c_loc(s%dofs), c_sizeof(s%dofs))
+      call field('sector_offset', c_loc(s), c_loc(s%sector_offset), c_sizeof(s%sector_offset))
+      call field('angle', c_loc(s), c_loc(s%angle), c_sizeof(s%angle))
+      call field('turn', c_loc(s), c_loc(s%turn), c_sizeof(s%turn))
+      call field('centre', c_loc(s), c_loc(s%centre), c_sizeof(s%centre))
+      call field('width', c_loc(s), c_loc(s%width), c_sizeof(s%width))
+      call field('points_across', c_loc(s), c_loc(s%points_across), c_sizeof(s%points_across))
+      call field('points_along', c_loc(s), c_loc(s%points_along), c_sizeof(s%points_along))
+      call field('kt', c_loc(s), c_loc(s%kt), c_sizeof(s%kt))
+      call field('kn', c_loc(s), c_loc(s%kn), c_sizeof(s%kn))
+      call field('mu', c_loc(s), c_loc(s%mu), c_sizeof(s%mu))
+      call field('gap', c_loc(s), c_loc(s%gap), c_sizeof(s%gap))
+   end subroutine damper_face
+
+   subroutine damper()
+      type(hbvib_damper), target :: s
+      call whole('hbvib_damper', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('motions', c_loc(s), c_loc(s%motions), c_sizeof(s%motions))
+      call field('mass', c_loc(s), c_loc(s%mass), c_sizeof(s%mass))
+      call field('inertia', c_loc(s), c_loc(s%inertia), c_sizeof(s%inertia))
+      call field('radius', c_loc(s), c_loc(s%radius), c_sizeof(s%radius))
+      call field('length', c_loc(s), c_loc(s%length), c_sizeof(s%length))
+      call field('orbit', c_loc(s), c_loc(s%orbit), c_sizeof(s%orbit))
+      call field('support', c_loc(s), c_loc(s%support), c_sizeof(s%support))
+      call field('support_damping', c_loc(s), c_loc(s%support_damping), c_sizeof(s%support_damping))
+      call field('faces', c_loc(s), c_loc(s%faces), c_sizeof(s%faces))
+      call field('faces_len', c_loc(s), c_loc(s%faces_len), c_sizeof(s%faces_len))
+   end subroutine damper
 
    subroutine force_call()
       type(hbvib_force_call), target :: s
@@ -437,6 +478,8 @@ contains
       call field('max_periods', c_loc(s), c_loc(s%max_periods), c_sizeof(s%max_periods))
       call field('start', c_loc(s), c_loc(s%start), c_sizeof(s%start))
       call field('start_len', c_loc(s), c_loc(s%start_len), c_sizeof(s%start_len))
+      call field('places', c_loc(s), c_loc(s%places), c_sizeof(s%places))
+      call field('places_len', c_loc(s), c_loc(s%places_len), c_sizeof(s%places_len))
    end subroutine time_options
 
    subroutine time_info()
@@ -563,6 +606,18 @@ contains
       call field('responses', c_loc(s), c_loc(s%responses), c_sizeof(s%responses))
       call field('responses_len', c_loc(s), c_loc(s%responses_len), c_sizeof(s%responses_len))
    end subroutine batch_options
+
+   subroutine wheel_info()
+      type(hbvib_wheel_info), target :: s
+      call whole('hbvib_wheel_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('blade', c_loc(s), c_loc(s%blade), c_sizeof(s%blade))
+      call field('largest', c_loc(s), c_loc(s%largest), c_sizeof(s%largest))
+      call field('tuned', c_loc(s), c_loc(s%tuned), c_sizeof(s%tuned))
+      call field('tuned_omega', c_loc(s), c_loc(s%tuned_omega), c_sizeof(s%tuned_omega))
+      call field('amplification', c_loc(s), c_loc(s%amplification), c_sizeof(s%amplification))
+   end subroutine wheel_info
 
    subroutine band_options()
       type(hbvib_band_options), target :: s

@@ -54,7 +54,7 @@ def contact(kind, changed, cyclic=False):
 
 FIELDS = {name for name, _ in hbvib.structs["hbvib_contact"]._fields_}
 check("every field of a contact is examined", FIELDS == {"struct_size", "kind", "dof_a", "dof_b", "sector_offset", "normal", "tangent",
-    *CONSTANTS})
+    "rotation", "arm", "turn", *CONSTANTS})
 for kind, (constants, places) in KINDS.items():
     def run(**changed):
         return contact(kind, changed)
@@ -97,6 +97,17 @@ for kind, (constants, places) in KINDS.items():
     hold(same("of any length"), f"{kind}: length of the tangent", oriented, along, tangent=[2.0, 0.0, 0.0])
     hold(refused("tangent"), f"{kind}: a tangent along the normal", oriented, along, tangent=[0.0, 0.6, 0.8])
     hold(refused("normal"), f"{kind}: no normal", oriented, along, normal=[0.0, 0.0, 0.0])
+    body = {"dof_a": [-1, 1, 2], "rotation": [-1, -1, 0], "arm": [0.5, 0.2, 0.3]}
+    if kind in ("friction_2d", "friction_3d"):
+        turned = outcome(oriented, **body)
+        hold(CHANGES, f"{kind}: rotation", oriented, turned, **{**body, "rotation": [-1, 0, -1]})
+        hold(CHANGES, f"{kind}: arm", oriented, turned, **{**body, "arm": [0.5, 0.3, 0.3]})
+        hold(CHANGES, f"{kind}: turn", lambda **o: oriented(**{**body, "dof_b": [0, -1, -1], "turn": 0.1, **o}),
+             outcome(oriented, **body, dof_b=[0, -1, -1]))
+    hold(refused("rotation"), f"{kind}: a rotation beyond the structure", oriented, along, rotation=[3, -1, -1])
+    hold(refused("named twice"), f"{kind}: a rotation that is a translation", oriented, along, rotation=[0, -1, -1])
+    hold(refused("arm or turn"), f"{kind}: turn = NaN", oriented, along, turn=float("nan"))
+    hold(refused("without directions"), f"{kind}: turn without a normal", run, reference, turn=0.1)
     if kind not in ("unilateral", "friction_3d"):
         hold(CHANGES, f"{kind}: tangent", oriented, along, tangent=[0.5, 0.8, -0.6])
         hold(refused("tangent"), f"{kind}: no tangent", oriented, along, tangent=[0.0, 0.0, 0.0])

@@ -265,6 +265,47 @@ def hooked(**o):
 
 NAN, NONE = float("nan"), None
 crest_of_damper = int(damped.peaks().point[0])
+
+
+def with_damper(changed_face, **changed):
+    """A response with a damper between the platform of a blade and a fixed one."""
+    model = hbvib.Model(mass=np.eye(2), stiffness=[[1.0, -0.1], [-0.1, 1.2]], damping=0.04 * np.eye(2))
+    common = dict(kt=1.0, kn=1.5, points_across=2, points_along=2, width=0.2)
+    faces = [new("hbvib_damper_face", **{**common, "angle": -0.8, "mu": 0.6, "centre": [-0.1, 0.1, 0.0]}),
+             new("hbvib_damper_face", **{**common, "dofs": [0, -1, -1], "angle": 0.8, "mu": 0.15, "centre": [0.1, 0.1, 0.0], **changed_face})]
+    array = (hbvib.structs["hbvib_damper_face"] * 2)(*faces)
+    described = new("hbvib_damper", **{**dict(mass=0.01, inertia=[1e-3] * 3, orbit=100.0, length=0.2, support=[1e-3, 1e-3],
+                                              support_damping=[4e-3, 1e-4]), **changed})
+    described.faces = changed["faces"].ctypes.data if isinstance(changed.get("faces"), np.ndarray) else ctypes.addressof(array)
+    if "faces" in changed and changed["faces"] is None:
+        described.faces = None
+    described.faces_len = changed.get("faces_len", 2)
+    call("hbvib_model_add_damper", model.handle, described, None, None)
+    model.set_speed(1.0)
+    model.add_force(0, 0.1)
+    return of_branch(model.forced_response(1.1, harmonics=3, tolerance=0, response_dof=0))
+
+
+def on_platform(**o):
+    return with_damper(o)
+
+
+def on_line(**o):
+    return with_damper(o, radius=0.15)
+
+
+def in_space(**o):
+    return with_damper(o, motions=6)
+
+
+def wedge(**o):
+    return with_damper({}, **o)
+
+
+def in_space_by_damper(**o):
+    return with_damper({}, **{"motions": 6, **o})
+
+
 of_damper = banded(damper, damped, crest_of_damper)
 
 
@@ -350,6 +391,8 @@ TABLE = {
         "tolerance": [(CHANGES, in_time(plain, method=1), 1e-4), (CHANGES, in_time(folded, 0.5), 1e-6),
                       (refused("tolerance"), in_time(plain), 0.0)],
         "max_periods": [(refused("max_periods"), in_time(plain), 1), (refused("max_periods"), in_time(plain), 0)],
+        "places": [(refused("places"), in_time(plain, places=np.zeros(1), places_len=1), NONE)],
+        "places_len": [(refused("number of contacts"), in_time(plain, places=np.zeros(2), places_len=1), 2)],
         "start": [
             (CHANGES, in_time(folded, 1.15, start=rows(high), start_len=high.size), rows(low)),
             (same("the imaginary part of the mean has no effect"), in_time(folded, 1.15, start=rows(high), start_len=high.size),
@@ -450,6 +493,35 @@ TABLE = {
                          (CHANGES, lambda **o: chosen(**{"contacts": np.array([1]), **o}), 0)],
         "starts": [(same("With one it has no effect"), of_damper, 1), (refused("starts"), of_damper, 0)],
     },
+    "hbvib_damper_face": {
+        "struct_size": [(refused("struct_size"), on_platform, 8)],
+        "reserved": [(refused("reserved"), on_platform, 1)],
+        "dofs": [(CHANGES, on_platform, [1, -1, -1]), (refused("dofs"), on_platform, [9, -1, -1])],
+        "sector_offset": [(refused("sector_offset"), on_platform, 1)],
+        "angle": [(CHANGES, on_platform, 0.6), (refused("angle"), on_platform, NAN)],
+        "turn": [(CHANGES, on_platform, 0.2), (refused("turn"), on_platform, NAN)],
+        "centre": [(CHANGES, on_platform, [0.1, 0.2, 0.0]), (same("without effect on a cylinder"), on_line, [0.1, 0.2, 0.0])],
+        "width": [(CHANGES, on_platform, 0.3), (same("without effect on a cylinder"), on_line, 0.3), (refused("width"), on_platform, NAN)],
+        "points_across": [(CHANGES, on_platform, 3), (same("one on a cylinder"), on_line, 3), (refused("points"), on_platform, 0)],
+        "points_along": [(same("one with 3 motions"), on_platform, 3), (CHANGES, in_space, 3), (refused("points"), in_space, 0)],
+        "kt": [(CHANGES, on_platform, 0.7), (refused("kt"), on_platform, -1.0)],
+        "kn": [(CHANGES, on_platform, 0.9), (refused("kn"), on_platform, 0.0)],
+        "mu": [(CHANGES, on_platform, 0.05), (refused("mu"), on_platform, -1.0)],
+        "gap": [(CHANGES, on_platform, 0.1), (refused("gap"), on_platform, NAN)],
+    },
+    "hbvib_damper": {
+        "struct_size": [(refused("struct_size"), wedge, 8)],
+        "motions": [(CHANGES, wedge, 6), (refused("motions"), wedge, 4)],
+        "mass": [(CHANGES, wedge, 0.02), (refused("mass"), wedge, 0.0)],
+        "inertia": [(CHANGES, wedge, [0.0, 0.0, 0.1]), (refused("inertia"), wedge, [0.0, 0.0, 0.0]), (refused("inertia"), wedge, [-1.0, 1.0, 1.0])],
+        "radius": [(CHANGES, wedge, 0.1), (refused("radius"), wedge, -1.0)],
+        "length": [(CHANGES, in_space_by_damper, 0.4), (refused("length"), wedge, NAN)],
+        "orbit": [(CHANGES, wedge, 30.0), (refused("orbit"), wedge, NAN)],
+        "support": [(CHANGES, wedge, [2e-3, 0.0]), (refused("support"), wedge, [-1.0, 0.0])],
+        "support_damping": [(CHANGES, wedge, [5e-3, 0.0]), (refused("support_damping"), wedge, [0.0, NAN])],
+        "faces": [(refused("faces"), wedge, NONE)],
+        "faces_len": [(refused("faces_len"), wedge, -1), (refused("without faces"), wedge, 0)],
+    },
     "hbvib_hooks": {
         "struct_size": [(refused("struct_size"), hooked, 8)],
         "log_level": [(CHANGES, hooked, int(hbvib.LogLevel.WARN)), (CHANGES, hooked, 0), (refused("log_level"), hooked, 9)],
@@ -492,7 +564,7 @@ ELSEWHERE = {"hbvib_solver_options", "hbvib_contact", "hbvib_matrix", "hbvib_use
 FILLED = {
     "hbvib_force_call", "hbvib_jacobian_gap", "hbvib_progress", "hbvib_phase_report", "hbvib_view", "hbvib_reduction", "hbvib_energy",
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
-    "hbvib_band_info",
+    "hbvib_band_info", "hbvib_wheel_info",
     "hbvib_descent", "hbvib_searched", "hbvib_kick",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED

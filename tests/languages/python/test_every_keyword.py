@@ -81,6 +81,7 @@ SETTERS = {
     "add_stiffness_tensors": setter(dict(dofs=[0], quadratic=[[[0.1]]], cubic=[[[[0.2]]]]),
                                     dict(dofs=[1], quadratic=[[[0.3]]], cubic=[[[[0.4]]]]),
                                     dict(dofs=([9], "dofs"), quadratic=([[[NAN]]], "quadratic"), cubic=([[[[INF]]]], "cubic"))),
+    "add_centrifugal": setter(dict(dof=0, mass_radius=0.5), dict(dof=1, mass_radius=0.6), dict(dof=(9, "dof"), mass_radius=(NAN, "NaN"))),
     "set_preload": setter(dict(contact=0, preload=2.0, per_speed2=0.1), dict(preload=3.0, per_speed2=0.2),
                           dict(contact=(1, "id"), preload=(NAN, "preload"), per_speed2=(NAN, "per_speed2")), jenkins),
     "set_slider": setter(dict(contact=0, place=0.2, direction=0), dict(place=0.3, contact=1, direction=1),
@@ -131,6 +132,7 @@ damper.add_force(2, 1, harmonic=0)
 damper.add_force(0, 0.02)
 damped, free_damped = (damper.forced_response(omega, harmonics=3) for omega in ((1.23, 1.27), (1.235, 1.265)))
 top = int(damped.peaks().point[0])
+swinging = damper.nonlinear_mode((-0.6, -0.5), harmonics=5, tolerance=0)
 
 spring = hbvib.Model(mass=1, stiffness=1, damping=0.1)
 spring.add_spring_damper(0, spring=[0, 0, 0.1])
@@ -231,6 +233,11 @@ ANALYSES = {
     "band_curve": (*analysis(lambda **o: np.array(damper.band_curve(**o)[:3]), branch=damped, points=[0], contacts=[0], starts=1), {
         "branch": [(CHANGES, free_damped), (refused("model"), branch)], "points": [(CHANGES, [1]), (refused("point"), [-1])],
         "contacts": [(CHANGES, [1]), (refused("contacts"), [2])], "starts": [(refused("starts"), 0)]}),
+    "mode_band": (*analysis(lambda **o: np.array([damper.mode_band(**o).lower.value]), branch=swinging, point=0, of="damping", contacts=[0],
+                            diameter=None), {
+        "branch": [(refused("nonlinear mode"), damped)], "point": [(refused("point"), -1)],
+        "of": [(CHANGES, "omega"), (refused("omega"), "mean")], "contacts": [(CHANGES, [1]), (refused("contacts"), [2])],
+        "diameter": [(refused("diameter"), 3)]}),
     "static_history": (*analysis(lambda **o: pressed.static_history(**o).forces, factors=[1.0, 1.0], speeds=[1.0, 0.5]), {
         "factors": [(CHANGES, [1.0, 0.5]), (refused("factors"), [NAN, 1.0])],
         "speeds": [(CHANGES, [1.0, 0.7]), (refused("speeds"), [NAN, 1.0])]}),
@@ -270,11 +277,11 @@ for name, (structs, others) in OF_STRUCTS.items():
     arguments = set(inspect.signature(method).parameters) - {"self"} - HOOKS - set(others.split())
     check(f"{name}: every argument is a field", arguments <= fields, arguments - fields)
 
-# Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and mistune of
-# test_wheels.py.
+# Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and wheels of
+# test_wheels.py, add_damper, whose arguments are fields of test_every_field.py.
 PLAIN = {
-    "add_contact", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic", "free", "from_bytes", "load",
-    "matrix", "mistune", "save", "to_bytes", "wheel",
+    "add_contact", "add_damper", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic",
+    "free", "from_bytes", "load", "matrix", "mistune", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
     "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
     "limit_cycles",
     "mode_point", "point",

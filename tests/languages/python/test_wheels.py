@@ -36,4 +36,73 @@ raises("a plain model", hbvib.Error, tuned.wheel)
 x = tuned.forced_response(0.9, harmonics=3, tolerance=0).harmonics(0)[1]
 wave = sector.forced_response(0.9, harmonics=3, tolerance=0).harmonics(0)[1]
 close("the wave", x[:2], wave, 1e-12)
-finish(11)
+# Peaks of all blades: those of the response of the wheel itself; the tuned wheel has equal ones.
+span, options = (0.5, 1.0), dict(harmonics=3, tolerance=0)
+peaks = tuned.wheel_peaks(sector, span, 0, **options)
+close("equal blades", peaks.amplitude, np.full(N, peaks.tuned), 1e-9)
+close("no amplification", peaks.amplification, 1.0, 1e-9)
+wheel = mistuned("stiffness", delta, dofs=[0])
+peaks = wheel.wheel_peaks(sector, span, 0, **options)
+branch = wheel.forced_response(span, responses=[2 * s for s in range(N)], **options)
+close("peaks", peaks.amplitude, [one.peaks().amplitude.max() for one in branch.responses], 1e-10)
+check("largest", peaks.blade == np.argmax(peaks.amplitude) and peaks.amplification > 1)
+omega, largest = peaks.envelope()
+check("envelope", (largest >= peaks.branch.responses[3].amplitude).all() and len(omega) == len(largest))
+sure = wheel.wheel_peaks(sector, span, hbvib.Response(0, "peak"), tolerance=1e-2)
+check("each blade has its error", bool((sure.error < 1e-2).all()), sure.error)
+raises("another wheel", ValueError, sector.wheel_peaks, sector, span, 0)
+
+# A study of many wheels has the same peaks, on any number of threads; its order and quantiles.
+patterns = 0.02 * np.random.default_rng(5).standard_normal((12, N))
+patterns[0] = delta
+for kind in ("stiffness", "frequency", "mass", "damping"):
+    study = sector.wheel_study(span, patterns[:3], kind=kind, dofs=[0], **options)
+    one = mistuned(kind, patterns[2], dofs=[0]).wheel_peaks(sector, span, 0, **options)
+    close(f"{kind}: the last wheel", study.largest[2], one.amplitude[one.blade], 1e-9)
+    check(f"{kind}: its blade", study.blade[2] == one.blade)
+first, second = (sector.wheel_study(span, patterns, dofs=[0], threads=threads, **options) for threads in (1, 2))
+check("threads change no bit", first.largest.tobytes() == second.largest.tobytes() and first.omega.tobytes() == second.omega.tobytes())
+check("the tuned wheel foretells", first.correlation > 0.9, first.correlation)
+moved = sector.wheel_study(span, np.roll(patterns, 2, axis=1), dofs=[0], **options)
+close("shifted patterns", moved.largest, first.largest, 1e-9)
+check("shift their blade", ((moved.blade - first.blade) % N == 2).all())
+
+# Quantiles: the interval of the median of 100 values by the binomial distribution, P(39 < X <= 60); a bound that too few wheels have.
+hundred = hbvib.WheelStudy(np.arange(1, 101), np.zeros(100), np.zeros(100), np.zeros(100), 1.0, np.zeros(100))
+check("interval of a median", hundred.quantile(0.5)[1:] == (40.0, 61.0), hundred.quantile(0.5))
+check("no bound of a far quantile", hundred.quantile(0.999).upper == np.inf)
+raises("no probability", ValueError, hundred.quantile, 1.0)
+inside = 0
+generator = np.random.default_rng(11)
+for _ in range(400):
+    sample = hbvib.WheelStudy(generator.random(60), *np.zeros((3, 60)), 1.0, np.zeros(60))
+    found = sample.quantile(0.8, 0.9)
+    inside += found.lower <= 0.8 <= found.upper
+check("the interval has its confidence", 0.87 * 400 <= inside, inside)
+law = hbvib.WheelWeibull(1.4, 0.3, 2.5)
+drawn = hbvib.WheelStudy([law.quantile(u) for u in (np.arange(4000) + 0.5) / 4000], *np.zeros((3, 4000)), 1.0, np.zeros(4000))
+close("a Weibull distribution is found again", drawn.weibull(), law, 0.02)
+
+# The worst pattern: all starts end at it, no other corner of the box near it is worse, and its gradient is that of differences.
+worst = sector.worst_pattern(span, 0.02, dofs=[0], starts=3, **options)
+close("starts agree", worst.found, np.full(3, worst.amplitude), 1e-6)
+check("stationary", worst.kkt < 1e-6, worst.kkt)
+
+
+def of_blade_0(pattern):
+    return mistuned("stiffness", pattern, dofs=[0]).wheel_peaks(sector, span, 0, **options).amplitude[0]
+
+
+close("its peak", of_blade_0(worst.pattern), worst.amplitude, 1e-9)
+for s in range(N):
+    turned = worst.pattern.copy()
+    turned[s] *= 0.9
+    check("no neighbour is worse", of_blade_0(turned) <= worst.amplitude * (1 + 1e-9))
+    step = np.eye(N)[s] * 1e-5
+    slope = (of_blade_0(worst.pattern + step) - of_blade_0(worst.pattern - step)) / 2e-5
+    check("gradient", abs(slope - worst.gradient[s]) < 1e-5 * abs(worst.gradient).max(), (slope, worst.gradient[s]))
+check("random wheels are better", first.largest.max() < worst.amplitude * 1.5 and worst.amplification > 1)
+raises("no box", ValueError, sector.worst_pattern, span, 0.0)
+raises("a kind without direction", ValueError, lambda: sector.wheel_study(span, patterns, kind="force"))
+
+finish(40)

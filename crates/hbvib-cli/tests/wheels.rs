@@ -1,0 +1,62 @@
+//! A job with `[wheel]`: the largest blade is that of another harmonic balance, and what cannot be computed is refused with the place in
+//! the job.
+
+use std::fs;
+
+/// Pattern of 24 sectors whose largest blade is number 3.
+const PATTERN: &str = "[0.001887, -0.006683, -0.005363, -0.029783, 0.021278, 0.013386, -0.004307, 0.008927, 0.002996, -0.007057, \
+    0.01138, -0.004128, -0.004348, -0.009926, 0.005088, -0.001584, 0.006175, -0.0077, 0.001137, -0.011132, 0.009741, 0.001874, 0.00359, \
+    0.004553]";
+
+/// The job of the example with a ring damper under a force of 1 N, with another analysis.
+fn run(name: &str, part: &str) -> (std::process::Output, std::path::PathBuf) {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/jobs/ring_damper/");
+    let text = fs::read_to_string(format!("{example}job.toml")).unwrap();
+    let (model, _) = text.split_once("[forced]").unwrap();
+    let mut job = model.replace("value = 5.0", "value = 1.0");
+    for matrix in ["stiffness", "mass", "coupling"] {
+        job = job.replace(&format!("\"{matrix}.mtx\""), &format!("'{example}{matrix}.mtx'"));
+    }
+    crate::common::hbvib("run", ("wheels", name), &(job + part))
+}
+
+#[test]
+fn a_wheel_has_its_largest_blade_and_amplification() {
+    let part = format!(
+        "[wheel]\ndofs = [0]\npattern = {PATTERN}\nfrom_hz = 209.0\nto_hz = 211.0\nharmonics = 3\nresponse_dof = 0\ncsv = 'wheel.csv'\n\
+         figure = 'wheel.svg'\n"
+    );
+    let (output, folder) = run("largest", &part);
+    let (text, errors) = (
+        crate::common::printed(&output.stdout),
+        crate::common::printed(&output.stderr),
+    );
+    assert!(output.status.success(), "{text}{errors}");
+    assert!(text.contains("wheel of 24 blades: blade 3 is the largest"), "{text}");
+    assert!(text.contains("amplification 1.0932"), "{text}");
+    let csv = fs::read_to_string(folder.join("wheel.csv")).unwrap();
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("blade,hz,amplitude,error,amplification"));
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 24);
+    assert!((rows[3][2] / 8.280_100_222_407_677e-4 - 1.0).abs() < 1e-9);
+    assert!(rows.iter().all(|row| row[2] <= rows[3][2]));
+    let figure = fs::read_to_string(folder.join("wheel.svg")).unwrap();
+    assert!(figure.contains("<polyline") && figure.contains("blades of the wheel"));
+}
+
+#[test]
+fn a_wheel_that_cannot_be_made_is_refused_by_its_part() {
+    for (name, keys, words) in [
+        ("length", "dofs = [0]\npattern = [0.1]", "[wheel]"),
+        ("dofs", &format!("dofs = [9]\npattern = {PATTERN}"), "9"),
+        ("kind", "kind = 'colour'\npattern = [0.1]", "colour"),
+    ] {
+        let (output, _) = run(name, &format!("[wheel]\n{keys}\nfrom_hz = 209.0\nto_hz = 211.0\n"));
+        assert!(!output.status.success());
+        let errors = crate::common::printed(&output.stderr);
+        assert!(errors.contains(words), "{errors}");
+    }
+}

@@ -1,0 +1,237 @@
+"""Studies of mistuned wheels: peaks of all blades, distributions over random patterns, the worst pattern in a box."""
+from __future__ import annotations
+
+import ctypes
+import importlib
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union, cast
+
+import numpy as np
+
+from ._analyses import _solver_options
+from ._branch import Branch
+from ._c import LogLevel, Status
+from ._calls import _call, _Guard, _hooks, _Owner
+from ._convert import _array, _range
+from ._errors import ArgumentError, _sentence
+from ._responses import Response, structures
+from ._sensitivity import Parameter
+from ._structs import _new, _with_options
+from ._types import SolverOptions
+from ._wheel_results import WheelPeaks, WheelStudy, WorstPattern
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
+    from ._calls import CancelFlag, Hook
+    from ._choices import Mistunings
+    from ._model import Model
+    from ._results import FloatArray
+
+
+#: A blade as a degree of freedom of a sector, or a Response.
+Blade = Union[int, Response]
+
+
+class _WheelStudies(_Owner):
+    """Methods of Model for studies of mistuned wheels."""
+
+    @_with_options("hbvib_solver_options", SolverOptions)
+    def wheel_peaks(self, sector: Model, omega: ArrayLike, blade: Blade = 0, *, progress: Any = None, phase: Hook = None,
+                    cancel: Optional[CancelFlag] = None, **solver: Unpack[SolverOptions]) -> WheelPeaks:
+        """The highest peak of each blade of this wheel, which `sector.wheel()` made, and the amplification against the tuned
+        one. All blades are watched, so that a tolerance holds for each.
+
+        omega      (start, stop) of the response.
+        blade      what is watched of each sector: a degree of freedom of the sector, or a Response.
+        progress, phase, cancel   as in forced_response. Options of the solver; harmonics without tolerance means
+        tolerance = 0:
+
+        {options}
+
+        >>> import hbvib
+        >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
+        ...                             damping=0.05)
+        >>> sector.add_force(0, 0.1)
+        >>> wheel = sector.wheel()
+        >>> wheel.mistune(sector, "mass", [0.02, -0.01, 0.01, 0, -0.02, 0.01, 0, -0.01], dofs=[0])
+        >>> wheel.wheel_peaks(sector, (1.4, 2.0), harmonics=1).amplification > 1.05
+        True
+        """
+        start, stop = _range("omega", omega, "wheel_peaks(sector, (0.8, 1.6))")
+        chosen = _solver_options("wheel_peaks", solver)
+        array, kept = structures([_blade(blade)])
+        sectors = sector.sectors
+        amplitude, frequency, error = np.empty((3, sectors))
+        count, info, handle = ctypes.c_int64(), _new("hbvib_wheel_info"), ctypes.c_void_p()
+        with _Guard() as guard:
+            hooks = _hooks(guard, progress, None, LogLevel.INFO, cancel, phase)
+            status = _call("hbvib_wheel_peaks", self.handle, sector.handle, array, chosen, start, stop, hooks, sectors, amplitude,
+                           frequency, error, count, info, handle, guard=guard)
+        assert handle.value is not None and kept
+        n = sector.ndof
+        branch = Branch(handle.value, tuple(self._kept), _sentence(int(status)) if status else "")
+        branch._responses = tuple(_of_sector(_blade(blade), s * n) for s in range(sectors))
+        return WheelPeaks(amplitude, frequency, error, info.blade, info.tuned, info.amplification, branch)
+
+    @_with_options("hbvib_solver_options", SolverOptions)
+    def wheel_study(self, omega: ArrayLike, patterns: ArrayLike, *, kind: Mistunings = "stiffness",
+                    dofs: Optional[ArrayLike] = None, direction: Any = None, blade: Blade = 0, threads: int = 1,
+                    progress: Any = None, phase: Hook = None, cancel: Optional[CancelFlag] = None,
+                    **solver: Unpack[SolverOptions]) -> WheelStudy:
+        """The largest blade of each of many wheels of this sector.
+
+        omega      (start, stop) of each response.
+        patterns   wheels x sectors: delta of each sector of each wheel, as `mistune` takes it.
+        kind       "stiffness", "frequency", "mass" or "damping", of `dofs` or by `direction`, as in `mistune`.
+        blade      what is watched of each sector: a degree of freedom of the sector, or a Response.
+        threads    of this call; their number changes no bit of a result.
+        progress, phase, cancel   as in `batch`. Options of the solver; harmonics without tolerance means tolerance = 0:
+
+        {options}
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
+        ...                             damping=0.05)
+        >>> sector.add_force(0, 0.1)
+        >>> patterns = 0.01 * np.random.default_rng(1).standard_normal((20, 8))
+        >>> study = sector.wheel_study((1.4, 2.0), patterns, kind="mass", dofs=[0], harmonics=1)
+        >>> bool(study.largest.max() > study.tuned), study.quantile(0.5).value > 1
+        (True, True)
+        """
+        sector = cast("Model", self)
+        given = _array("patterns", patterns, np.float64, (None, sector.sectors))
+        wheel, parameters, transform = self._directions(kind, dofs, direction)
+        watched = [_of_sector(_blade(blade), s * sector.ndof) for s in range(sector.sectors)]
+        found = wheel.batch(omega, parameters, transform(given), threads=threads, responses=watched, progress=progress, phase=phase,
+                            cancel=cancel, **solver)
+        of_blades = np.array([peaks.amplitude for peaks in found.responses])
+        at = np.array([peaks.omega for peaks in found.responses])
+        largest = np.where(np.isfinite(of_blades), of_blades, -np.inf).argmax(axis=0)
+        each = np.arange(len(given))
+        tuned, gradient, _, _ = self._peak_of_blade(wheel, parameters, watched[0], omega, solver)
+        # Blade s of a pattern is blade 0 of the pattern that is shifted by s.
+        shifted = np.stack([np.roll(gradient, s) for s in range(sector.sectors)])
+        predicted = tuned + (transform(given) @ shifted.T).max(axis=1)
+        return WheelStudy(of_blades[largest, each], largest, at[largest, each], found.status, tuned, predicted)
+
+    @_with_options("hbvib_solver_options", SolverOptions)
+    def worst_pattern(self, omega: ArrayLike, box: float, *, kind: Mistunings = "stiffness", dofs: Optional[ArrayLike] = None,
+                      direction: Any = None, blade: Blade = 0, starts: int = 3, seed: int = 0,
+                      **solver: Unpack[SolverOptions]) -> WorstPattern:
+        """The pattern within -box .. box whose peak of blade 0 is the highest that ascents by exact derivatives find; by the
+        symmetry of the wheel the same pattern shifted is as bad for the other blades. A step goes to the bounds along the
+        signs of the derivatives; it ends where no derivative points into the box (Karush, Kuhn and Tucker).
+
+        omega      (start, stop) of each response.
+        kind, dofs, direction, blade   as in wheel_study.
+        starts     random patterns within the box, from the seed; the best end is returned. Options of the solver; harmonics
+                   without tolerance means tolerance = 0:
+
+        {options}
+
+        >>> import hbvib
+        >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
+        ...                             damping=0.05)
+        >>> sector.add_force(0, 0.1)
+        >>> worst = sector.worst_pattern((1.4, 2.0), 0.02, kind="mass", dofs=[0], starts=2, harmonics=1)
+        >>> worst.kkt < 1e-6, worst.amplification < worst.whitehead
+        (True, True)
+        """
+        sector = cast("Model", self)
+        if not (np.isfinite(box) and box > 0):
+            raise ValueError(f"box = {box}, needs a number above 0")
+        if starts < 1:
+            raise ValueError(f"starts = {starts}, needs at least 1")
+        wheel, parameters, transform = self._directions(kind, dofs, direction)
+        watched = _of_sector(_blade(blade), 0)
+        tuned = self._peak_of_blade(wheel, parameters, watched, omega, solver)[0]
+        random, sweeps, ends = np.random.default_rng(seed), 1, []
+
+        def at(pattern: FloatArray) -> tuple[float, FloatArray, float]:
+            nonlocal sweeps
+            sweeps += 1
+            other = sector.wheel()
+            other.mistune(sector, kind, pattern, dofs=dofs, direction=direction)
+            amplitude, gradient, frequency, _ = self._peak_of_blade(other, parameters, watched, omega, solver)
+            # By delta instead of the factor on the direction.
+            slope = (transform(pattern + 1e-6) - transform(pattern - 1e-6)) / 2e-6
+            return amplitude, gradient * slope, frequency
+
+        for _ in range(starts):
+            pattern = random.uniform(-box, box, sector.sectors)
+            value, gradient, frequency = at(pattern)
+            radius = box
+            while radius > 1e-9 * box:
+                gain = _foretold(pattern, gradient, box)
+                if gain <= 1e-9 * value:
+                    break
+                trial = np.clip(pattern + radius * np.sign(gradient), -box, box)
+                found = at(trial)
+                if found[0] > value:
+                    pattern, (value, gradient, frequency) = trial, found
+                    radius = min(1.5 * radius, 2 * box)
+                else:
+                    radius /= 3
+            ends.append((value, pattern, gradient, frequency))
+        value, pattern, gradient, frequency = max(ends, key=lambda end: end[0])
+        whitehead = (1 + np.sqrt(sector.sectors)) / 2
+        return WorstPattern(pattern, value, frequency, gradient, _foretold(pattern, gradient, box) / value, value / tuned,
+                            float(whitehead), np.array([end[0] for end in ends]), sweeps)
+
+    def _directions(self, kind: Mistunings, dofs: Optional[ArrayLike], direction: Any) -> Any:
+        """The tuned wheel, one parameter a sector, and the values of the parameters for a pattern."""
+        sector = cast("Model", self)
+        names = {"stiffness": "stiffness", "frequency": "stiffness", "mass": "mass", "damping": "damping"}
+        if kind not in names:
+            raise ArgumentError(f"kind = {kind!r}, needs stiffness, frequency, mass or damping", Status.E_ARGUMENT, 3)
+        name = names[cast(str, kind)]
+        wheel, parameters = sector.wheel(), []
+        before = wheel.matrix(cast(Any, name))
+        for s in range(sector.sectors):
+            pattern = np.zeros(sector.sectors)
+            pattern[s] = 1.0
+            one = sector.wheel()
+            one.mistune(sector, cast(Any, name), pattern, dofs=dofs, direction=direction)
+            parameters.append(Parameter(cast(Any, name), direction=_difference(one.matrix(cast(Any, name)), before)))
+        return wheel, parameters, (lambda x: (1 + x) ** 2 - 1) if kind == "frequency" else (lambda x: x)
+
+    def _peak_of_blade(self, wheel: Model, parameters: Sequence[Parameter], watched: Response, omega: ArrayLike,
+                       solver: Any) -> tuple[float, FloatArray, float, Branch]:
+        """Highest peak of a blade of a wheel, its derivatives by the parameters and its frequency."""
+        branch = wheel.forced_response(omega, responses=[watched], **solver)
+        peaks = branch.responses[0].peaks()
+        if len(peaks.point) == 0:
+            raise ArgumentError("no peak of the watched blade lies within omega", Status.E_ARGUMENT, 2)
+        best = int(np.argmax(peaks.amplitude))
+        point = int(peaks.point[best])
+        gradient = wheel.sensitivity(branch, point, parameters, response=0)
+        return float(peaks.amplitude[best]), np.array(gradient), float(peaks.omega[best]), branch
+
+
+def _difference(changed: Any, before: Any) -> Any:
+    """The difference of two matrices, sparse where scipy is there."""
+    found = np.asarray(changed) - np.asarray(before)
+    try:
+        sparse: Any = importlib.import_module("scipy.sparse")
+    except ImportError:
+        return found
+    return sparse.csc_matrix(found)
+
+
+def _foretold(pattern: FloatArray, gradient: FloatArray, box: float) -> float:
+    """Gain that the gradient foretells within the box."""
+    return float(np.sum(np.where(gradient > 0, gradient * (box - pattern), -gradient * (box + pattern))))
+
+
+def _blade(blade: Blade) -> Response:
+    return blade if isinstance(blade, Response) else Response(blade)
+
+
+def _of_sector(blade: Response, first: int) -> Response:
+    """The response of a sector whose degrees of freedom begin at a number."""
+    if blade.dofs is None or blade.sector != 0:
+        raise ValueError("blade needs dofs of a sector, and sector 0")
+    return Response(blade.dofs + first, cast(Any, blade.measure), weights=blade.weights, harmonic=blade.harmonic,
+                    component=cast(Any, blade.component))

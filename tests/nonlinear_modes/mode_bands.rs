@@ -1,0 +1,161 @@
+//! The band of damping ratio and frequency of a nonlinear mode at an amplitude: a wedge damper, whose contact with the platform sticks.
+//! Its least damping is that of the linear structure with stuck contacts, from its eigenvalues; no state that is placed lies outside.
+
+use crate::common::harmonics;
+use hbvib::{
+    Contact, ContactKind, Frame, Hooks, LinearContacts, MatrixKind, MatrixView, ModeBandOf, ModeOptions, Model,
+    SolverOptions, damped_modes, mode_band, nonlinear_mode,
+};
+use num_complex::Complex64;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// The wedge damper, its contact with the platform as equal parts.
+fn wedge(parts: usize) -> Model {
+    let mut model = Model::new(3).unwrap();
+    for (which, blade, damper) in [
+        (MatrixKind::Mass, 1.0, 0.01),
+        (MatrixKind::Damping, 0.04, 0.004),
+        (MatrixKind::Stiffness, 1.0, 1e-3),
+    ] {
+        let full = [blade, 0.0, 0.0, 0.0, damper, 0.0, 0.0, 0.0, damper];
+        model.set_matrix(which, &MatrixView::dense(3, &full)).unwrap();
+    }
+    let r = FRAC_1_SQRT_2;
+    let face = |normal, tangent, blade, mu, share| Contact {
+        kind: ContactKind::Friction2d,
+        dof_a: [Some(1), Some(2), None],
+        dof_b: [blade, None, None],
+        frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
+        kn: 1.5 * share,
+        ..Contact::jenkins(0, None, share, mu, 0.0)
+    };
+    model
+        .add_contact(&face([-r, -r, 0.0], [-r, r, 0.0], Some(0), 0.15, 1.0))
+        .unwrap();
+    for _ in 0..parts {
+        let share = 1.0 / parts as f64;
+        model
+            .add_contact(&face([r, -r, 0.0], [r, r, 0.0], None, 0.6, share))
+            .unwrap();
+    }
+    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
+    model
+}
+
+fn range(amplitude: f64) -> ModeOptions<'static> {
+    ModeOptions {
+        log10_start: amplitude.log10(),
+        log10_stop: amplitude.log10() + 0.05,
+        ..ModeOptions::default()
+    }
+}
+
+/// Frequency and damping ratio of the mode at an amplitude with sliders at places.
+fn placed(model: &Model, sliders: &[(usize, usize)], places: &[f64], amplitude: f64) -> [f64; 2] {
+    let mut model = model.try_clone().unwrap();
+    for (slider, place) in sliders.iter().zip(places) {
+        model.set_slider(slider.0, slider.1, *place).unwrap();
+    }
+    let solver = SolverOptions {
+        max_points: 1,
+        ..harmonics(7)
+    };
+    let branch = nonlinear_mode(&model, &solver, &range(amplitude), &mut Hooks::default()).unwrap();
+    [branch.omega()[0], branch.mode_at(0).unwrap().damping_ratio]
+}
+
+#[test]
+fn the_damping_of_a_mode_reaches_from_the_stuck_structure_to_much_slip() {
+    let amplitude = 0.3;
+    let model = wedge(1);
+    let mode = nonlinear_mode(&model, &harmonics(7), &range(amplitude), &mut Hooks::default()).unwrap();
+    let found = [ModeBandOf::Damping, ModeBandOf::Omega].map(|of| {
+        let hooks = &mut Hooks::default();
+        mode_band(&model, &mode, 0, (of, &[]), &harmonics(7), &range(amplitude), hooks).unwrap()
+    });
+    let [damping, omega] = &found;
+    println!("{:?} {:?}, {} solved", damping.lower, damping.upper, damping.solved);
+    assert!(found.iter().all(|band| band.is_complete && band.sliders == [(1, 0)]));
+    let stuck = damped_modes(&model, 0, LinearContacts::Static, 3, &mut Hooks::default()).unwrap();
+    let mut eigenvalues = stuck.eigenvalue.iter();
+    let linear = eigenvalues
+        .find(|z| (z.norm() / damping.lower.omega - 1.0).abs() < 0.01)
+        .unwrap();
+    assert!((damping.lower.damping_ratio / (-linear.re / linear.norm()) - 1.0).abs() < 1e-3);
+    assert!(
+        damping.upper.damping_ratio > 2.5 * damping.lower.damping_ratio && omega.upper.omega > 1.03 * omega.lower.omega
+    );
+    for i in 0..40 {
+        let place = 0.05 * f64::from(i) - 0.2;
+        let [frequency, ratio] = placed(&model, &damping.sliders, &[place], amplitude);
+        assert!(
+            ratio > damping.lower.damping_ratio - 1e-9 && ratio < damping.upper.damping_ratio + 1e-9,
+            "{place}"
+        );
+        assert!(
+            frequency > omega.lower.omega - 1e-9 && frequency < omega.upper.omega + 1e-9,
+            "{place}"
+        );
+    }
+    for end in [&damping.lower, &damping.upper, &omega.lower, &omega.upper] {
+        let [frequency, ratio] = placed(&model, &damping.sliders, &end.places, amplitude);
+        assert!((frequency - end.omega).abs() < 1e-10 && (ratio - end.damping_ratio).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn two_contacts_that_share_a_face_have_the_band_of_the_mode_with_one() {
+    let amplitude = 0.3;
+    let ends = [1, 2].map(|parts| {
+        let model = wedge(parts);
+        let mode = nonlinear_mode(&model, &harmonics(7), &range(amplitude), &mut Hooks::default()).unwrap();
+        let hooks = &mut Hooks::default();
+        let options = range(amplitude);
+        let found = mode_band(
+            &model,
+            &mode,
+            0,
+            (ModeBandOf::Damping, &[]),
+            &harmonics(7),
+            &options,
+            hooks,
+        )
+        .unwrap();
+        assert_eq!(found.sliders.len(), parts);
+        println!("{} solved", found.solved);
+        [found.lower.damping_ratio, found.upper.damping_ratio]
+    });
+    assert!((ends[0][0] / ends[1][0] - 1.0).abs() < 1e-6 && (ends[0][1] / ends[1][1] - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_mode_without_a_slider_that_sticks_has_no_band() {
+    let mut model = Model::new(1).unwrap();
+    for (which, value) in [
+        (MatrixKind::Mass, 1.0),
+        (MatrixKind::Damping, 0.02),
+        (MatrixKind::Stiffness, 1.0),
+    ] {
+        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
+    let mode = nonlinear_mode(&model, &harmonics(3), &range(2.0), &mut Hooks::default()).unwrap();
+    let of = |point, contacts: &[usize]| {
+        let hooks = &mut Hooks::default();
+        mode_band(
+            &model,
+            &mode,
+            point,
+            (ModeBandOf::Damping, contacts),
+            &harmonics(3),
+            &range(2.0),
+            hooks,
+        )
+    };
+    let found = of(0, &[]).unwrap();
+    assert!(found.sliders.is_empty() && found.solved == 0);
+    let own = mode.mode_at(0).unwrap().damping_ratio;
+    assert_eq!(found.lower.damping_ratio.to_bits(), own.to_bits());
+    assert!(of(99, &[]).unwrap_err().to_string().contains("point = 99"));
+    assert!(of(0, &[1]).unwrap_err().to_string().contains("contacts has 1"));
+}
