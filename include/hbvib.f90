@@ -2353,17 +2353,17 @@ contains
          do i = 1, 3
             write (name, '(a, i0, a)') merge('dof_a(', 'dof_b(', side == 1), i, ')'
             if (side == 1) then
-               call to_zero(status, name, contact%dof_a(i), ndof, zero, HBVIB_GROUND)
+               call to_zero(status, trim(name), contact%dof_a(i), ndof, zero, HBVIB_GROUND)
                if (status == HBVIB_OK) contact%dof_a(i) = zero
             else
-               call to_zero(status, name, contact%dof_b(i), ndof, zero, HBVIB_GROUND)
+               call to_zero(status, trim(name), contact%dof_b(i), ndof, zero, HBVIB_GROUND)
                if (status == HBVIB_OK) contact%dof_b(i) = zero
             end if
          end do
       end do
       do i = 1, 3
          write (name, '(a, i0, a)') 'rotation(', i, ')'
-         call to_zero(status, name, contact%rotation(i), ndof, zero, HBVIB_GROUND)
+         call to_zero(status, trim(name), contact%rotation(i), ndof, zero, HBVIB_GROUND)
          if (status == HBVIB_OK) contact%rotation(i) = zero
       end do
    end subroutine struct_dofs
