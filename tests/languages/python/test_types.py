@@ -46,7 +46,8 @@ for title, name in STRUCTS.items():
             shown = inspect.signature(function).parameters[field].default
             check(f"{function.__name__} shows it for {field}", shown == default, shown)
             check(f"{function.__name__} explains {field}", re.search(rf"\b{field}   ", function.__doc__) is not None)
-    hidden = {"struct_size", "reserved", "kind", "dof_a", "dof_b", "method", "omega", "harmonics", "start", "start_len"}
+    # Arrays that results give, and what the arguments of calls tell.
+    hidden = {"struct_size", "reserved", "kind", "dof_a", "dof_b", "method", "omega", "harmonics", "start", "start_len", "places", "places_len"}
     fields = {field for field, _ in struct._fields_} - hidden - {"samples", "waves", "refine"}
     check(f"{title} has the fields of its struct", fields <= set(kind.__annotations__), fields)
 
