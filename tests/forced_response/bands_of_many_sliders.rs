@@ -126,7 +126,7 @@ fn no_random_residual_state_lies_outside_the_band() {
 }
 
 #[test]
-#[ignore = "twenty nodes, of which half stick"]
+#[ignore = "seconds: twenty nodes, of which half stick; tests/deep.sh runs it"]
 fn no_random_residual_state_of_twenty_nodes_lies_outside_the_band() {
     outside_of(20, (16, 10), 0.05);
 }
