@@ -1,6 +1,7 @@
 """The branch: how it is freed, saved and drawn. Its other methods are in the modules of its bases."""
 from __future__ import annotations
 
+import threading
 import weakref
 from typing import TYPE_CHECKING, Any, Callable, Optional
 
@@ -42,6 +43,7 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren):
         self._handle, self._kept, self.message = handle, kept, message
         self._leases: Any = weakref.WeakSet()
         self._living: Any = weakref.WeakSet()  # children that the caller has
+        self._freeing = threading.RLock()  # of a signal's handler, too
         self._origin: Optional[Origin] = None
         self._responses: tuple[Response, ...] = ()
 
@@ -58,17 +60,19 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren):
         >>> branch
         <hbvib.Branch, freed>
         """
-        handle, self._handle = self.handle, None  # first, so that no thread borrows an array from here on
-        try:
-            if self._leased():
-                raise BufferError(
-                    f"{self._leased()} arrays look into the memory of this branch: delete or copy them")
-            _call("hbvib_branch_free", handle)
-        except (ArgumentError, BufferError, BusyError):
-            self._handle = handle
-            raise
-        self._forget()
-        self._kept, self._origin = (), None
+        # One thread at a time: where two have read the handle, a refused one would give it back while the other frees.
+        with self._freeing:
+            handle, self._handle = self.handle, None  # first, so that no thread borrows an array from here on
+            try:
+                if self._leased():
+                    raise BufferError(
+                        f"{self._leased()} arrays look into the memory of this branch: delete or copy them")
+                _call("hbvib_branch_free", handle)
+            except (ArgumentError, BufferError, BusyError):
+                self._handle = handle
+                raise
+            self._forget()
+            self._kept, self._origin = (), None
 
     def __del__(self) -> None:
         if self._parent is None:
