@@ -44,13 +44,15 @@ from ._calls import CancelFlag
 from ._damper import DamperPlace
 from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError, NumericalError, OutOfMemoryError,
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
+from ._fit_results import Fit, Predicted, Profile, SuspiciousUnits
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
+from ._measured import Measured, Unknown
 from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
-from ._sensitivity import Parameter, Sensitivities
+from ._sensitivity import ComplexSensitivities, Parameter, Sensitivities
 from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
@@ -62,7 +64,8 @@ __all__ = [
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
+    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
+    "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions

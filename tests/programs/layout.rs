@@ -71,6 +71,10 @@ fn in_rust() -> String {
         hbvib_wheel_info { struct_size, reserved, blade, largest, tuned, tuned_omega, amplification }
         hbvib_band_options { struct_size, of, contacts, contacts_len, starts }
         hbvib_band_info { struct_size, complete, sliders, states, solved, lower, upper, lower_omega, upper_omega, lower_gain, upper_gain, lower_at_limit, upper_at_limit }
+        hbvib_data { struct_size, kind, force_factor, response, mode, omega_start, omega_stop, n, x, value, sigma, second_sigma }
+        hbvib_unknown { struct_size, scale, start, lower, upper, prior_mean, prior_sigma, tied_to, has_start, has_lower, has_upper, reserved }
+        hbvib_fit_options { struct_size, scale_covariance, huber, starts, max_iterations, step }
+        hbvib_fit_info { struct_size, suspicion, chi2, loss, degrees_of_freedom, data, free, iterations, starts, at_bound, slipping, aic, bic, condition, harmonic_error, suspected_factor }
         // END GENERATED
     }
 }
