@@ -42,6 +42,7 @@ from ._c import *
 from ._caller_law import ForceCall
 from ._calls import CancelFlag
 from ._damper import DamperPlace
+from ._decay import Decay, decay_backbone
 from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError, NumericalError, OutOfMemoryError,
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
 from ._fit_results import Fit, Predicted, Profile, SuspiciousUnits
@@ -65,11 +66,11 @@ __all__ = [
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
-    "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
+    "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
-    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
+    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "decay_backbone",
     "get_include",
     # the C interface
     "lib", "structs",

@@ -4,12 +4,12 @@
 //! least loss; the covariance there is (JᵀJ + priors)⁻¹. The loop is the library's own: it has the weights of a robust loss, bounds,
 //! priors, models without a solution at a trial, and the caller's interrupt, which a general optimiser would hide.
 
-mod damped_step;
 mod fit_data;
 mod fit_options;
 mod fit_search;
 mod fit_unknowns;
 mod identifiability;
+mod marquardt_step;
 mod predicted_data;
 mod prediction;
 mod suspected_units;
@@ -20,10 +20,10 @@ pub use crate::analysis::fit::fit_unknowns::{Scale, Unknown};
 pub use crate::analysis::fit::prediction::{Prediction, predict};
 pub use crate::analysis::fit::suspected_units::Suspicion;
 
-use crate::analysis::fit::damped_step::inverse;
 use crate::analysis::fit::fit_search::{Found, Search, State};
 use crate::analysis::fit::fit_unknowns::Unknowns;
 use crate::analysis::fit::identifiability::condition;
+use crate::analysis::fit::marquardt_step::inverse;
 use crate::analysis::fit::predicted_data::Predictor;
 use crate::analysis::fit::prediction::check_parameters;
 use crate::analysis::fit::suspected_units::suspected;
@@ -341,6 +341,7 @@ fn further_starts(search: &Search<'_>, first: &State, parameters: &[Parameter<'_
 
 /// A number of the sequence of Halton (1960, doi:10.1007/BF01386213), within 0 .. 1.
 fn halton(number: usize, dimension: usize) -> f64 {
+    /// Bases of the dimensions, the first primes.
     const PRIMES: [usize; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
     let base = PRIMES[dimension % PRIMES.len()];
     let (mut rest, mut share, mut found) = (number, 1.0, 0.0);

@@ -23,7 +23,7 @@ pub enum DataKind {
 /// Data of one kind at one level of the force.
 #[derive(Clone, Copy, Debug)]
 pub struct FitData<'a> {
-    /// What was measured.
+    /// Kind of the data.
     pub kind: DataKind,
     /// Factor on all forces of the model.
     pub force_factor: f64,

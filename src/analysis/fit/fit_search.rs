@@ -3,10 +3,10 @@
 //! The loss is Σ ρ(r) with residuals r in standard deviations. Residuals beyond the limit of a robust loss have smaller weights in the
 //! gradient and in the matrix H = JᵀWJ. Unknowns are scaled by their logarithm where they are positive.
 
-use crate::analysis::fit::damped_step::damped_step;
 use crate::analysis::fit::fit_data::FitData;
 use crate::analysis::fit::fit_options::{FitOptions, Loss};
 use crate::analysis::fit::fit_unknowns::Unknowns;
+use crate::analysis::fit::marquardt_step::marquardt_step;
 use crate::analysis::fit::predicted_data::{Predicted, Predictor};
 use crate::error::{Result, try_push, try_vec};
 
@@ -149,7 +149,7 @@ impl Search<'_> {
             let (h, g) = self.normal_equations(&state, true)?;
             let n = g.len();
             let moves = self.moves(&state.z, &g)?;
-            let mut step = damped_step((&h, &g), lambda, &moves, interrupt)?;
+            let mut step = marquardt_step((&h, &g), lambda, &moves, interrupt)?;
             let mut z = crate::error::try_copy(&state.z, CONTEXT)?;
             for (k, free) in self.unknowns.free.iter().enumerate() {
                 if free.is_log {

@@ -13,7 +13,7 @@ const STEP_FLOOR: f64 = 1e-14;
 ///
 /// # Errors
 /// `OutOfMemory`, `StoppedByCaller`, `Singular`.
-pub(super) fn damped_step(
+pub(super) fn marquardt_step(
     (h, g): (&[f64], &[f64]),
     lambda: f64,
     moves: &[bool],
@@ -55,7 +55,7 @@ pub(super) fn damped_step(
 /// The inverse of a positive definite matrix over the unknowns that move, 0 elsewhere.
 ///
 /// # Errors
-/// As [`damped_step`].
+/// As [`marquardt_step`].
 pub(super) fn inverse(h: &[f64], moves: &[bool], interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
     let n = moves.len();
     let mut found = try_vec(n * n, 0.0, CONTEXT)?;
