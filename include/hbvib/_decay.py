@@ -61,8 +61,8 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
     >>> import numpy as np
     >>> t = np.arange(0, 60, 0.01)
     >>> found = hbvib.decay_backbone(t, np.exp(-0.02 * t) * np.cos(2 * t))
-    >>> found.omega[0].round(4), found.damping[0].round(4)
-    (2.0, 0.01)
+    >>> found.omega[:1].round(4), found.damping[:1].round(4)
+    (array([2.]), array([0.01]))
     """
     t, x = np.asarray(time, float), np.asarray(signal, float)
     if t.ndim != 1 or t.shape != x.shape or len(t) < 10:
@@ -81,7 +81,11 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
         shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
         instants.append(t[k] + shift * (t[k + 1] - t[k]))
         extremes.append(middle - 0.25 * (left - right) * shift)
-    at, size = np.array(instants), np.array(extremes)
+    # Where sliders came to rest beside their place the motion has a mean: half of what lies between two extremes is the amplitude, and
+    # the mean of two crossings is free of it.
+    at = 0.5 * (np.array(instants[:-1]) + np.array(instants[1:]))
+    size = 0.5 * (np.array(extremes[:-1]) + np.array(extremes[1:]))
+    crossing = 0.5 * (crossing[:-1] + crossing[1:])
     rows = []
     for begin in range(0, len(crossing) - 2 * cycles, 2 * cycles):
         own = crossing[begin:begin + 2 * cycles + 1]

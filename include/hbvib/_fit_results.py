@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ._c import Status, Suspicion
     from ._choices import DataKinds
     from ._model import Model
-    from ._results import FloatArray
+    from ._results import ComplexArray, FloatArray
 
 #: Options of Model.fit that are none of the solver.
 _OF_FIT = ("huber", "starts", "max_iterations", "end_step")
@@ -46,9 +46,9 @@ class Predicted(NamedTuple):
     >>> hbvib.Predicted(*np.ones((6, 1))).sigma
     array([1.])
     """
-    value: Any
-    sigma: Any
-    shift: Any
+    value: Union[FloatArray, ComplexArray]
+    sigma: Union[FloatArray, ComplexArray]
+    shift: Union[FloatArray, ComplexArray]
     second: FloatArray
     second_sigma: FloatArray
     second_shift: FloatArray

@@ -4,12 +4,12 @@ from __future__ import annotations
 import os
 import re
 import struct
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from ._results import FloatArray
+    from ._results import ComplexArray, FloatArray
 
 _MARK = re.compile(rb"(?m)^ {0,4}-1[ \t]*\r?$")
 #: Ordinate types: numpy type of its numbers, and whether these are pairs.
@@ -40,14 +40,14 @@ class TestFunction(NamedTuple):
     reference_direction: int
     quantity: str
     x: FloatArray
-    values: Any
+    values: Union[FloatArray, ComplexArray]
 
     @property
     def omega(self) -> FloatArray:
         """Angular frequencies of a function of frequency."""
         return 2 * np.pi * self.x
 
-    def response(self, force: float = 1.0) -> Any:
+    def response(self, force: float = 1.0) -> ComplexArray:
         """Complex displacements of a frequency response under a force of this amplitude: those of velocities and accelerations are
         divided by i omega once or twice.
 
@@ -55,10 +55,10 @@ class TestFunction(NamedTuple):
         >>> import numpy as np
         >>> one = hbvib.io.TestFunction([], 4, 1, 3, 1, 3, "acceleration", np.array([1 / (2 * np.pi)]), np.array([2.0 + 0j]))
         >>> one.response(0.5).round(9)
-        array([-1.+0.j])
+        array([-1.-0.j])
         """
         order = {"velocity": 1, "acceleration": 2}.get(self.quantity, 0)
-        return force * np.asarray(self.values) / (1j * self.omega) ** order
+        return np.asarray(force * self.values / (1j * self.omega) ** order)
 
 
 def read_uff(path: Any) -> list[TestFunction]:
@@ -80,7 +80,8 @@ def read_uff(path: Any) -> list[TestFunction]:
     """
     with open(os.fspath(path), "rb") as file:
         data = file.read()
-    found, at = [], 0
+    found: list[TestFunction] = []
+    at = 0
     while True:
         mark = _MARK.search(data, at)
         if mark is None:
@@ -111,7 +112,8 @@ def _function(data: bytes, at: int, binary: str) -> tuple[TestFunction, int]:
         lines.append(line)
     try:
         of = lines[5]
-        kind, ends = int(of[:5]), [int(of[a:b]) for a, b in ((41, 51), (51, 55), (66, 76), (76, 80))]
+        kind, node, direction = int(of[:5]), int(of[41:51]), int(of[51:55])
+        reference, along = int(of[66:76]), int(of[76:80])
         form = lines[6]
         ordinate, count, even = int(form[:10]), int(form[10:20]), int(form[20:30])
         first, step = float(form[30:43]), float(form[43:56])
@@ -121,7 +123,7 @@ def _function(data: bytes, at: int, binary: str) -> tuple[TestFunction, int]:
         raise ValueError(f"data set 58: the head cannot be read ({error})") from None
     columns = (2 if pairs else 1) + (0 if even else 1)
     if binary:
-        order, size = int(binary[6:12]), int(binary[32:44])
+        order, size = int(binary[7:13]), int(binary[31:43])
         numbers = _binary(data[at:at + size], numpy_type, "<" if order == 1 else ">", (count, columns, even))
         at += size
     else:
@@ -133,7 +135,8 @@ def _function(data: bytes, at: int, binary: str) -> tuple[TestFunction, int]:
     table = numbers[:count * columns].reshape(count, columns)
     x = first + step * np.arange(count) if even else table[:, 0]
     values = table[:, -2] + 1j * table[:, -1] if pairs else table[:, -1]
-    return TestFunction([line.strip() for line in lines[:5]], kind, *ends, _QUANTITIES.get(quantity, ""), x, values), at
+    text_of_head = [line.strip() for line in lines[:5]]
+    return TestFunction(text_of_head, kind, node, direction, reference, along, _QUANTITIES.get(quantity, ""), x, values), at
 
 
 def _binary(data: bytes, numpy_type: str, order: str, shape: tuple[int, int, int]) -> FloatArray:

@@ -299,11 +299,11 @@ pub unsafe extern "C" fn hbvib_fit(
             return fail!(Dimension, "data_len = 0, needs at least one set").with_argument(9);
         }
         check_pointer(data, 8, "data")?;
+        unsafe { check_out(info, 10) }?;
+        check_pointer(theta, 11, "theta")?;
         let read = unsafe { Described::all(data, sets, model.ndof(), 8) }?;
         let listed = unsafe { Described::sets(&read, true, 8) }?;
         let numbers = 2 * listed.iter().map(|set| set.x.len()).sum::<usize>();
-        unsafe { check_out(info, 10) }?;
-        check_pointer(theta, 11, "theta")?;
         let wanted = if residuals.is_null() && values.is_null() {
             0
         } else {
@@ -390,14 +390,15 @@ pub unsafe extern "C" fn hbvib_predict(
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
         check_pointer(wanted, 3, "wanted")?;
-        let read = unsafe { Described::all(wanted, 1, model.ndof(), 3) }?;
-        let listed = unsafe { Described::sets(&read, false, 3) }?;
         let hooks = unsafe { load_hooks(hooks, 4) }?;
         let count = parameter_count(count)?;
         let given = unsafe { loaded(parameters, count) }?;
         let described = unsafe { all_parameters(&given, &model) }?;
         let theta = unsafe { input(theta, count, 7, "theta") }?;
         let covariance = unsafe { input(covariance, count * count, 8, "covariance") }?;
+        check_pointer(values, 10, "values")?;
+        let read = unsafe { Described::all(wanted, 1, model.ndof(), 3) }?;
+        let listed = unsafe { Described::sets(&read, false, 3) }?;
         let numbers = exact_len(capacity, 2 * listed[0].x.len(), 9, "capacity")?;
         let room = |p: *mut f64| if p.is_null() { 0 } else { numbers };
         disjoint(
@@ -408,7 +409,6 @@ pub unsafe extern "C" fn hbvib_predict(
                 Range::new(shift, room(shift), 12, "shift")?,
             ],
         )?;
-        check_pointer(values, 10, "values")?;
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
                 analysis::predict(&model, &described, (theta, covariance), &listed[0], &solver, hooks)

@@ -10,6 +10,7 @@ mod complex_responses;
 mod cost;
 mod design;
 mod differences;
+mod fit_coverage;
 mod fit_of_modes;
 mod fit_of_responses;
 mod fit_uncertainty;
