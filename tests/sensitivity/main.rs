@@ -14,6 +14,7 @@ mod fit_coverage;
 mod fit_of_modes;
 mod fit_of_responses;
 mod fit_uncertainty;
+mod life;
 mod ring_damper_preload;
 mod sampled_curves;
 mod tracked_damping;
