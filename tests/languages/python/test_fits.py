@@ -66,6 +66,22 @@ with warnings.catch_warnings():
     linear = stiff.fit({"stiffness": "factor", "damping": "factor"}, data, harmonics=9)
 check("criteria prefer friction", linear.info.aic > fit.info.aic + 100 and linear.info.bic > fit.info.bic + 100)
 
+# Data on the upper branch of a folded curve, up to its fold, from starts with which the fold lies elsewhere.
+spring = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+spring.add_spring_damper(0, spring=[0, 0, 0.5])
+spring.add_force(0, 0.12)
+fold = spring.forced_response((0.8, 1.8), harmonics=5).folds().omega.max()
+upper = np.linspace(0.9, fold - 0.01, 14)
+branch = spring.forced_response((0.8, 1.8), at=upper, harmonics=5)
+high = [branch.at(i).point[int(np.argmax(branch.at(i).amplitude))] for i in range(14)]
+x = np.array([branch.harmonics(point)[1, 0] for point in high])
+seen = hbvib.Measured("response", upper, x, 0.01 * abs(x), omega=(0.7, 1.9))
+for first in (0.9, 1.1):
+    start = [hbvib.Unknown(hbvib.Parameter("stiffness", scaling="factor"), first),
+             hbvib.Unknown(hbvib.Parameter("damping", scaling="factor"), 1.5)]
+    found = spring.fit(start, seen, harmonics=5)
+    check(f"a folded curve from {first}", (abs(found.theta - 1) < 1e-5).all(), found)
+
 # Words.
 quiet = hbvib.Measured("response", omega, exact(model, omega, 1e-3), 1e-5, force=1e-3)
 raises("all stick", hbvib.NumericalError, model.fit, {"kt": 0, "mu": 0}, quiet, harmonics=9, words="only kt is seen")
@@ -146,4 +162,4 @@ found = written("uneven.uff", uneven, packed, binary)
 check("uneven", (found[0].x == [1, 2, 4]).all() and (found[0].values == numbers).all())
 raises("too few", ValueError, written, "short.uff", even, b"1.0 2.0", words="needs 6")
 
-finish(26)
+finish(28)
