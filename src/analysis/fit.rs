@@ -130,21 +130,8 @@ pub fn fit(
     if data.is_empty() {
         return fail!(Dimension, "there are no data, needs at least one set");
     }
-    let mut solver = *solver;
-    let mut numbers = 0;
     for (i, set) in data.iter().enumerate() {
         set.check(model, true).map_err(|e| e.at(format_args!("data set {i}")))?;
-        for (k, (z, sigma)) in set.value.iter().zip(set.sigma).enumerate() {
-            numbers += set.weights(k).iter().filter(|w| **w > 0.0).count();
-            let size = if set.kind == DataKind::Response {
-                z.norm()
-            } else {
-                z.re.abs()
-            };
-            if solver.tolerance > 0.0 && size > 0.0 {
-                solver.tolerance = solver.tolerance.min(FIT_SHARE_OF_SIGMA * sigma / size);
-            }
-        }
     }
     let unknowns = Unknowns::new(model, parameters, unknowns)?;
     let interrupt = hooks.interrupt();
@@ -153,7 +140,10 @@ pub fn fit(
         model,
         parameters,
         data,
-        solver,
+        solver: SolverOptions {
+            tolerance: tolerance_of(data, solver.tolerance),
+            ..*solver
+        },
         interrupt: &interrupt,
     };
     let search = Search {
@@ -165,20 +155,75 @@ pub fn fit(
     for free in &unknowns.free {
         try_push(&mut z, free.start, CONTEXT)?;
     }
-    let priors = unknowns.free.iter().filter(|free| free.prior.is_some()).count();
-    let degrees = (numbers + priors) as i64 - z.len() as i64;
     let Some(first) = search.at(z)? else {
         return fail!(
             NoConvergence,
             "the model has no solution for all data at the start of the fit; give other starts"
         );
     };
+
+    let ended = best_of(&search, &first, hooks)?;
+    let suspicion = if is_poor(&search, &ended.found.state) {
+        suspected(&predictor, &first.theta)?
+    } else {
+        Suspicion::None
+    };
+    if suspicion != Suspicion::None {
+        hooks.log(LogLevel::Warn, suspicion.sentence());
+    }
+    result(&search, ended, suspicion)
+}
+
+/// The tolerance with which errors by harmonics stay below a share of the standard deviations; 0 stays 0.
+fn tolerance_of(data: &[FitData<'_>], given: f64) -> f64 {
+    let mut tolerance = given;
+    for set in data.iter().filter(|_| given > 0.0) {
+        for (z, sigma) in set.value.iter().zip(set.sigma) {
+            let size = if set.kind == DataKind::Response {
+                z.norm()
+            } else {
+                z.re.abs()
+            };
+            if size > 0.0 {
+                tolerance = tolerance.min(FIT_SHARE_OF_SIGMA * sigma / size);
+            }
+        }
+    }
+    tolerance
+}
+
+/// Number of data, and of data and priors minus that of free unknowns.
+fn sizes(search: &Search<'_>) -> (usize, i64) {
+    let of_set = |set: &FitData<'_>| {
+        let counted = |i| set.weights(i).iter().filter(|w| **w > 0.0).count();
+        (0..set.x.len()).map(counted).sum::<usize>()
+    };
+    let data: usize = search.predictor.data.iter().map(of_set).sum();
+    let free = &search.unknowns.free;
+    let priors = free.iter().filter(|free| free.prior.is_some()).count();
+    (data, (data + priors) as i64 - free.len() as i64)
+}
+
+/// Whether a state explains the data poorly.
+fn is_poor(search: &Search<'_>, state: &State) -> bool {
+    state.cost > FIT_POOR * sizes(search).1.max(1) as f64
+}
+
+/// End of all searches.
+struct Ended {
+    found: Found,
+    starts: usize,
+    stopped: bool,
+}
+
+/// The best end of the searches from all starts.
+fn best_of(search: &Search<'_>, first: &State, hooks: &mut Hooks<'_>) -> Result<Ended> {
     let mut stopped = false;
     let mut starts = 1;
     let mut best = search.from(first.clone(), &mut |i, state| report(hooks, (i, state), &mut stopped))?;
-    let is_poor = |found: &Found| found.state.cost > FIT_POOR * (degrees.max(1)) as f64 || unseen(&found.state);
-    if !stopped && (is_poor(&best) || options.starts > 1) {
-        for state in further_starts(&search, &first, parameters, is_poor(&best))? {
+    let poor = is_poor(search, &best.state) || unseen(&best.state);
+    if !stopped && (poor || search.options.starts > 1) {
+        for state in further_starts(search, first, poor)? {
             starts += 1;
             let found = search.from(state, &mut |i, state| report(hooks, (i, state), &mut stopped))?;
             // What fits not much better than a state that does not see an unknown does not tell it.
@@ -191,55 +236,54 @@ pub fn fit(
             }
         }
     }
-    let suspicion = if best.state.cost > FIT_POOR * degrees.max(1) as f64 {
-        suspected(&predictor, &first.theta)?
-    } else {
-        Suspicion::None
-    };
-    if suspicion != Suspicion::None {
-        hooks.log(LogLevel::Warn, suspicion.sentence());
-    }
-    let (h, g) = search.normal_equations(&best.state, false)?;
-    let (_, of_loss) = search.normal_equations(&best.state, true)?;
-    let moves = search.moves(
-        &best.state.z,
-        if matches!(options.loss, Loss::Square) {
-            &g
-        } else {
-            &of_loss
-        },
-    )?;
+    Ok(Ended {
+        found: best,
+        starts,
+        stopped,
+    })
+}
+
+/// The result with its covariance.
+fn result(search: &Search<'_>, ended: Ended, suspicion: Suspicion) -> Result<Fit> {
+    let Search {
+        predictor,
+        unknowns,
+        options,
+    } = search;
+    let interrupt = predictor.interrupt;
+    let best = ended.found;
+    let (h, _) = search.normal_equations(&best.state, false)?;
+    let (_, g) = search.normal_equations(&best.state, true)?;
+    let z = &best.state.z;
+    let moves = search.moves(z, &g)?;
     let slips = &best.state.predicted.slips;
-    let known = condition(&h, (&unknowns, parameters), (&best.state.z, slips, &moves), &interrupt);
+    let known = condition(&h, (unknowns, predictor.parameters), (z, slips, &moves), interrupt);
     let known = known.map_err(|e| match suspicion {
         Suspicion::None => e,
         _ => e.at(format_args!("{}", suspicion.sentence())),
     })?;
-    let mut of_free = inverse(&h, &moves, &interrupt)?;
+    let (data, degrees) = sizes(search);
     let chi2 = best.state.residuals.iter().map(|r| r * r).sum::<f64>();
     let mut factor = options.loss.inefficiency();
     if options.scale_covariance && degrees > 0 {
         factor *= chi2 / degrees as f64;
     }
-    for c in &mut of_free {
-        *c *= factor;
-    }
-    let p = unknowns.parameters();
+    let of_free = inverse(&h, &moves, interrupt)?;
+    let (p, n) = (unknowns.parameters(), z.len());
     let mut covariance = try_vec(p * p, 0.0, CONTEXT)?;
     let mut at_bound = try_vec(p, false, CONTEXT)?;
-    let n = best.state.z.len();
     for i in 0..p {
-        let Some((a, by_a)) = unknowns.slope(i, &best.state.z) else {
+        let Some((a, by_a)) = unknowns.slope(i, z) else {
             continue;
         };
         at_bound[i] = !moves[a];
         for j in 0..p {
-            if let Some((b, by_b)) = unknowns.slope(j, &best.state.z) {
-                covariance[i * p + j] = by_a * by_b * of_free[a * n + b];
+            if let Some((b, by_b)) = unknowns.slope(j, z) {
+                covariance[i * p + j] = factor * by_a * by_b * of_free[a * n + b];
             }
         }
     }
-    let status = match (stopped, best.converged, best.iterations >= options.max_iterations) {
+    let status = match (ended.stopped, best.converged, best.iterations >= options.max_iterations) {
         (true, ..) => Status::StoppedByCaller,
         (_, true, _) => Status::Ok,
         (_, _, true) => Status::StoppedMaxPoints,
@@ -247,16 +291,16 @@ pub fn fit(
     };
     Ok(Fit {
         status,
-        model: design(model, parameters, &best.state.theta)?,
+        model: design(predictor.model, predictor.parameters, &best.state.theta)?,
         covariance,
         at_bound,
         chi2,
         degrees_of_freedom: degrees,
         loss: best.state.cost,
-        data: numbers,
+        data,
         free: n,
         iterations: best.iterations,
-        starts,
+        starts: ended.starts,
         residuals: try_copy(&best.state.residuals[..predictor.rows()], CONTEXT)?,
         condition: known,
         harmonic_error: best.state.predicted.harmonic_error,
@@ -286,7 +330,8 @@ fn unseen(state: &State) -> bool {
 }
 
 /// Further points to begin from, the best ones of those that are tried.
-fn further_starts(search: &Search<'_>, first: &State, parameters: &[Parameter<'_>], poor: bool) -> Result<Vec<State>> {
+fn further_starts(search: &Search<'_>, first: &State, poor: bool) -> Result<Vec<State>> {
+    let parameters = search.predictor.parameters;
     let free = &search.unknowns.free;
     let mut tried: Vec<State> = Vec::new();
     let mut attempt = |z: Vec<f64>| -> Result<()> {
@@ -296,9 +341,8 @@ fn further_starts(search: &Search<'_>, first: &State, parameters: &[Parameter<'_
         Ok(())
     };
     let is_limit = |k: usize| {
-        let constant = match parameters[free[k].parameter] {
-            Parameter::Contact { constant, .. } => constant,
-            _ => return false,
+        let Parameter::Contact { constant, .. } = parameters[free[k].parameter] else {
+            return false;
         };
         free[k].is_log && matches!(constant, Constant::Mu | Constant::Preload)
     };
