@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ._choices import DataKinds
     from ._model import Model
     from ._results import ComplexArray, FloatArray
+    from ._sensitivity import Parameter
 
 #: Options of Model.fit that are none of the solver.
 _OF_FIT = ("huber", "starts", "max_iterations", "end_step")
@@ -62,8 +63,8 @@ class Profile(NamedTuple):
 
     >>> import hbvib
     >>> import numpy as np
-    >>> hbvib.Profile(np.array([0.0, 1, 2, 3, 4]), np.array([9.0, 1, 0, 1, 9]), 0.0).interval(2.0)
-    (0.875, 3.125)
+    >>> hbvib.Profile(np.array([0.0, 1, 2, 3, 4]), np.array([9.0, 1, 0, 1, 9]), 0.0).interval(4.0)
+    (0.5, 3.5)
     """
     value: FloatArray
     chi2: FloatArray
@@ -78,7 +79,8 @@ class Profile(NamedTuple):
         >>> hbvib.Profile(np.array([0.0, 1, 2]), np.array([1.0, 0, 1]), 0.0).interval()
         (-inf, inf)
         """
-        above = self.chi2 - self.best - rise
+        # The root is a line where chi2 is a parabola.
+        above = np.sqrt(np.maximum(self.chi2 - self.best, 0)) - np.sqrt(rise)
         least = int(np.nanargmin(self.chi2))
         ends = []
         for step, missing in ((-1, -np.inf), (1, np.inf)):
@@ -96,8 +98,8 @@ class Profile(NamedTuple):
 class Fit:
     """Parameters fitted to data; made by Model.fit.
 
-    theta, sd          values of the parameters and their standard deviations.
-    covariance, correlation   of them.
+    theta, sd, names   values of the parameters, their standard deviations, 0 for fixed ones, and a name of each.
+    covariance, correlation   of them, NaN for fixed ones.
     chi2, degrees_of_freedom   the sum of squares in standard deviations; near each other for a model that explains the data.
     residuals, values  for each data set an array (points, 2): of complex data the real and the imaginary part.
     model              the model with the values.
@@ -124,41 +126,11 @@ class Fit:
         self.residuals = [part.reshape(-1, 2) for part in np.split(residuals, ends)]
         self.values = [part.reshape(-1, 2) for part in np.split(values, ends)]
         self.info, self.status, self.suspicion = info, status, suspicion
-
-    @property
-    def sd(self) -> FloatArray:
-        """Standard deviations of the parameters, 0 for fixed ones."""
-        return np.sqrt(np.diag(self.covariance))
-
-    @property
-    def correlation(self) -> FloatArray:
-        """Correlations of the parameters, NaN for fixed ones."""
+        self.sd: FloatArray = np.sqrt(np.diag(covariance))
         with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(self.covariance / np.outer(self.sd, self.sd))
-
-    @property
-    def chi2(self) -> float:
-        """Sum of the squares of residuals and priors, in standard deviations."""
-        return float(self.info.chi2)
-
-    @property
-    def degrees_of_freedom(self) -> int:
-        """Number of data and priors minus that of free unknowns."""
-        return int(self.info.degrees_of_freedom)
-
-    @property
-    def names(self) -> list[str]:
-        """A name of each parameter."""
-        found = []
-        for one in self.unknowns:
-            p = one.parameter
-            name = p.kind.name.lower()
-            if p.contact >= 0:
-                name += f" {p.contact}"
-            elif p.scaling == Scaling.FACTOR:
-                name += " factor"
-            found.append(name)
-        return found
+            self.correlation: FloatArray = np.asarray(covariance / np.outer(self.sd, self.sd))
+        self.chi2, self.degrees_of_freedom = float(info.chi2), int(info.degrees_of_freedom)
+        self.names = [_name(one.parameter) for one in unknowns]
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} = {value:.5g} +- {sd:.2g}" for name, value, sd in zip(self.names, self.theta, self.sd))
@@ -261,3 +233,10 @@ class Fit:
         return Fit(self._original, self.model, self.unknowns, self.data, self._options, theta, np.zeros_like(self.covariance),
                    np.zeros(sum(part.size for part in self.residuals)), np.zeros(sum(part.size for part in self.values)), self.info,
                    self.status, self.suspicion)
+
+
+def _name(parameter: Parameter) -> str:
+    name = parameter.kind.name.lower()
+    if parameter.contact >= 0:
+        return f"{name} {parameter.contact}"
+    return name + " factor" if parameter.scaling == Scaling.FACTOR else name

@@ -136,6 +136,7 @@ def _function(data: bytes, at: int, binary: str) -> tuple[TestFunction, int]:
     x = first + step * np.arange(count) if even else table[:, 0]
     values = table[:, -2] + 1j * table[:, -1] if pairs else table[:, -1]
     text_of_head = [line.strip() for line in lines[:5]]
+    x = np.asarray(x, np.float64)
     return TestFunction(text_of_head, kind, node, direction, reference, along, _QUANTITIES.get(quantity, ""), x, values), at
 
 
