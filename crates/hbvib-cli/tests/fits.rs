@@ -66,7 +66,7 @@ fn a_fit_finds_the_values_behind_its_data() {
         assert!(
             fs::read_to_string(folder.join("fit.svg"))
                 .unwrap()
-                .contains("data set 1")
+                .contains("marks of the data")
         );
     }
 }
