@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 #[test]
-#[ignore = "a minute of processor time; tests/deep.sh runs it"]
+#[ignore = "minutes of processor time; tests/deep.sh runs it"]
 fn has_its_parameters_back() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
     let sector = Sector::read(&folder, Size::Reduced).unwrap();
