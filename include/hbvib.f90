@@ -149,6 +149,14 @@ module hbvib
    ! hbvib_life_event
    integer(c_int32_t), parameter, public :: HBVIB_LIFE_SLIPS = 0, HBVIB_LIFE_STICKS = 1, HBVIB_LIFE_LOST = 2, &
       HBVIB_LIFE_PRESSED = 3, HBVIB_LIFE_LIMIT = 4
+   ! hbvib_data_kind
+   integer(c_int32_t), parameter, public :: HBVIB_DATA_RESPONSE = 0, HBVIB_DATA_AMPLITUDE = 1, HBVIB_DATA_PEAK = 2, &
+      HBVIB_DATA_BACKBONE = 3, HBVIB_DATA_LINEAR_MODE = 4
+   ! hbvib_scale
+   integer(c_int32_t), parameter, public :: HBVIB_SCALE_AUTOMATIC = 0, HBVIB_SCALE_LINEAR = 1, HBVIB_SCALE_LOG = 2
+   ! hbvib_suspicion
+   integer(c_int32_t), parameter, public :: HBVIB_SUSPICION_NONE = 0, HBVIB_SUSPICION_RESPONSE = 1, &
+      HBVIB_SUSPICION_FREQUENCY = 2
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -529,6 +537,41 @@ module hbvib
       real(c_double) :: factor = 0, amplitude = 0, amplitude_new = 0, amplitude_worn = 0
       integer(c_int64_t) :: lives = 0
    end type hbvib_best_load
+
+   !> Data of one kind at one level of the force.
+   type, bind(c) :: hbvib_data
+      integer(c_int32_t) :: struct_size = 88, kind = 0
+      real(c_double) :: force_factor = 1
+      type(c_ptr) :: response = c_null_ptr
+      integer(c_int64_t) :: mode = 0
+      real(c_double) :: omega_start = 0, omega_stop = 0
+      integer(c_int64_t) :: n = 0
+      type(c_ptr) :: x = c_null_ptr, value = c_null_ptr, sigma = c_null_ptr, second_sigma = c_null_ptr
+   end type hbvib_data
+
+   !> A parameter as an unknown of a fit.
+   type, bind(c) :: hbvib_unknown
+      integer(c_int32_t) :: struct_size = 72, scale = 0
+      real(c_double) :: start = 0, lower = 0, upper = 0, prior_mean = 0, prior_sigma = 0
+      integer(c_int64_t) :: tied_to = -1
+      integer(c_int32_t) :: has_start = 0, has_lower = 0, has_upper = 0, reserved = 0
+   end type hbvib_unknown
+
+   !> Options of a fit.
+   type, bind(c) :: hbvib_fit_options
+      integer(c_int32_t) :: struct_size = 40, scale_covariance = 0
+      real(c_double) :: huber = 0
+      integer(c_int64_t) :: starts = 1, max_iterations = 60
+      real(c_double) :: step = 1e-6_c_double
+   end type hbvib_fit_options
+
+   !> Numbers of a fit.
+   type, bind(c) :: hbvib_fit_info
+      integer(c_int32_t) :: struct_size = 120, suspicion = 0
+      real(c_double) :: chi2 = 0, loss = 0
+      integer(c_int64_t) :: degrees_of_freedom = 0, data = 0, free = 0, iterations = 0, starts = 0, at_bound = 0, slipping = 0
+      real(c_double) :: aic = 0, bic = 0, condition = 0, harmonic_error = 0, suspected_factor = 1
+   end type hbvib_fit_info
 
    abstract interface
       !> A force of the caller.
@@ -1814,6 +1857,22 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_sensitivity
 
+      function hbvib_response_sensitivity(model, branch, point, response, parameters, count, derivatives, derivatives_len, &
+         reasons, onset, value, by_omega, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_response), intent(in), optional :: response
+         type(hbvib_parameter), intent(in) :: parameters(*)
+         integer(c_int64_t), value :: count
+         complex(c_double_complex), intent(inout) :: derivatives(*)
+         integer(c_int64_t), value :: derivatives_len
+         integer(c_int64_t), intent(inout), optional :: reasons(*), onset
+         real(c_double), intent(inout), optional :: value(*), by_omega(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_response_sensitivity
+
       function hbvib_parameter_options_init(o, size_of_o) bind(c) result(status)
          import
          type(hbvib_parameter_options), intent(inout) :: o
@@ -2094,6 +2153,71 @@ module hbvib
          type(hbvib_best_load), intent(inout) :: out
          integer(c_int32_t) :: status
       end function hbvib_best_load_for_life
+
+      function hbvib_data_init(d, size_of_d) bind(c) result(status)
+         import
+         type(hbvib_data), intent(inout) :: d
+         integer(c_size_t), value :: size_of_d
+         integer(c_int32_t) :: status
+      end function hbvib_data_init
+
+      function hbvib_unknown_init(u, size_of_u) bind(c) result(status)
+         import
+         type(hbvib_unknown), intent(inout) :: u
+         integer(c_size_t), value :: size_of_u
+         integer(c_int32_t) :: status
+      end function hbvib_unknown_init
+
+      function hbvib_fit_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_fit_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_fit_options_init
+
+      function hbvib_fit_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_fit_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_fit_info_init
+
+      function hbvib_fit(model, solver, options, hooks, parameters, count, unknowns, data, data_len, info, theta, covariance, &
+         residuals_len, residuals, values, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_fit_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_parameter), intent(in) :: parameters(*)
+         integer(c_int64_t), value :: count
+         type(hbvib_unknown), intent(in), optional :: unknowns(*)
+         type(hbvib_data), intent(in) :: data(*)
+         integer(c_int64_t), value :: data_len
+         type(hbvib_fit_info), intent(inout) :: info
+         real(c_double), intent(inout) :: theta(*)
+         real(c_double), intent(inout), optional :: covariance(*)
+         integer(c_int64_t), value :: residuals_len
+         real(c_double), intent(inout), optional :: residuals(*), values(*)
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_fit
+
+      function hbvib_predict(model, solver, wanted, hooks, parameters, count, theta, covariance, capacity, values, sigma, &
+         shift) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_data), intent(in) :: wanted
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_parameter), intent(in) :: parameters(*)
+         integer(c_int64_t), value :: count
+         real(c_double), intent(in) :: theta(*), covariance(*)
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout) :: values(*)
+         real(c_double), intent(inout), optional :: sigma(*), shift(*)
+         integer(c_int32_t) :: status
+      end function hbvib_predict
 
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)

@@ -4050,6 +4050,48 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model,
                                int64_t *onset,
                                const hbvib_hooks *hooks);
 
+/// Derivatives of the complex amplitude of a response at a stored point of a forced response by
+/// parameters of the model, at a fixed frequency, exact for the harmonics of the point: the
+/// real and the imaginary part have one adjoint each, from one factorised matrix. The branch
+/// need not have watched the response.
+///
+/// model            the model of which the branch is a result, unchanged since.
+/// branch           a forced response.
+/// point            number of a stored point.
+/// response         a fundamental or a harmonic; NULL: the fundamental of the response degree of
+///                  freedom.
+/// parameters       array of parameters, struct_size of the first apart.
+/// count            how many, >= 1.
+/// derivatives      receives the complex derivatives, re and im, 2 count doubles; NaN where
+///                  there is none.
+/// derivatives_len  complex numbers in it: count.
+/// reasons          receives numbers of hbvib_derivative, count of them; or NULL.
+/// onset            receives the contact that is at the onset of slip, or -1; or NULL.
+/// value            receives the amplitude, re and im; or NULL.
+/// by_omega         receives its derivative by the angular frequency along the branch, re and
+///                  im, NaN in a fold; or NULL.
+/// hooks            phase, log and cancellation; progress is not called. NULL: none.
+/// HBVIB_STOPPED_BY_CALLER: the arrays are untouched.
+/// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_UNSUPPORTED (a nonlinear mode, near-rigid
+/// contacts, parameters as in hbvib_sensitivity), HBVIB_E_ARGUMENT (another model, a measure
+/// without phase, overlapping arrays), HBVIB_E_DIMENSION, HBVIB_E_CALLBACK, HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any
+/// number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_response_sensitivity(const hbvib_model *model,
+                                        const hbvib_branch *branch,
+                                        int64_t point,
+                                        const hbvib_response *response,
+                                        const hbvib_parameter *parameters,
+                                        int64_t count,
+                                        double *derivatives,
+                                        int64_t derivatives_len,
+                                        int64_t *reasons,
+                                        int64_t *onset,
+                                        double *value,
+                                        double *by_omega,
+                                        const hbvib_hooks *hooks);
+
 /// Result that a parameter response follows.
 typedef enum {
   /// The response at a fixed frequency.
@@ -4888,6 +4930,278 @@ hbvib_status hbvib_best_load_for_life(const hbvib_model *model,
                                       double factor_high,
                                       const hbvib_hooks *hooks,
                                       hbvib_best_load *out);
+
+/// Kinds of data.
+typedef enum {
+  /// Complex amplitude of a response at angular frequencies.
+  HBVIB_DATA_RESPONSE = 0,
+  /// Measure of a response at angular frequencies.
+  HBVIB_DATA_AMPLITUDE = 1,
+  /// Measure of a response at the peak nearest to an angular frequency, and where it is.
+  HBVIB_DATA_PEAK = 2,
+  /// Angular frequency and damping ratio of a nonlinear mode at log10 of its modal amplitude.
+  HBVIB_DATA_BACKBONE = 3,
+  /// Angular frequency and damping ratio of the mode in which all contacts stick.
+  HBVIB_DATA_LINEAR_MODE = 4,
+} hbvib_data_kind;
+
+/// Data of one kind at one level of the force. Fill it by hbvib_data_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// A value of enum hbvib_data_kind.
+  int32_t kind;
+  /// Factor on all forces of the model; default 1.
+  double force_factor;
+  /// The response of the first three kinds; NULL: the fundamental of the response degree of
+  /// freedom.
+  const hbvib_response *response;
+  /// Number of the linear mode with stuck contacts, from 0, of the other kinds.
+  int64_t mode;
+  /// First angular frequency that is followed; 0 with omega_stop 0: as far as the data need.
+  double omega_start;
+  /// Last one.
+  double omega_stop;
+  /// Number of data points.
+  int64_t n;
+  /// Angular frequencies, or log10 of modal amplitudes, n numbers. A linear mode does not use them.
+  const double *x;
+  /// Complex amplitudes, re and im, 2 n doubles; of other kinds re is the measure, or the angular
+  /// frequency of a mode, and im the angular frequency of a peak, or the damping ratio. NULL in
+  /// hbvib_predict.
+  const double *value;
+  /// Standard deviations, n numbers: of |X|, which is sqrt(2) times that of each part; of the
+  /// measure or the angular frequency of a mode. NULL in hbvib_predict.
+  const double *sigma;
+  /// Standard deviations of angular frequencies of peaks, or of damping ratios, n numbers; NULL:
+  /// these are not data.
+  const double *second_sigma;
+} hbvib_data;
+
+/// Fills a data set: complex amplitudes at the forces of the model, without points.
+///
+/// d          the struct; untouched on error.
+/// size_of_d  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_data_init(hbvib_data *d, size_t size_of_d);
+
+/// Scale in which an unknown of a fit is changed.
+typedef enum {
+  /// Logarithm for stiffnesses, friction, loads and factors that start above 0, else the value.
+  HBVIB_SCALE_AUTOMATIC = 0,
+  /// The value itself.
+  HBVIB_SCALE_LINEAR = 1,
+  /// Its logarithm: it stays above 0.
+  HBVIB_SCALE_LOG = 2,
+} hbvib_scale;
+
+/// Units that data of a fit may have.
+typedef enum {
+  /// Nothing is suspected.
+  HBVIB_SUSPICION_NONE = 0,
+  /// The responses of the data are a power of ten times those of the model.
+  HBVIB_SUSPICION_RESPONSE = 1,
+  /// The angular frequencies of the data are too small, or too large, by 2 pi.
+  HBVIB_SUSPICION_FREQUENCY = 2,
+} hbvib_suspicion;
+
+/// A parameter as an unknown of a fit. Fill it by hbvib_unknown_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// A value of enum hbvib_scale.
+  int32_t scale;
+  /// First value, if has_start is 1; otherwise that of the model.
+  double start;
+  /// Smallest value, if has_lower is 1; equal to the largest one the parameter is fixed.
+  double lower;
+  /// Largest value, if has_upper is 1.
+  double upper;
+  /// Mean of what is known of it beside the data.
+  double prior_mean;
+  /// Its standard deviation; 0: nothing is known.
+  double prior_sigma;
+  /// Number of an earlier parameter whose value it follows, in the ratio of their starts; -1: none.
+  int64_t tied_to;
+  /// 1: start is given; 0: it is not.
+  int32_t has_start;
+  /// 1: lower is given; 0: it is not.
+  int32_t has_lower;
+  /// 1: upper is given; 0: it is not.
+  int32_t has_upper;
+  /// Must be 0.
+  int32_t reserved;
+} hbvib_unknown;
+
+/// Fills an unknown that starts at the value of the model, without bounds and prior.
+///
+/// u          the struct; untouched on error.
+/// size_of_u  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_unknown_init(hbvib_unknown *u, size_t size_of_u);
+
+/// Options of a fit. Fill it by hbvib_fit_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1: the covariance is multiplied by chi2 over the degrees of freedom, where standard deviations
+  /// are known up to a factor; 0 (default): it is not.
+  int32_t scale_covariance;
+  /// Standard deviations beyond which a residual counts by its magnitude instead of its square
+  /// (Huber), 1.345 for example; 0 (default): all count by their squares.
+  double huber;
+  /// Points from which the search begins, 1 .. 1000; default 1: the given one, and others where
+  /// that fits poorly.
+  int64_t starts;
+  /// Largest number of iterations from each, 1 .. 10000; default 60.
+  int64_t max_iterations;
+  /// Step in standard deviations at which the search ends; default 1e-6.
+  double step;
+} hbvib_fit_options;
+
+/// Fills the options of a fit with their defaults.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_fit_options_init(hbvib_fit_options *o, size_t size_of_o);
+
+/// Numbers of a fit. Fill it by hbvib_fit_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// A value of enum hbvib_suspicion.
+  int32_t suspicion;
+  /// Sum of the squares of the residuals of data and priors, in standard deviations.
+  double chi2;
+  /// The loss that was minimised: chi2 unless it is robust.
+  double loss;
+  /// Number of data and priors minus the number of free unknowns.
+  int64_t degrees_of_freedom;
+  /// Number of data, two for a complex amplitude.
+  int64_t data;
+  /// Number of free unknowns.
+  int64_t free;
+  /// Iterations from the start that led to the result.
+  int64_t iterations;
+  /// Starts from which was searched.
+  int64_t starts;
+  /// Number of parameters at a bound, whose variance is 0.
+  int64_t at_bound;
+  /// Number of contacts that slip at any point of the data.
+  int64_t slipping;
+  /// Criterion of Akaike, chi2 + 2 free.
+  double aic;
+  /// Criterion of Schwarz, chi2 + free ln data.
+  double bic;
+  /// Largest over smallest eigenvalue of the matrix of the fit with unit diagonal.
+  double condition;
+  /// Largest estimated error by harmonics over the standard deviation of its datum; NaN where none
+  /// was estimated.
+  double harmonic_error;
+  /// Responses of the data over those of the model, or the factor that the angular frequencies of
+  /// the data need; 1 where nothing is suspected.
+  double suspected_factor;
+} hbvib_fit_info;
+
+/// Fills the numbers of a fit with zeros, and the factor with 1.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_fit_info_init(hbvib_fit_info *i, size_t size_of_i);
+
+/// Fits parameters of a model to data of tests: the values of least loss, and their covariance.
+/// The derivatives of the data by the parameters are exact. Where a set of data is followed
+/// through folds, the solution nearest to each datum counts. With a tolerance of the solver it
+/// is lowered where errors by harmonics would exceed a third of the standard deviations.
+///
+/// model          stays as it is.
+/// solver         options; NULL: the defaults.
+/// options        loss, starts; NULL: the defaults.
+/// hooks          progress, called at each iteration with its number in `point`, the loss in
+///                `parameter` and the first parameter in `amplitude`; log, phase and
+///                cancellation. NULL: none.
+/// parameters     array of parameters, struct_size of the first apart. Constants and the speed
+///                are values, factors multiply those of the model.
+/// count          how many, >= 1.
+/// unknowns       array of as many unknowns, struct_size of the first apart; or NULL: the
+///                defaults.
+/// data           array of data sets, struct_size of the first apart.
+/// data_len       how many, >= 1.
+/// info           receives the numbers of the fit; fill it by hbvib_fit_info_init before.
+/// theta          receives the values of the parameters, count numbers.
+/// covariance     receives their covariance, count x count numbers; or NULL.
+/// residuals_len  numbers in the next two arrays: twice the number of data points of all sets;
+///                0 where both are NULL.
+/// residuals      receives the residuals in standard deviations, two for each point, set after
+///                set, 0 for a number that is no datum; or NULL.
+/// values         receives the numbers of the model, likewise; or NULL.
+/// out            receives the model with the values; or NULL. Free it by hbvib_model_free.
+/// HBVIB_STOPPED_MAX_POINTS: the iterations did not suffice; HBVIB_STOPPED_STALLED: no step
+/// lowers the loss any more; HBVIB_STOPPED_BY_CALLER: by progress, with the best values so far;
+/// by other hooks nothing is written.
+/// Errors: HBVIB_E_SINGULAR (the data do not tell the unknowns; the sentence says which and why),
+/// HBVIB_E_NO_CONVERGENCE (no solution for all data at the start), HBVIB_E_ARGUMENT,
+/// HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION, HBVIB_E_INDEX, HBVIB_E_UNSUPPORTED (options,
+/// unknowns, data, parameters), HBVIB_E_CALLBACK, HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_fit(const hbvib_model *model,
+                       const hbvib_solver_options *solver,
+                       const hbvib_fit_options *options,
+                       const hbvib_hooks *hooks,
+                       const hbvib_parameter *parameters,
+                       int64_t count,
+                       const hbvib_unknown *unknowns,
+                       const hbvib_data *data,
+                       int64_t data_len,
+                       hbvib_fit_info *info,
+                       double *theta,
+                       double *covariance,
+                       int64_t residuals_len,
+                       double *residuals,
+                       double *values,
+                       hbvib_model **out);
+
+/// Predicts numbers of a fitted model with their standard deviations, by the exact derivatives
+/// and the covariance of the parameters (delta method).
+///
+/// model       the model that was fitted, not the fitted one: factors multiply its matrices.
+/// solver      options; NULL: the defaults.
+/// wanted      a data set without values and sigmas: the kind, x, response, force and range.
+/// hooks       log, phase and cancellation; NULL: none.
+/// parameters  array of parameters, struct_size of the first apart.
+/// count       how many, >= 1.
+/// theta       their values, count numbers.
+/// covariance  their covariance, count x count numbers.
+/// capacity    numbers in the next arrays: twice the number of x.
+/// values      receives two numbers for each x, as the value of a data set has them.
+/// sigma       receives their standard deviations; or NULL.
+/// shift       receives the shift of their means by the second order: where it is not small
+///             against sigma, the delta method is not enough; NaN where one standard deviation
+///             aside there is no solution; or NULL.
+/// Errors: HBVIB_E_NO_CONVERGENCE (no solution at each x), HBVIB_E_DIMENSION, HBVIB_E_ARGUMENT,
+/// HBVIB_E_NOT_FINITE, HBVIB_E_INDEX, HBVIB_E_UNSUPPORTED, HBVIB_E_CALLBACK, HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; nothing is written
+/// then. HBVIB_STOPPED_BY_CALLER likewise. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_predict(const hbvib_model *model,
+                           const hbvib_solver_options *solver,
+                           const hbvib_data *wanted,
+                           const hbvib_hooks *hooks,
+                           const hbvib_parameter *parameters,
+                           int64_t count,
+                           const double *theta,
+                           const double *covariance,
+                           int64_t capacity,
+                           double *values,
+                           double *sigma,
+                           double *shift);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

@@ -359,7 +359,20 @@ using FloquetInfo = Filled<hbvib_floquet_info, hbvib_floquet_info_init>;
 using Kick = Filled<hbvib_kick, hbvib_kick_init>;
 using BandOptions = Filled<hbvib_band_options, hbvib_band_options_init>;
 using BandInfo = Filled<hbvib_band_info, hbvib_band_info_init>;
+using Unknown = Filled<hbvib_unknown, hbvib_unknown_init>;
+using FitOptions = Filled<hbvib_fit_options, hbvib_fit_options_init>;
+using FitInfo = Filled<hbvib_fit_info, hbvib_fit_info_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
+
+/// Data of a test. Arrays handed in are borrowed until the fit.
+struct DataSet : Filled<hbvib_data, hbvib_data_init> {
+  DataSet() = default;
+  /// Complex amplitudes at angular frequencies, under a factor on the forces.
+  DataSet(Span<const double> omega, Span<const Complex> amplitudes, Span<const double> deviations, double force = 1) {
+    n = omega.length(), x = omega.data(), value = detail::flat(amplitudes.data()), sigma = deviations.data(), force_factor = force;
+    if (amplitudes.length() != n || deviations.length() != n) throw Error(HBVIB_E_DIMENSION, 2, "x, value and sigma differ in length");
+  }
+};
 
 /// Range of a forced response, rad per time unit. Arrays handed in are borrowed until it was solved.
 struct ForcedOptions : Filled<hbvib_forced_options, hbvib_forced_options_init> {
@@ -888,6 +901,18 @@ struct Sensitivities {
   std::vector<double> derivatives;
   std::vector<hbvib_derivative> reasons;
   Index onset;
+};
+/// Derivatives of a complex amplitude by parameters at a fixed frequency.
+struct ComplexSensitivities {
+  Complex value, by_omega;
+  std::vector<Complex> derivatives;
+  std::vector<hbvib_derivative> reasons;
+  Index onset;
+};
+/// Values of parameters with their covariance, row after row, and residuals and values of the model, two numbers for each data point.
+struct Fit {
+  FitInfo info;
+  std::vector<double> theta, covariance, residuals, values;
 };
 /// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
 /// unless requested.
@@ -1449,6 +1474,42 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     const auto count = static_cast<Index>(given.size());
     use_whole(hooks, hbvib_sensitivity, branch.get(), point, of, given.data(), count, out.derivatives.data(), count, reasons.data(), &out.onset);
     for (const auto reason : reasons) out.reasons.push_back(static_cast<hbvib_derivative>(reason));
+    return out;
+  }
+  /// Exact derivatives of the complex amplitude of a degree of freedom at a point of a forced response. A hook that stops it is an Error.
+  ComplexSensitivities response_sensitivity(const Branch& branch, Index point, const std::vector<Parameter>& parameters, Index dof,
+                                            const Hooks& hooks = {}) const {
+    const auto keep = branch.core_;
+    const std::vector<hbvib_parameter> given(parameters.begin(), parameters.end());
+    const auto count = static_cast<Index>(given.size());
+    const std::int64_t of = dof;
+    Filled<hbvib_response, hbvib_response_init> response;
+    response.n = 1, response.dofs = &of;
+    ComplexSensitivities out{{}, {}, std::vector<Complex>(given.size()), {}, -1};
+    std::vector<std::int64_t> reasons(given.size());
+    use_whole(hooks, hbvib_response_sensitivity, branch.get(), point, static_cast<const hbvib_response*>(&response), given.data(), count,
+              detail::flat(out.derivatives.data()), count, reasons.data(), &out.onset, detail::flat(&out.value), detail::flat(&out.by_omega));
+    for (const auto reason : reasons) out.reasons.push_back(static_cast<hbvib_derivative>(reason));
+    return out;
+  }
+  /// Fits parameters to data of tests; without unknowns all start at the values of the model. A hook that stops it is an Error.
+  Fit fit(const SolverOptions& solver, const std::vector<Parameter>& parameters, const std::vector<Unknown>& unknowns,
+          const std::vector<DataSet>& data, const FitOptions& options = FitOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const std::vector<hbvib_parameter> given(parameters.begin(), parameters.end());
+    const std::vector<hbvib_unknown> described(unknowns.begin(), unknowns.end());
+    const std::vector<hbvib_data> sets(data.begin(), data.end());
+    if (!described.empty() && described.size() != given.size())
+      throw Error(HBVIB_E_DIMENSION, 7, "needs as many unknowns as parameters, or none");
+    Index points = 0;
+    for (const auto& set : sets) points += set.n;
+    const std::size_t p = given.size(), numbers = 2 * detail::extent(points);
+    Fit out{FitInfo(), std::vector<double>(p), std::vector<double>(p * p), std::vector<double>(numbers), std::vector<double>(numbers)};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    call.done_whole(hbvib_fit(get(), &solver, &options, &bound, given.data(), static_cast<Index>(p), described.empty() ? nullptr : described.data(),
+                              sets.data(), static_cast<Index>(sets.size()), &out.info, out.theta.data(), out.covariance.data(),
+                              static_cast<Index>(numbers), out.residuals.data(), out.values.data(), nullptr));
     return out;
   }
   /// The sliders of a point of a forced response that stick through the period and change its vibration. A hook that stops it is

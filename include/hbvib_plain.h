@@ -308,6 +308,23 @@ typedef enum {
   HBVIB_LIFE_PRESSED = 3,
   HBVIB_LIFE_LIMIT = 4
 } hbvib_life_event;
+typedef enum {
+  HBVIB_DATA_RESPONSE = 0,
+  HBVIB_DATA_AMPLITUDE = 1,
+  HBVIB_DATA_PEAK = 2,
+  HBVIB_DATA_BACKBONE = 3,
+  HBVIB_DATA_LINEAR_MODE = 4
+} hbvib_data_kind;
+typedef enum {
+  HBVIB_SCALE_AUTOMATIC = 0,
+  HBVIB_SCALE_LINEAR = 1,
+  HBVIB_SCALE_LOG = 2
+} hbvib_scale;
+typedef enum {
+  HBVIB_SUSPICION_NONE = 0,
+  HBVIB_SUSPICION_RESPONSE = 1,
+  HBVIB_SUSPICION_FREQUENCY = 2
+} hbvib_suspicion;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
@@ -350,6 +367,10 @@ typedef struct hbvib_band_info hbvib_band_info;
 typedef struct hbvib_life_options hbvib_life_options;
 typedef struct hbvib_life_info hbvib_life_info;
 typedef struct hbvib_best_load hbvib_best_load;
+typedef struct hbvib_data hbvib_data;
+typedef struct hbvib_unknown hbvib_unknown;
+typedef struct hbvib_fit_options hbvib_fit_options;
+typedef struct hbvib_fit_info hbvib_fit_info;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
@@ -888,6 +909,60 @@ struct hbvib_best_load {
   double amplitude_worn;
   int64_t lives;
 };
+struct hbvib_data {
+  uint32_t struct_size;
+  int32_t kind;
+  double force_factor;
+  const hbvib_response *response;
+  int64_t mode;
+  double omega_start;
+  double omega_stop;
+  int64_t n;
+  const double *x;
+  const double *value;
+  const double *sigma;
+  const double *second_sigma;
+};
+struct hbvib_unknown {
+  uint32_t struct_size;
+  int32_t scale;
+  double start;
+  double lower;
+  double upper;
+  double prior_mean;
+  double prior_sigma;
+  int64_t tied_to;
+  int32_t has_start;
+  int32_t has_lower;
+  int32_t has_upper;
+  int32_t reserved;
+};
+struct hbvib_fit_options {
+  uint32_t struct_size;
+  int32_t scale_covariance;
+  double huber;
+  int64_t starts;
+  int64_t max_iterations;
+  double step;
+};
+struct hbvib_fit_info {
+  uint32_t struct_size;
+  int32_t suspicion;
+  double chi2;
+  double loss;
+  int64_t degrees_of_freedom;
+  int64_t data;
+  int64_t free;
+  int64_t iterations;
+  int64_t starts;
+  int64_t at_bound;
+  int64_t slipping;
+  double aic;
+  double bic;
+  double condition;
+  double harmonic_error;
+  double suspected_factor;
+};
 uint32_t hbvib_version(void);
 const char *hbvib_version_string(void);
 const char *hbvib_status_name(hbvib_status status);
@@ -1031,6 +1106,7 @@ hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch, int64_t capac
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch, int64_t capacity, double *omega, double *log10_amplitude, double *slope, int64_t *point, int64_t *count);
 hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
 hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int32_t of, const hbvib_parameter *parameters, int64_t count, double *derivatives, int64_t derivatives_len, int64_t *reasons, int64_t *onset, const hbvib_hooks *hooks);
+hbvib_status hbvib_response_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_response *response, const hbvib_parameter *parameters, int64_t count, double *derivatives, int64_t derivatives_len, int64_t *reasons, int64_t *onset, double *value, double *by_omega, const hbvib_hooks *hooks);
 hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
 hbvib_status hbvib_parameter_response(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_parameter_options *options, const hbvib_hooks *hooks, hbvib_branch **out);
 hbvib_status hbvib_branch_optima(const hbvib_branch *branch, int64_t capacity, double *parameter, double *amplitude, int64_t *maximum, int64_t *point, int64_t *count);
@@ -1058,6 +1134,12 @@ hbvib_status hbvib_life_info_init(hbvib_life_info *i, size_t size_of_i);
 hbvib_status hbvib_life(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_life_options *options, const hbvib_hooks *hooks, int64_t n, const double *cycles, double *depths, double *loads, double *works, double *amplitude, double *omega, int64_t capacity, double *event_cycles, int64_t *event_kind, int64_t *event_contact, int64_t *events, hbvib_life_info *info);
 hbvib_status hbvib_best_load_init(hbvib_best_load *b, size_t size_of_b);
 hbvib_status hbvib_best_load_for_life(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_life_options *options, double cycles, double factor_low, double factor_high, const hbvib_hooks *hooks, hbvib_best_load *out);
+hbvib_status hbvib_data_init(hbvib_data *d, size_t size_of_d);
+hbvib_status hbvib_unknown_init(hbvib_unknown *u, size_t size_of_u);
+hbvib_status hbvib_fit_options_init(hbvib_fit_options *o, size_t size_of_o);
+hbvib_status hbvib_fit_info_init(hbvib_fit_info *i, size_t size_of_i);
+hbvib_status hbvib_fit(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_fit_options *options, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, const hbvib_unknown *unknowns, const hbvib_data *data, int64_t data_len, hbvib_fit_info *info, double *theta, double *covariance, int64_t residuals_len, double *residuals, double *values, hbvib_model **out);
+hbvib_status hbvib_predict(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_data *wanted, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, const double *theta, const double *covariance, int64_t capacity, double *values, double *sigma, double *shift);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_forced_residual(const hbvib_model *model, const hbvib_solver_options *solver, double omega, const double *x, int64_t x_len, double *r, int64_t r_len, double *jac, int64_t jac_len, double *d_omega, int64_t d_omega_len);

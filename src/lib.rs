@@ -123,8 +123,12 @@ pub use analysis::band_curve::{BandPoint, band_curve};
 pub use analysis::batch::{Batch, batch};
 pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
 pub use analysis::damped_modes::{DampedModes, damped_modes};
 pub use analysis::design_peak::DesignPeak;
+pub use analysis::fit::{
+    DataKind, Fit, FitData, FitOptions, Loss, Prediction, Scale, Suspicion, Unknown, fit, predict,
+};
 pub use analysis::floquet::floquet;
 pub use analysis::forced_response::forced_response;
 pub use analysis::freedom::{FreeSlider, freedom, freedom_with};

@@ -42,16 +42,19 @@ from ._c import *
 from ._caller_law import ForceCall
 from ._calls import CancelFlag
 from ._damper import DamperPlace
+from ._decay import Decay, decay_backbone
 from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError, NumericalError, OutOfMemoryError,
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
+from ._fit_results import Fit, Predicted, Profile, SuspiciousUnits
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
 from ._life import Life, LifeEvents
+from ._measured import Measured, Unknown
 from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
-from ._sensitivity import Parameter, Sensitivities
+from ._sensitivity import ComplexSensitivities, Parameter, Sensitivities
 from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
@@ -64,11 +67,12 @@ __all__ = [
     "Error", "ArgumentError", "OutOfRangeError", "FreedError", "BusyError", "NumericalError", "UnsupportedError",
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
-    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
+    "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
+    "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
-    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",
+    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "decay_backbone",
     "get_include",
     # the C interface
     "lib", "structs",

@@ -10,7 +10,8 @@ __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block
     "AeroForm", "SectorFrame", "Mistuning", "ContactKind", "Tangent", "Flexibility", "Stability", "LogLevel", "Phase",
     "Measure", "Component", "Field", "Reading", "FlexibilityWay", "State", "ContactState", "DampingForm",
     "ModeMultiple", "SynthesisFlag", "SteadyMethod", "Waves", "MultiplierClass", "Grazing", "Bifurcation",
-    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf", "ModeBandOf", "LifeFollow", "LifeEvent"]
+    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf", "ModeBandOf", "LifeFollow", "LifeEvent",
+    "DataKind", "Scale", "Suspicion"]
 
 
 class Status(enum.IntEnum):
@@ -867,6 +868,58 @@ class LifeEvent(enum.IntEnum):
     PRESSED = 3
     LIMIT = 4
 
+
+class DataKind(enum.IntEnum):
+    """Kinds of data.
+
+    RESPONSE   Complex amplitude of a response at angular frequencies.
+    AMPLITUDE   Measure of a response at angular frequencies.
+    PEAK   Measure of a response at the peak nearest to an angular frequency, and where it is.
+    BACKBONE   Angular frequency and damping ratio of a nonlinear mode at log10 of its modal amplitude.
+    LINEAR_MODE   Angular frequency and damping ratio of the mode in which all contacts stick.
+
+    >>> import hbvib
+    >>> hbvib.DataKind(0)
+    <DataKind.RESPONSE: 0>
+    """
+    RESPONSE = 0
+    AMPLITUDE = 1
+    PEAK = 2
+    BACKBONE = 3
+    LINEAR_MODE = 4
+
+
+class Scale(enum.IntEnum):
+    """Scale in which an unknown of a fit is changed.
+
+    AUTOMATIC   Logarithm for stiffnesses, friction, loads and factors that start above 0, else the value.
+    LINEAR   The value itself.
+    LOG   Its logarithm: it stays above 0.
+
+    >>> import hbvib
+    >>> hbvib.Scale(0)
+    <Scale.AUTOMATIC: 0>
+    """
+    AUTOMATIC = 0
+    LINEAR = 1
+    LOG = 2
+
+
+class Suspicion(enum.IntEnum):
+    """Units that data of a fit may have.
+
+    NONE   Nothing is suspected.
+    RESPONSE   The responses of the data are a power of ten times those of the model.
+    FREQUENCY   The angular frequencies of the data are too small, or too large, by 2 pi.
+
+    >>> import hbvib
+    >>> hbvib.Suspicion(0)
+    <Suspicion.NONE: 0>
+    """
+    NONE = 0
+    RESPONSE = 1
+    FREQUENCY = 2
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -948,6 +1001,13 @@ life_options: uint32 struct_size; int32 follow; pointer contacts rates areas; in
 life_info: uint32 struct_size; int32 reserved; int64 steps solutions points; double reached largest largest_at
     amplitude_new amplitude_worn
 best_load: uint32 struct_size; int32 reserved; double factor amplitude amplitude_new amplitude_worn; int64 lives
+data: uint32 struct_size; int32 kind; double force_factor; pointer response; int64 mode; double omega_start omega_stop;
+    int64 n; pointer x value sigma second_sigma
+unknown: uint32 struct_size; int32 scale; double start lower upper prior_mean prior_sigma; int64 tied_to; int32
+    has_start has_lower has_upper reserved
+fit_options: uint32 struct_size; int32 scale_covariance; double huber; int64 starts max_iterations; double step
+fit_info: uint32 struct_size; int32 suspicion; double chi2 loss; int64 degrees_of_freedom data free iterations starts
+    at_bound slipping; double aic bic condition harmonic_error suspected_factor
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -1104,6 +1164,7 @@ branch_bifurcations: h l p p p p p p p
 branch_limit_cycles: h l p p p p p
 parameter_init: parameter z
 sensitivity: h h l i parameter l p l p p hooks
+response_sensitivity: h h l response parameter l p l p p p p hooks
 parameter_options_init: parameter_options z
 parameter_response: h solver_options parameter_options hooks p
 branch_optima: h l p p p p p
@@ -1131,6 +1192,12 @@ life_info_init: life_info z
 life: h solver_options life_options hooks l p p p p p p l p p p p life_info
 best_load_init: best_load z
 best_load_for_life: h solver_options life_options d d d hooks best_load
+data_init: data z
+unknown_init: unknown z
+fit_options_init: fit_options z
+fit_info_init: fit_info z
+fit: h solver_options fit_options hooks parameter l unknown data l fit_info p p l p p p
+predict: h solver_options data hooks parameter l p p l p p p
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -1335,6 +1402,9 @@ if TYPE_CHECKING:
         def hbvib_parameter_init(self, p: Any, size_of_p: int) -> int: ...
         def hbvib_sensitivity(self, model: Any, branch: Any, point: int, of: int, parameters: Any, count: int,
             derivatives: Any, derivatives_len: int, reasons: Any, onset: Any, hooks: Any) -> int: ...
+        def hbvib_response_sensitivity(self, model: Any, branch: Any, point: int, response: Any, parameters: Any, count:
+            int, derivatives: Any, derivatives_len: int, reasons: Any, onset: Any, value: Any, by_omega: Any, hooks:
+            Any) -> int: ...
         def hbvib_parameter_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_parameter_response(self, model: Any, solver: Any, options: Any, hooks: Any, out: Any) -> int: ...
         def hbvib_branch_optima(self, branch: Any, capacity: int, parameter: Any, amplitude: Any, maximum: Any, point:
@@ -1381,6 +1451,15 @@ if TYPE_CHECKING:
         def hbvib_best_load_init(self, b: Any, size_of_b: int) -> int: ...
         def hbvib_best_load_for_life(self, model: Any, solver: Any, options: Any, cycles: float, factor_low: float,
             factor_high: float, hooks: Any, out: Any) -> int: ...
+        def hbvib_data_init(self, d: Any, size_of_d: int) -> int: ...
+        def hbvib_unknown_init(self, u: Any, size_of_u: int) -> int: ...
+        def hbvib_fit_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_fit_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_fit(self, model: Any, solver: Any, options: Any, hooks: Any, parameters: Any, count: int, unknowns:
+            Any, data: Any, data_len: int, info: Any, theta: Any, covariance: Any, residuals_len: int, residuals: Any,
+            values: Any, out: Any) -> int: ...
+        def hbvib_predict(self, model: Any, solver: Any, wanted: Any, hooks: Any, parameters: Any, count: int, theta:
+            Any, covariance: Any, capacity: int, values: Any, sigma: Any, shift: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,

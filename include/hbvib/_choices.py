@@ -3,8 +3,8 @@ from __future__ import annotations
 
 from typing import Literal, Union
 
-from ._c import (AeroForm, BandOf, Block, Component, ContactKind, ContactState, DampingForm, Field, Follow, LogLevel, MatrixKind,
-                 Measure, Mistuning, ModeBandOf, ParameterKind, Part, Quantity, Scaling, SectorFrame, SteadyMethod, Waves)
+from ._c import (AeroForm, BandOf, Block, Component, ContactKind, ContactState, DampingForm, DataKind, Field, Follow, LogLevel, MatrixKind,
+                 Measure, Mistuning, ModeBandOf, ParameterKind, Part, Quantity, Scale, Scaling, SectorFrame, SteadyMethod, Waves)
 
 AeroForms = Union[AeroForm, Literal["displacement", "velocity"], int]
 BandOfs = Union[BandOf, Literal["amplitude", "peak_amplitude", "peak_omega"], int]
@@ -12,6 +12,7 @@ Blocks = Union[Block, Literal["own", "next", "previous"], int]
 Components = Union[Component, Literal["displacement", "velocity", "acceleration"], int]
 ContactKinds = Union[ContactKind, Literal["jenkins", "friction_2d", "friction_3d", "unilateral", "cubic", "regularised"], int]
 ContactStates = Union[ContactState, Literal["free", "stuck", "static"], int]
+DataKinds = Union[DataKind, Literal["response", "amplitude", "peak", "backbone", "linear_mode"], int]
 DampingForms = Union[DampingForm, Literal["mass", "stiffness"], int]
 Fields = Union[
     Field,
@@ -38,6 +39,7 @@ Parts = Union[
 Quantities = Union[
     Quantity,
     Literal["amplitude", "peak_amplitude", "peak_omega", "mode_omega", "mode_damping", "response", "response_peak_omega"], int]
+Scales = Union[Scale, Literal["automatic", "linear", "log"], int]
 Scalings = Union[Scaling, Literal["additive", "factor"], int]
 SectorFrames = Union[SectorFrame, Literal["cartesian", "cylindrical"], int]
 SteadyMethods = Union[SteadyMethod, Literal["shooting", "marching"], int]

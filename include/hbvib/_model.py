@@ -16,6 +16,7 @@ from ._caller_law import _CallerLaws
 from ._calls import _call
 from ._convert import _array, _member, _whole
 from ._damper import _Dampers
+from ._fit import _Fits
 from ._library import lib
 from ._life import _Lives
 from ._linear_modes import _LinearModes
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from ._choices import MatrixKinds, SectorFrames
 
 
-class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands, _ModeBands,
+class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands, _ModeBands, _Fits,
             _StaticHistories, _Wheels, _WheelStudies, _Dampers, _Lives, _TimeSweeps):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.

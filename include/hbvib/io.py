@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
 
+from ._test_files import TestFunction, read_uff
+
 if TYPE_CHECKING:
     from ._results import IntArray
 
-__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "WriteError", "read", "write", "write_universal"]
+__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "TestFunction", "WriteError", "read", "read_uff", "write", "write_universal"]
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 _FOLDERS = ("", "../../target/release", "../../target/debug", "../../../lib", "../../lib")

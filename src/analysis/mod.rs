@@ -11,11 +11,13 @@ mod branch_switching;
 pub mod campbell;
 pub mod check_jacobian;
 mod coarse_start;
+pub mod complex_sensitivity;
 pub mod damped_modes;
 mod damping_maximum;
 pub mod design_peak;
 mod detached_curves;
 mod evaluation_need;
+pub mod fit;
 pub mod floquet;
 mod floquet_on_modes;
 mod followed;
@@ -75,7 +77,11 @@ pub use crate::analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, b
 pub use crate::analysis::band_curve::{BandPoint, band_curve};
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use crate::analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
 pub use crate::analysis::design_peak::DesignPeak;
+pub use crate::analysis::fit::{
+    DataKind, Fit, FitData, FitOptions, Loss, Prediction, Scale, Suspicion, Unknown, fit, predict,
+};
 pub use crate::analysis::floquet::floquet;
 pub use crate::analysis::forced_response::forced_response;
 pub use crate::analysis::freedom::{FreeSlider, freedom, freedom_with};

@@ -386,7 +386,7 @@ fn quantity(of: i32) -> Result<Quantity> {
     )
 }
 
-fn reason_number(reason: Reason) -> i64 {
+pub(super) fn reason_number(reason: Reason) -> i64 {
     use hbvib_derivative as d;
     let reason = match reason {
         Reason::Exists => d::HBVIB_DERIVATIVE_EXISTS,

@@ -37,6 +37,10 @@ pub(crate) struct ForcedPoint<'a> {
     by_omega: Vec<Complex64>,
     /// A response in place of the amplitude, with its derivatives at the point linearised last.
     watched: Option<(Box<Gauges<'a>>, Option<Derivatives>)>,
+    /// The part of the complex amplitude of the watched response that is differentiated instead of its measure.
+    turn: Option<Complex64>,
+    /// The complex amplitude that was read last, in the unit of lengths.
+    seen: Complex64,
 }
 
 impl<'a> ForcedPoint<'a> {
@@ -67,6 +71,8 @@ impl<'a> ForcedPoint<'a> {
             by_omega: try_vec(dofs, Complex64::ZERO, CONTEXT)?,
             problem,
             watched: None,
+            turn: None,
+            seen: Complex64::ZERO,
         })
     }
 
@@ -102,8 +108,15 @@ impl<'a> ForcedPoint<'a> {
         };
         let mut v = try_copy(u, CONTEXT)?;
         try_push(&mut v, omega, CONTEXT)?;
-        let found = gauges.derivatives(&v, 0)?;
-        let value = found.value;
+        let (value, found) = if let Some(turn) = self.turn {
+            let (amplitude, found) = gauges.part(&v, 0, turn)?;
+            self.seen = amplitude;
+            // The derivatives of a part do not vanish with it.
+            (1.0, found)
+        } else {
+            let found = gauges.derivatives(&v, 0)?;
+            (found.value, found)
+        };
         let n = self.condensed.ndof();
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mut field = try_copy(&found.by_motion[i * n..(i + 1) * n], CONTEXT)?;
@@ -136,6 +149,30 @@ impl<'a> ForcedPoint<'a> {
         let mut adjoint = self.of_lambda((u, omega), amplitude, &lambda)?;
         adjoint.lambda = lambda;
         Ok(Some(adjoint))
+    }
+
+    /// The complex amplitude of the watched response at the solution `u`, and the adjoints of its real and of its imaginary part, from
+    /// one factorisation; `None` where Newton's matrix is singular.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn parts(&mut self, u: &[f64], omega: f64) -> Result<Option<(Complex64, [Adjoint; 2])>> {
+        self.turn = Some(Complex64::ONE);
+        let mut of_real = try_vec(u.len(), 0.0, CONTEXT)?;
+        let unit = self.linearise(u, omega, &mut of_real)?;
+        match self.system.factor(self.interrupt) {
+            Err(e) if e.status == Status::Singular => return Ok(None),
+            factored => factored?,
+        }
+        self.system.solve_transposed(&mut of_real);
+        let real = self.of_lambda((u, omega), unit, &of_real)?;
+        self.turn = Some(Complex64::I);
+        let mut of_imaginary = try_vec(u.len(), 0.0, CONTEXT)?;
+        self.response_gradient(u, omega, &mut of_imaginary)?;
+        self.system.solve_transposed(&mut of_imaginary);
+        let imaginary = self.of_lambda((u, omega), unit, &of_imaginary)?;
+        self.turn = None;
+        Ok(Some((self.seen * self.condensed.length(), [real, imaginary])))
     }
 
     /// The derivatives of A − λᵀR by the motions and by ω, at a fixed λ.

@@ -306,6 +306,7 @@ fn jobs_and_manifests_of_the_book_are_read() {
                 let file = data.join("sector").with_extension(extension);
                 fs::copy(file, folder.join("wheel").with_extension(extension)).unwrap();
             }
+            fs::write(folder.join("test.csv"), "hz, re, im\n1.0, 0.1, -0.2\n").unwrap();
             // The nodes of these data lie further apart.
             let part = fence.text.replace("largest_distance = 1e-3", "largest_distance = 10.0");
             let range = "[forced]\nfrom_hz = 1.0\nto_hz = 2.0\n";

@@ -178,6 +178,11 @@ fn derivatives_by_parameters_are_computed_and_refused() {
 }
 
 #[test]
+fn parameters_are_fitted_to_data_and_predicted() {
+    silent("fit", |_| vec![]);
+}
+
+#[test]
 fn residual_forces_have_their_freedom_and_band() {
     silent("band", |_| vec![]);
     silent("life", |_| vec![]);

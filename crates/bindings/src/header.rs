@@ -99,6 +99,7 @@ pub const SECTIONS: [Section; 13] = [
         about: "parameters of a model, derivatives of results by them, responses over them",
         files: &[
             "sensitivities",
+            "complex_sensitivities",
             "parameter_responses",
             "parameter_optima",
             "batch",
@@ -108,6 +109,8 @@ pub const SECTIONS: [Section; 13] = [
             "mode_bands",
             "static_history",
             "life",
+            "fit_data",
+            "fit",
         ],
     },
     Section {

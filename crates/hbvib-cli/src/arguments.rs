@@ -57,6 +57,9 @@ pub enum Verb {
         "Examples:\n  hbvib run job.toml\n  hbvib run --strict job.toml   # warnings on the model are errors\n\n{CODES}"
     ))]
     Run(JobArguments),
+    /// Fits parameters of the model of a job to data of tests: its parts [fit] and [[data]].
+    #[command(after_help = format!("Example:\n  hbvib fit job.toml\n\n{CODES}"))]
+    Fit(JobArguments),
     /// Reads a job and its files, builds the model, and reports on it without solving.
     #[command(after_help = "\
 Examples:

@@ -4,7 +4,7 @@ use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
 use crate::model_report::ModelReport;
-use crate::{band_curve, campbell, map, motion_files, print, study, tornado, wheel_response};
+use crate::{band_curve, campbell, fit_run, map, motion_files, print, study, tornado, wheel_response};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -84,6 +84,9 @@ pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     }
     if let Some(part) = &job.map {
         map::check(part, built)?;
+    }
+    if let Some(part) = &job.fit {
+        fit_run::check(job, part, built)?;
     }
     if let Some(part) = &job.tornado {
         tornado::check(part, built)?;

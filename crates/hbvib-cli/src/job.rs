@@ -1,6 +1,7 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
 use crate::job_faces::FacesPart;
+use crate::job_fit::{DataPart, FitPart};
 use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
@@ -36,6 +37,10 @@ pub struct Job {
     pub tornado: Option<TornadoPart>,
     pub band: Option<BandPart>,
     pub wheel: Option<WheelPart>,
+    pub fit: Option<FitPart>,
+    /// Data of tests, which [fit] explains.
+    #[serde(default)]
+    pub data: Vec<DataPart>,
     pub restart: Option<RestartPart>,
     #[serde(default)]
     pub output: OutputPart,
@@ -451,6 +456,9 @@ impl Job {
         if !job.response.is_empty() && job.forced.is_none() {
             return Err(format!("{}: [[response]] needs [forced]", path.display()));
         }
+        if !job.data.is_empty() && job.fit.is_none() {
+            return Err(format!("{}: [[data]] needs [fit]", path.display()));
+        }
         if job.response.is_empty() && job.forced.as_ref().is_some_and(|part| part.together) {
             return Err(format!("{}: [forced]: together needs [[response]]", path.display()));
         }
@@ -483,10 +491,11 @@ impl Job {
             self.tornado.is_some(),
             self.band.is_some(),
             self.wheel.is_some(),
+            self.fit.is_some(),
         ];
         if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band] or [wheel]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band], [wheel] or [fit]",
                 path.display()
             ));
         }

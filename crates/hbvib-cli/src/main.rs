@@ -31,6 +31,8 @@ mod face_images;
 mod faces;
 mod figure;
 mod files;
+mod fit_files;
+mod fit_run;
 mod frd;
 mod html_report;
 mod init;
@@ -38,6 +40,7 @@ mod init_job;
 mod inp_cards;
 mod job;
 mod job_faces;
+mod job_fit;
 mod job_motion;
 mod job_solutions;
 mod job_static;
@@ -116,6 +119,7 @@ fn main() -> ExitCode {
 fn done(verb: &Verb) -> Outcome<u8> {
     match verb {
         Verb::Run(of) => run_job::run(&of.job, of.strict),
+        Verb::Fit(of) => run_job::fit(&of.job, of.strict),
         Verb::Check { of, json } => check::check(&of.job, of.strict, *json),
         Verb::Modes(of) => modes_table::modes(&of.job, of.strict),
         Verb::Init(of) => init::init(of),

@@ -12,8 +12,8 @@ use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
-    band_curve, campbell, check, contact_tables, html_report, map, motion_files, output, solutions, study, tornado,
-    verification, wheel_response,
+    band_curve, campbell, check, contact_tables, fit_run, html_report, map, motion_files, output, solutions, study,
+    tornado, verification, wheel_response,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -49,6 +49,32 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
         }
     }
     Ok(end.code(&files))
+}
+
+/// Runs the fit of a job alone; returns the exit code.
+///
+/// # Errors
+/// A sentence where nothing was computed.
+pub fn fit(path: &Path, strict: bool) -> Outcome<u8> {
+    let stop = end::stop_flag()?;
+    let job = Job::read(path)?;
+    let Some(part) = &job.fit else {
+        return Err(format!("{}: names no fit: needs [fit]", path.display()));
+    };
+    let built = built(&job)?;
+    fit_run::check(&job, part, &built)?;
+    built.warn(strict)?;
+    let mut files = Files::of(&job);
+    let mut end = End::default();
+    fitted(&job, &built, &stop, &mut files, &mut end);
+    Ok(end.code(&files))
+}
+
+fn fitted(job: &Job, built: &Built, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
+    if let Some(part) = job.fit.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| fit_run::write(job, part, built, hooks, files));
+        ended(outcome, "fit", stop, files, end);
+    }
 }
 
 /// Writes what a branch has, points before all else.
@@ -103,6 +129,7 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut File
         let outcome = watched(stop, |hooks| wheel_response::write(part, built, hooks, files));
         ended(outcome, "wheel", stop, files, end);
     }
+    fitted(job, built, stop, files, end);
 }
 
 fn ended(outcome: Outcome<map::Written>, part: &str, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {

@@ -11,6 +11,7 @@ mod contact_outputs;
 mod decimal_comma;
 mod doubtful_jobs;
 mod first_job;
+mod fits;
 mod html_reports;
 mod lost_runs;
 mod map_and_tornado;

@@ -160,6 +160,16 @@ void friction() {
   near(found.derivatives.at(2), found.derivatives.at(3), 1e-14, "a stiffness of 1");
   claim(found.reasons.at(3) == HBVIB_DERIVATIVE_EXISTS && found.onset == -1, "all derivatives exist");
 
+  // The complex amplitude, and a fit to its values.
+  const auto whole = model.response_sensitivity(branch, peak.point, parameters, 0);
+  near(std::abs(whole.value), peak.amplitude, 1e-9, "the complex amplitude");
+  claim(std::abs(whole.derivatives.at(0) + preload * whole.derivatives.at(1) - whole.value) < 1e-8, "the complex motion scales");
+  const std::vector<double> at = {peak.omega}, deviation = {1e-3};
+  const std::vector<Complex> seen = {whole.value};
+  const auto fitted = model.fit(solver, {parameters[1]}, {}, {hbvib::DataSet(at, seen, deviation)});
+  near(fitted.theta.at(0), preload, 1e-5 * preload, "a fit to the model itself");
+  claim(fitted.info.data == 2 && fitted.covariance.at(0) > 0 && fitted.residuals.size() == 2, "numbers of a fit");
+
   // The peak over the normal load.
   const auto study = model.parameter_response(
       solver, hbvib::ParameterOptions(hbvib::Parameter(HBVIB_PARAMETER_PRELOAD, 0), 1, 2, peak.omega, HBVIB_FOLLOW_PEAK));

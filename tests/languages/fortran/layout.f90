@@ -48,6 +48,10 @@ program layout
    call life_options()
    call life_info()
    call best_load()
+   call data()
+   call unknown()
+   call fit_options()
+   call fit_info()
    ! END GENERATED
 
 contains
@@ -726,6 +730,72 @@ contains
       call field('amplitude_worn', c_loc(s), c_loc(s%amplitude_worn), c_sizeof(s%amplitude_worn))
       call field('lives', c_loc(s), c_loc(s%lives), c_sizeof(s%lives))
    end subroutine best_load
+
+   subroutine data()
+      type(hbvib_data), target :: s
+      call whole('hbvib_data', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('kind', c_loc(s), c_loc(s%kind), c_sizeof(s%kind))
+      call field('force_factor', c_loc(s), c_loc(s%force_factor), c_sizeof(s%force_factor))
+      call field('response', c_loc(s), c_loc(s%response), c_sizeof(s%response))
+      call field('mode', c_loc(s), c_loc(s%mode), c_sizeof(s%mode))
+      call field('omega_start', c_loc(s), c_loc(s%omega_start), c_sizeof(s%omega_start))
+      call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
+      call field('n', c_loc(s), c_loc(s%n), c_sizeof(s%n))
+      call field('x', c_loc(s), c_loc(s%x), c_sizeof(s%x))
+      call field('value', c_loc(s), c_loc(s%value), c_sizeof(s%value))
+      call field('sigma', c_loc(s), c_loc(s%sigma), c_sizeof(s%sigma))
+      call field('second_sigma', c_loc(s), c_loc(s%second_sigma), c_sizeof(s%second_sigma))
+   end subroutine data
+
+   subroutine unknown()
+      type(hbvib_unknown), target :: s
+      call whole('hbvib_unknown', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('scale', c_loc(s), c_loc(s%scale), c_sizeof(s%scale))
+      call field('start', c_loc(s), c_loc(s%start), c_sizeof(s%start))
+      call field('lower', c_loc(s), c_loc(s%lower), c_sizeof(s%lower))
+      call field('upper', c_loc(s), c_loc(s%upper), c_sizeof(s%upper))
+      call field('prior_mean', c_loc(s), c_loc(s%prior_mean), c_sizeof(s%prior_mean))
+      call field('prior_sigma', c_loc(s), c_loc(s%prior_sigma), c_sizeof(s%prior_sigma))
+      call field('tied_to', c_loc(s), c_loc(s%tied_to), c_sizeof(s%tied_to))
+      call field('has_start', c_loc(s), c_loc(s%has_start), c_sizeof(s%has_start))
+      call field('has_lower', c_loc(s), c_loc(s%has_lower), c_sizeof(s%has_lower))
+      call field('has_upper', c_loc(s), c_loc(s%has_upper), c_sizeof(s%has_upper))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+   end subroutine unknown
+
+   subroutine fit_options()
+      type(hbvib_fit_options), target :: s
+      call whole('hbvib_fit_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('scale_covariance', c_loc(s), c_loc(s%scale_covariance), c_sizeof(s%scale_covariance))
+      call field('huber', c_loc(s), c_loc(s%huber), c_sizeof(s%huber))
+      call field('starts', c_loc(s), c_loc(s%starts), c_sizeof(s%starts))
+      call field('max_iterations', c_loc(s), c_loc(s%max_iterations), c_sizeof(s%max_iterations))
+      call field('step', c_loc(s), c_loc(s%step), c_sizeof(s%step))
+   end subroutine fit_options
+
+   subroutine fit_info()
+      type(hbvib_fit_info), target :: s
+      call whole('hbvib_fit_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('suspicion', c_loc(s), c_loc(s%suspicion), c_sizeof(s%suspicion))
+      call field('chi2', c_loc(s), c_loc(s%chi2), c_sizeof(s%chi2))
+      call field('loss', c_loc(s), c_loc(s%loss), c_sizeof(s%loss))
+      call field('degrees_of_freedom', c_loc(s), c_loc(s%degrees_of_freedom), c_sizeof(s%degrees_of_freedom))
+      call field('data', c_loc(s), c_loc(s%data), c_sizeof(s%data))
+      call field('free', c_loc(s), c_loc(s%free), c_sizeof(s%free))
+      call field('iterations', c_loc(s), c_loc(s%iterations), c_sizeof(s%iterations))
+      call field('starts', c_loc(s), c_loc(s%starts), c_sizeof(s%starts))
+      call field('at_bound', c_loc(s), c_loc(s%at_bound), c_sizeof(s%at_bound))
+      call field('slipping', c_loc(s), c_loc(s%slipping), c_sizeof(s%slipping))
+      call field('aic', c_loc(s), c_loc(s%aic), c_sizeof(s%aic))
+      call field('bic', c_loc(s), c_loc(s%bic), c_sizeof(s%bic))
+      call field('condition', c_loc(s), c_loc(s%condition), c_sizeof(s%condition))
+      call field('harmonic_error', c_loc(s), c_loc(s%harmonic_error), c_sizeof(s%harmonic_error))
+      call field('suspected_factor', c_loc(s), c_loc(s%suspected_factor), c_sizeof(s%suspected_factor))
+   end subroutine fit_info
 
    ! END GENERATED
 

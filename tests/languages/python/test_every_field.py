@@ -348,6 +348,52 @@ def kicked_off(**o):
 
 
 lived()
+
+
+AT = np.array([0.7, 0.8, 0.9, 1.0])
+SEEN = plain.forced_response((0.7, 1.0), at=AT, harmonics=5, response_dof=0)
+HEARD = np.array([SEEN.harmonics(SEEN.at(i).point[0])[1, 0] for i in range(4)]) * [1.02, 1.0, 0.98, 1.01]
+BODIES = dict(n=4, x=AT, value=HEARD, sigma=np.full(4, 0.01))
+MODAL = dict(kind=4, n=1, mode=1, x=np.zeros(1), value=np.array([1.6 + 0.02j]), sigma=np.array([1e-3]))
+CREST = response.peaks()
+NEAR = dict(kind=2, n=1, x=CREST.omega[:1].copy(), value=1.02 * CREST.amplitude[:1] + 1.001j * CREST.omega[:1], sigma=np.array([0.01]))
+
+
+def fitted(given=BODIES, unknown=None, options=None, kinds=(2,)):
+    """A fit of friction, or of friction and stiffness of the contact, with one struct of it perturbed."""
+    def run(**o):
+        values = dict(data={**given}, unknown=dict(unknown or {}), options=dict(options or {}))
+        values[run.of].update(o)
+        p = len(kinds)
+        parameters = [described(kind=kind, contact=0) for kind in kinds]
+        unknowns = [new("hbvib_unknown", **values["unknown"])] + [new("hbvib_unknown") for _ in kinds[1:]]
+        info, theta, covariance = new("hbvib_fit_info"), np.zeros(p), np.zeros((p, p))
+        call("hbvib_fit", plain.handle, solver(response_dof=0), new("hbvib_fit_options", **values["options"]), None,
+             (hbvib.structs["hbvib_parameter"] * p)(*parameters), p, (hbvib.structs["hbvib_unknown"] * p)(*unknowns[:p]),
+             new("hbvib_data", **values["data"]), 1, info, theta, covariance, 0, None, None, None)
+        return bits(theta, covariance, info.chi2, info.loss, info.iterations, info.starts)
+    run.of = "data"
+    return run
+
+
+def of(struct, **given):
+    run = fitted(**given)
+    run.of = struct
+    return run
+
+
+def tied(**o):
+    """Two unknowns, the second with a field."""
+    kinds = (2, 3)
+    parameters = [described(kind=kind, contact=0) for kind in kinds]
+    unknowns = [new("hbvib_unknown"), new("hbvib_unknown", **o)]
+    info, theta, covariance = new("hbvib_fit_info"), np.zeros(2), np.zeros((2, 2))
+    call("hbvib_fit", plain.handle, solver(response_dof=0), None, None, (hbvib.structs["hbvib_parameter"] * 2)(*parameters), 2,
+         (hbvib.structs["hbvib_unknown"] * 2)(*unknowns), new("hbvib_data", **BODIES), 1, info, theta, covariance, 0, None, None, None)
+    return bits(theta, covariance)
+
+
+OTHER_DOF = new("hbvib_response", n=1, dofs=np.array([1]))
 FOLLOW = hbvib.Follow
 KIND = hbvib.ParameterKind
 # Structs, their fields, and claims about each field with a call and a value.
@@ -485,6 +531,48 @@ TABLE = {
         "scaling": [(refused("scaling"), derivative(), 1), (refused("scaling"), derivative(kind=int(KIND.FORCE)), 1),
                     (refused("scaling"), derivative(kind=int(KIND.MASS), scaling=1), 2)],
         "reserved": [(refused("reserved"), derivative(), 1)],
+    },
+    "hbvib_data": {
+        "struct_size": [(refused("struct_size"), fitted(), 8)],
+        "kind": [(CHANGES, fitted({**BODIES, "value": abs(HEARD) + 0j}), 1), (refused("kind"), fitted(), 5)],
+        "force_factor": [(CHANGES, fitted(), 1.1), (refused("force_factor"), fitted(), NAN)],
+        "response": [(CHANGES, fitted(), np.frombuffer(OTHER_DOF, np.uint8))],
+        "mode": [(refused("mode 0"), fitted(MODAL, kinds=(3,)), 0), (refused("mode"), fitted(MODAL, kinds=(3,)), -1)],
+        "omega_start": [(refused("no solution"), fitted({**NEAR, "omega_start": 0.5, "omega_stop": 1.2}), 1.1), (refused("range"), fitted(), 1.0)],
+        "omega_stop": [(refused("range"), fitted({**NEAR, "omega_start": 0.5, "omega_stop": 1.2}), 0.4)],
+        "n": [(CHANGES, fitted(), 3), (refused("n = 0"), fitted(), 0), (refused("n"), fitted(), -1)],
+        "x": [(CHANGES, fitted(), 1.01 * AT), (refused("x"), fitted(), NONE), (refused("x[0]"), fitted(), -AT)],
+        "value": [(CHANGES, fitted(), 1.01 * HEARD), (refused("value"), fitted(), NONE)],
+        "sigma": [(CHANGES, fitted(), np.full(4, 0.02)), (refused("sigma"), fitted(), NONE), (refused("sigma[0]"), fitted(), np.zeros(4))],
+        "second_sigma": [(CHANGES, fitted(NEAR), np.array([1e-2])), (refused("second_sigma"), fitted(NEAR), np.array([-1.0]))],
+    },
+    "hbvib_unknown": {
+        "struct_size": [(refused("struct_size"), of("unknown"), 8)],
+        "scale": [(CHANGES, of("unknown", unknown=dict(has_start=1, start=0.4)), 1), (refused("scale"), of("unknown"), 3)],
+        "start": [(CHANGES, of("unknown", unknown=dict(has_start=1, start=0.4)), 0.35),
+                  (refused("start"), of("unknown", unknown=dict(has_start=1, start=0.4)), NAN),
+                  (same("if has_start is 1; otherwise that of the model"), of("unknown"), 0.4)],
+        "lower": [(CHANGES, of("unknown", unknown=dict(has_lower=1, lower=0.1)), 0.3),
+                  (refused("start"), of("unknown", unknown=dict(has_lower=1, lower=0.1)), 0.5)],
+        "upper": [(CHANGES, of("unknown", unknown=dict(has_start=1, start=0.2, has_upper=1, upper=0.9)), 0.21),
+                  (refused("start"), of("unknown", unknown=dict(has_upper=1, upper=0.9)), 0.1)],
+        "prior_mean": [(CHANGES, of("unknown", unknown=dict(prior_mean=0.3, prior_sigma=0.01)), 0.35),
+                       (refused("prior"), of("unknown", unknown=dict(prior_mean=0.3, prior_sigma=0.01)), NAN)],
+        "prior_sigma": [(CHANGES, of("unknown", unknown=dict(prior_mean=0.35, prior_sigma=0.01)), 0.02),
+                        (refused("prior_sigma"), of("unknown"), -1.0)],
+        "tied_to": [(CHANGES, tied, 0), (refused("tied_to"), tied, 1), (refused("tied_to"), tied, -2)],
+        "has_start": [(CHANGES, of("unknown", unknown=dict(start=0.4)), 1), (refused("has_start"), of("unknown"), 2)],
+        "has_lower": [(refused("start"), of("unknown", unknown=dict(lower=0.5)), 1), (refused("has_lower"), of("unknown"), 2)],
+        "has_upper": [(refused("start"), of("unknown", unknown=dict(upper=0.1)), 1), (refused("has_upper"), of("unknown"), 2)],
+        "reserved": [(refused("reserved"), of("unknown"), 1)],
+    },
+    "hbvib_fit_options": {
+        "struct_size": [(refused("struct_size"), of("options"), 8)],
+        "scale_covariance": [(CHANGES, of("options"), 1), (refused("scale_covariance"), of("options"), 2)],
+        "huber": [(CHANGES, of("options"), 0.5), (refused("huber"), of("options"), -1.0)],
+        "starts": [(CHANGES, of("options"), 3), (refused("starts"), of("options"), 0), (refused("starts"), of("options"), -1)],
+        "max_iterations": [(CHANGES, of("options", unknown=dict(has_start=1, start=0.4)), 1), (refused("max_iterations"), of("options"), 0)],
+        "step": [(CHANGES, of("options", unknown=dict(has_start=1, start=0.4)), 0.5), (refused("step"), of("options"), 0.0)],
     },
     "hbvib_parameter_options": {
         "struct_size": [(refused("struct_size"), over(FOLLOW.OMEGA), 8)],
@@ -632,6 +720,8 @@ FILLED = {
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
     "hbvib_band_info", "hbvib_wheel_info",
     "hbvib_descent", "hbvib_searched", "hbvib_kick", "hbvib_life_info", "hbvib_best_load", "hbvib_sweep_info",
+    "hbvib_band_info", "hbvib_fit_info", "hbvib_wheel_info",
+    "hbvib_descent", "hbvib_searched", "hbvib_kick",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED
 check("every struct is in a table or filled by the library", listed == set(hbvib.structs), listed ^ set(hbvib.structs))

@@ -216,6 +216,9 @@ ANALYSES = {
         "branch": [], "point": [(CHANGES, crest + 1), (refused("point"), 10**6)], "parameters": [(CHANGES, [hbvib.Parameter("kt")])],
         "of": [(refused("peak"), "peak_omega"), (refused("amplitude"), "speed")],
         "response": [(CHANGES, 1), (refused("response 7"), 7)]}),
+    "response_sensitivity": (*analysis(still.response_sensitivity, branch=seen, point=crest, parameters=[hbvib.Parameter("mu")], response=0), {
+        "branch": [], "point": [(CHANGES, crest + 1), (refused("point"), 10**6)], "parameters": [(CHANGES, [hbvib.Parameter("kt")])],
+        "response": [(CHANGES, 1), (refused("dofs"), 9)]}),
     "smallest_kick": (*analysis(lambda **o: np.array([spring.smallest_kick(**o).impulse]), branch=bent, point=low, saddle=between,
                                 saddle_branch=bent, dof=0, phases=2), {
         "branch": [(refused("model"), branch)], "point": [(refused("point"), 10**6)], "saddle": [(refused("saddle"), 10**6)],
@@ -315,11 +318,11 @@ for name, (structs, others) in OF_STRUCTS.items():
     check(f"{name}: every argument is a field", arguments <= fields, arguments - fields)
 
 # Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and wheels of
-# test_wheels.py, add_damper, whose arguments are fields of test_every_field.py.
+# test_wheels.py, fits of test_fits.py, add_damper, whose arguments are fields of test_every_field.py.
 PLAIN = {
     "add_contact", "add_damper", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic",
     "free", "from_bytes", "load", "matrix", "mistune", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
-    "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
+    "fit", "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
     "limit_cycles",
     "mode_point", "point",
     "to_dataframe", "to_xarray",

@@ -62,6 +62,9 @@ PREFIXES = dict(
     Follow="FOLLOW_",
     BandOf="BAND_",
     ModeBandOf="MODE_BAND_",
+    DataKind="DATA_",
+    Scale="SCALE_",
+    Suspicion="SUSPICION_",
     AeroForm="AERO_",
     Mistuning="MISTUNING_",
     FlexibilityWay="FLEXIBILITY_WAY_",
@@ -70,7 +73,7 @@ ours = {"HBVIB_GROUND": hbvib.GROUND, "HBVIB_DIAMETER_OF_ENGINE_ORDER": hbvib.DI
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
-    "ParameterKind Scaling Quantity Derivative Follow BandOf ModeBandOf AeroForm Mistuning FlexibilityWay Measure "
+    "ParameterKind Scaling Quantity Derivative Follow BandOf ModeBandOf DataKind Scale Suspicion AeroForm Mistuning FlexibilityWay Measure "
     "Component Reading LifeFollow LifeEvent"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():

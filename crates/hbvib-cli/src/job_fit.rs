@@ -1,0 +1,104 @@
+//! The parts of a job that fit parameters to data of tests.
+
+use crate::job::DofName;
+use crate::job_studies::ParameterName;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// Parameters of the model from data of tests, with their uncertainty.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FitPart {
+    pub parameter: Vec<UnknownPart>,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<DofName>,
+    /// Standard deviations beyond which a residual counts by its magnitude, 1.345 for example; unless given all count by their squares.
+    pub huber: Option<f64>,
+    /// Points from which the search begins.
+    pub starts: Option<usize>,
+    /// The covariance is multiplied by chi2 over the degrees of freedom.
+    #[serde(default)]
+    pub scale_covariance: bool,
+    /// Data, values of the model and residuals, point by point.
+    pub csv: Option<PathBuf>,
+    /// All numbers of the fit.
+    pub json: Option<PathBuf>,
+    /// The text that is printed.
+    pub report: Option<PathBuf>,
+    /// Responses and amplitudes with the model; SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+}
+
+/// An unknown of the fit: constants of contacts and the speed have their own values, the others are factors, 1 in the model.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UnknownPart {
+    pub parameter: ParameterName,
+    /// Number of the contact, from 0; all contacts that have the constant unless given.
+    pub contact: Option<usize>,
+    /// A mass, stiffness or damping on each of these degrees of freedom instead of a factor: its value is added.
+    #[serde(default)]
+    pub dofs: Vec<DofName>,
+    /// First value; that of the model unless given.
+    pub start: Option<f64>,
+    pub lower: Option<f64>,
+    /// Equal to lower it fixes the value.
+    pub upper: Option<f64>,
+    /// Mean and standard deviation of what is known of it beside the data.
+    pub prior: Option<[f64; 2]>,
+    /// Number of an earlier unknown, from 0, which it follows in the ratio of their starts.
+    pub tied_to: Option<usize>,
+}
+
+/// Kind of data.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum DataName {
+    /// Complex amplitudes: columns hz, re, im, and sigma of |X|; or a universal file.
+    #[default]
+    Response,
+    /// Amplitudes: columns hz, amplitude, sigma.
+    Amplitude,
+    /// Peaks: columns hz, amplitude, sigma, and sigma_hz where the frequency is a datum.
+    Peak,
+    /// A nonlinear mode: columns log10_amplitude (modal), hz, sigma_hz, and damping with sigma_damping.
+    Backbone,
+    /// The mode in which all contacts stick: columns hz, sigma_hz, and damping with sigma_damping.
+    LinearMode,
+}
+
+/// Data of one kind at one level of the force.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DataPart {
+    #[serde(default)]
+    pub kind: DataName,
+    /// CSV with the names of its columns in the first line, or a universal file (.uff, .unv) with data set 58.
+    pub file: PathBuf,
+    /// Factor on the forces of the job.
+    #[serde(default = "whole")]
+    pub force: f64,
+    /// Degree of freedom of the response; the response degree of freedom of [fit] unless given.
+    pub dof: Option<DofName>,
+    /// Number of the linear mode with stuck contacts, from 0.
+    #[serde(default)]
+    pub mode: usize,
+    /// Standard deviation over each value, where the file has none.
+    pub sigma: Option<f64>,
+    /// Range that is followed, for peaks.
+    pub from_hz: Option<f64>,
+    pub to_hz: Option<f64>,
+    /// Node and direction of the function of a universal file; its first function unless given.
+    pub node: Option<i64>,
+    pub direction: Option<i64>,
+    /// Amplitude of the force of the test, by which a frequency response of a universal file is multiplied.
+    #[serde(default = "whole")]
+    pub frf_force: f64,
+}
+
+fn whole() -> f64 {
+    1.0
+}

@@ -1,0 +1,113 @@
+"""Backbones from decays: frequency and damping against amplitude of a signal that one mode leads."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ._measured import Measured
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._results import FloatArray
+
+
+class Decay(NamedTuple):
+    """Frequency and damping of a decay against its amplitude, one number for each window; made by decay_backbone.
+
+    amplitude                of the displacement at the middle of the window.
+    omega, sigma             angular frequency and its standard deviation.
+    damping, damping_sigma   damping ratio and its standard deviation.
+
+    >>> import hbvib
+    >>> import numpy as np
+    >>> hbvib.Decay(*np.ones((5, 2))).measured().kind
+    <DataKind.BACKBONE: 3>
+    """
+    amplitude: FloatArray
+    omega: FloatArray
+    sigma: FloatArray
+    damping: FloatArray
+    damping_sigma: FloatArray
+
+    def measured(self, shape: float = 1.0, mode: int = 0) -> Measured:
+        """The data of a fit.
+
+        shape   motion of the sensor in the linear mode of modal mass 1: the modal amplitude is that of the sensor over it.
+        mode    number of the linear mode with stuck contacts.
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> hbvib.Decay(*np.ones((5, 2))).measured(shape=0.1).x
+        array([1., 1.])
+        """
+        return Measured("backbone", np.log10(self.amplitude / abs(shape)), self.omega, self.sigma, second=self.damping,
+                        second_sigma=self.damping_sigma, mode=mode)
+
+
+def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, component: int = 0) -> Decay:
+    """Frequency and damping against amplitude from zero crossings and extremes of a decay in which one mode is left: filter other
+    modes away before (the method of zero crossings, Londono, Neild & Cooper 2015, doi:10.1016/j.jsv.2014.12.019).
+
+    Zero crossings are those of lines through both samples, extremes those of parabolas through the three samples around the largest.
+    In each window of `cycles` periods lines are fitted to the instants of the crossings, whose slope is half a period, and to the
+    logarithms of the extremes, whose slope is -D omega; what is left of both gives the standard deviations.
+
+    time, signal   samples at equal distances; ten a period or more.
+    component      0: displacement, 1: velocity, 2: acceleration, whose amplitudes are divided by omega once or twice.
+
+    >>> import hbvib
+    >>> import numpy as np
+    >>> t = np.arange(0, 60, 0.01)
+    >>> found = hbvib.decay_backbone(t, np.exp(-0.02 * t) * np.cos(2 * t))
+    >>> found.omega[:1].round(4), found.damping[:1].round(4)
+    (array([2.]), array([0.01]))
+    """
+    t, x = np.asarray(time, float), np.asarray(signal, float)
+    if t.ndim != 1 or t.shape != x.shape or len(t) < 10:
+        raise ValueError(f"time and signal have shapes {t.shape} and {x.shape}, need one dimension, equal lengths, 10 samples")
+    if cycles < 2:
+        raise ValueError(f"cycles = {cycles}, needs at least 2")
+    before = np.flatnonzero(x[:-1] * x[1:] < 0)
+    crossing = t[before] - x[before] * (t[before + 1] - t[before]) / (x[before + 1] - x[before])
+    instants, extremes = [], []
+    for a, b in zip(before[:-1] + 1, before[1:] + 1):
+        k = a + int(np.argmax(np.abs(x[a:b])))
+        if not 0 < k < len(x) - 1:
+            continue
+        left, middle, right = np.abs(x[k - 1:k + 2])
+        bend = left - 2 * middle + right
+        shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
+        instants.append(t[k] + shift * (t[k + 1] - t[k]))
+        extremes.append(middle - 0.25 * (left - right) * shift)
+    # Where sliders came to rest beside their place the motion has a mean: half of what lies between two extremes is the amplitude, and
+    # the mean of two crossings is free of it.
+    at = 0.5 * (np.array(instants[:-1]) + np.array(instants[1:]))
+    size = 0.5 * (np.array(extremes[:-1]) + np.array(extremes[1:]))
+    crossing = 0.5 * (crossing[:-1] + crossing[1:])
+    rows = []
+    for begin in range(0, len(crossing) - 2 * cycles, 2 * cycles):
+        own = crossing[begin:begin + 2 * cycles + 1]
+        half, of_half, _ = _line(np.arange(len(own), dtype=float), own)
+        within = (at > own[0]) & (at < own[-1])
+        if within.sum() < 4:
+            continue
+        middle = 0.5 * (own[0] + own[-1])
+        rate, of_rate, height = _line(at[within] - middle, np.log(size[within]))
+        omega = np.pi / half
+        sigma = omega * of_half / half
+        amplitude = np.exp(height) / omega ** component
+        rows.append((amplitude, omega, max(sigma, 1e-9 * omega), -rate / omega, max(of_rate / omega, 1e-9)))
+    if not rows:
+        raise ValueError("the signal has too few zero crossings for a window: give a longer signal, or fewer cycles")
+    return Decay(*np.array(rows).T)
+
+
+def _line(x: FloatArray, y: FloatArray) -> tuple[float, float, float]:
+    """Slope of the line through points, its standard deviation, and the height of the line at x = 0."""
+    middle = x.mean()
+    spread = float(((x - middle) ** 2).sum())
+    slope = float(((x - middle) * y).sum() / spread)
+    left = y - y.mean() - slope * (x - middle)
+    return slope, float(np.sqrt((left ** 2).sum() / max(len(x) - 2, 1) / spread)), float(y.mean() - slope * middle)

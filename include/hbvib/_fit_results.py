@@ -1,0 +1,242 @@
+"""Results of a fit: values with their uncertainty, residuals, predictions, profiles, a report."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from ._analyses import _solver_options
+from ._c import DataKind, LogLevel, Scaling
+from ._calls import _call, _Guard, _hooks
+from ._library import structs
+from ._measured import Measured, Unknown
+from ._responses import Response
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._c import Status, Suspicion
+    from ._choices import DataKinds
+    from ._model import Model
+    from ._results import ComplexArray, FloatArray
+    from ._sensitivity import Parameter
+
+#: Options of Model.fit that are none of the solver.
+_OF_FIT = ("huber", "starts", "max_iterations", "end_step")
+
+
+class SuspiciousUnits(UserWarning):
+    """Data of a fit whose units seem to differ from those of the model.
+
+    >>> import hbvib
+    >>> issubclass(hbvib.SuspiciousUnits, UserWarning)
+    True
+    """
+
+
+class Predicted(NamedTuple):
+    """Numbers that a fitted model predicts; made by Fit.predict. Complex for a response; of a peak, a backbone or a linear mode
+    the second ones are the angular frequency or the damping ratio.
+
+    value, sigma   and their standard deviations by the delta method; of a complex value those of its parts as a complex number.
+    shift          of the mean by the second order: where it is not small against sigma, the delta method is not enough.
+    second, second_sigma, second_shift   likewise.
+
+    >>> import hbvib
+    >>> import numpy as np
+    >>> hbvib.Predicted(*np.ones((6, 1))).sigma
+    array([1.])
+    """
+    value: Union[FloatArray, ComplexArray]
+    sigma: Union[FloatArray, ComplexArray]
+    shift: Union[FloatArray, ComplexArray]
+    second: FloatArray
+    second_sigma: FloatArray
+    second_shift: FloatArray
+
+
+class Profile(NamedTuple):
+    """Least chi2 over one parameter, all others fitted again; made by Fit.profile.
+
+    value, chi2    of the scanned parameter; NaN where no fit was found.
+    best           least chi2 of the fit.
+
+    >>> import hbvib
+    >>> import numpy as np
+    >>> hbvib.Profile(np.array([0.0, 1, 2, 3, 4]), np.array([9.0, 1, 0, 1, 9]), 0.0).interval(4.0)
+    (0.5, 3.5)
+    """
+    value: FloatArray
+    chi2: FloatArray
+    best: float
+
+    def interval(self, rise: float = 3.841) -> tuple[float, float]:
+        """The interval in which chi2 is below the least one plus `rise`: 3.841 for 95 %, 1 for one standard deviation. An end is
+        infinite where the scan does not reach it.
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> hbvib.Profile(np.array([0.0, 1, 2]), np.array([1.0, 0, 1]), 0.0).interval()
+        (-inf, inf)
+        """
+        # The root is a line where chi2 is a parabola.
+        above = np.sqrt(np.maximum(self.chi2 - self.best, 0)) - np.sqrt(rise)
+        least = int(np.nanargmin(self.chi2))
+        ends = []
+        for step, missing in ((-1, -np.inf), (1, np.inf)):
+            end, i = missing, least
+            while 0 <= i + step < len(above):
+                if above[i] <= 0 < above[i + step]:
+                    share = above[i] / (above[i] - above[i + step])
+                    end = self.value[i] + share * (self.value[i + step] - self.value[i])
+                    break
+                i += step
+            ends.append(float(end))
+        return ends[0], ends[1]
+
+
+class Fit:
+    """Parameters fitted to data; made by Model.fit.
+
+    theta, sd, names   values of the parameters, their standard deviations, 0 for fixed ones, and a name of each.
+    covariance, correlation   of them, NaN for fixed ones.
+    chi2, degrees_of_freedom   the sum of squares in standard deviations; near each other for a model that explains the data.
+    residuals, values  for each data set an array (points, 2): of complex data the real and the imaginary part.
+    model              the model with the values.
+    status, suspicion  a Status, a Suspicion.
+    info               further numbers: loss, data, free, iterations, starts, at_bound, slipping, aic, bic, condition,
+                       harmonic_error, suspected_factor.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+    >>> model.add_force(0, 0.2)
+    >>> omega = [0.9, 1.0, 1.1]
+    >>> x = [0.2 / (1.1 - w * w + 0.1j * w) for w in omega]
+    >>> fit = model.fit({"stiffness": "factor"}, hbvib.Measured("response", omega, x, 0.01))
+    >>> fit.theta.round(6), bool(fit.chi2 < 1e-9)
+    (array([1.1]), True)
+    """
+
+    def __init__(self, original: Model, model: Model, unknowns: tuple[Unknown, ...], data: tuple[Measured, ...],
+                 options: dict[str, Any], theta: FloatArray, covariance: FloatArray, residuals: FloatArray, values: FloatArray,
+                 info: Any, status: Status, suspicion: Suspicion) -> None:
+        self._original, self.model, self.unknowns, self.data, self._options = original, model, unknowns, data, options
+        self.theta, self.covariance = theta, covariance
+        ends = np.cumsum([2 * len(one) for one in data])[:-1]
+        self.residuals = [part.reshape(-1, 2) for part in np.split(residuals, ends)]
+        self.values = [part.reshape(-1, 2) for part in np.split(values, ends)]
+        self.info, self.status, self.suspicion = info, status, suspicion
+        self.sd: FloatArray = np.sqrt(np.diag(covariance))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            self.correlation: FloatArray = np.asarray(covariance / np.outer(self.sd, self.sd))
+        self.chi2, self.degrees_of_freedom = float(info.chi2), int(info.degrees_of_freedom)
+        self.names = [_name(one.parameter) for one in unknowns]
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} = {value:.5g} +- {sd:.2g}" for name, value, sd in zip(self.names, self.theta, self.sd))
+        return f"<hbvib.Fit: {told}; chi2 {self.chi2:.4g} on {self.degrees_of_freedom}>"
+
+    def report(self) -> str:
+        """The values with standard deviations and correlations, chi2, criteria, the largest residuals, as text.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> model.add_force(0, 0.2)
+        >>> data = hbvib.Measured("response", [0.9, 1.1], [0.2 / (1.1 - w * w + 0.1j * w) for w in (0.9, 1.1)], 0.01)
+        >>> model.fit({"stiffness": "factor"}, data).report().splitlines()[0]
+        'parameter             value    deviation  correlations'
+        """
+        lines = ["parameter             value    deviation  correlations"]
+        for name, value, sd, row in zip(self.names, self.theta, self.sd, self.correlation):
+            lines.append(f"{name:<16} {value:>10.6g} {sd:>12.3g}  " + " ".join(f"{c:>6.3f}" for c in row))
+        info = self.info
+        lines.append(f"chi2 {info.chi2:.6g} on {info.degrees_of_freedom} degrees of freedom, {info.data} data")
+        lines.append(f"AIC {info.aic:.6g}, BIC {info.bic:.6g}, condition {info.condition:.3g}, {info.iterations} iterations from "
+                     f"{info.starts} starts, {info.slipping} contacts slip")
+        if np.isfinite(info.harmonic_error):
+            lines.append(f"errors by harmonics are below {info.harmonic_error:.2g} standard deviations")
+        for number, (one, residual) in enumerate(zip(self.data, self.residuals)):
+            worst = int(np.abs(residual).max(axis=1).argmax())
+            lines.append(f"data set {number}: {one!r}, largest residual {np.abs(residual[worst]).max():.2g} at x = {one.x[worst]:g}")
+        return "\n".join(lines)
+
+    def predict(self, kind: DataKinds, x: ArrayLike, *, force: float = 1.0, response: Union[int, Response, None] = None,
+                mode: int = 0, omega: Optional[Sequence[float]] = None) -> Predicted:
+        """Predicts numbers with their standard deviations; the arguments are those of Measured.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> model.add_force(0, 0.2)
+        >>> data = hbvib.Measured("response", [0.9, 1.1], [0.2 / (1.1 - w * w + 0.1j * w) for w in (0.9, 1.1)], 0.01)
+        >>> peak = model.fit({"stiffness": "factor"}, data).predict("peak", 1.05, omega=(0.9, 1.2))
+        >>> peak.second.round(3)
+        array([1.046])
+        """
+        at = np.atleast_1d(np.asarray(x, float))
+        wanted = Measured(kind, at, np.zeros(len(at)), 1.0, force=force, response=response, mode=mode, omega=omega)
+        solver = _solver_options("predict", {name: value for name, value in self._options.items() if name not in _OF_FIT})
+        parameters = [one.parameter._description() for one in self.unknowns]
+        p, rows = len(parameters), 2 * len(at)
+        values, sigma, shift = np.zeros((3, rows))
+        with _Guard() as guard:
+            hooks = _hooks(guard, None, None, LogLevel.INFO, None, None)
+            _call("hbvib_predict", self._original.handle, solver, wanted._description(), hooks,
+                  (structs["hbvib_parameter"] * p)(*parameters), p, self.theta, self.covariance, rows, values, sigma, shift,
+                  guard=guard)
+        first, second = [part[0::2] for part in (values, sigma, shift)], [part[1::2] for part in (values, sigma, shift)]
+        if wanted.kind == DataKind.RESPONSE:
+            first = [a + 1j * b for a, b in zip(first, second)]
+        return Predicted(*first, *second)
+
+    def profile(self, number: int, values: Optional[ArrayLike] = None) -> Profile:
+        """Least chi2 at fixed values of one parameter, all others fitted again; None: 9 values within three standard deviations,
+        on the logarithm of what is positive.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> model.add_force(0, 0.2)
+        >>> data = hbvib.Measured("response", [0.9, 1.1], [0.2 / (1.1 - w * w + 0.1j * w) for w in (0.9, 1.1)], 0.01)
+        >>> fit = model.fit({"stiffness": "factor", "damping": "factor"}, data)
+        >>> low, high = fit.profile(0).interval(1)
+        >>> bool(abs((high - low) / (2 * fit.sd[0]) - 1) < 0.05)
+        True
+        """
+        if values is None:
+            value, sd = float(self.theta[number]), float(self.sd[number])
+            steps = np.linspace(-3, 3, 9)
+            values = value * np.exp(steps * sd / value) if value > 0 else value + steps * sd
+        at = np.atleast_1d(np.asarray(values, float))
+        chi2 = np.full(len(at), np.nan)
+        for i, value in enumerate(at):
+            fixed = [one._replace(start=float(start)) for one, start in zip(self.unknowns, self.theta)]
+            fixed[number] = fixed[number]._replace(start=float(value), lower=float(value), upper=float(value))
+            chi2[i] = self._at_fixed(fixed, number)
+        return Profile(at, chi2, self.chi2)
+
+    def _at_fixed(self, fixed: list[Unknown], number: int) -> float:
+        """Least chi2 with a fixed parameter."""
+        prior = self.unknowns[number].prior
+        known = 0.0 if prior is None else ((float(fixed[number].start or 0.0) - prior[0]) / prior[1]) ** 2
+        if any(one.tied_to < 0 and (one.lower is None or one.lower != one.upper) for one in fixed):
+            return self._original.fit(fixed, self.data, **self._options).chi2 + known
+        # Without anything that is free only the residuals are needed: those of predictions.
+        total = known
+        for one in self.data:
+            at = self._with(np.array([float(u.start or 0.0) for u in fixed])).predict(
+                one.kind, one.x, force=one.force, response=one.response, mode=one.mode, omega=one.omega if any(one.omega) else None)
+            numbers = one._residuals(at.value, at.second)
+            total += float((numbers ** 2).sum())
+        return total
+
+    def _with(self, theta: FloatArray) -> Fit:
+        """The same with other values and without uncertainty."""
+        return Fit(self._original, self.model, self.unknowns, self.data, self._options, theta, np.zeros_like(self.covariance),
+                   np.zeros(sum(part.size for part in self.residuals)), np.zeros(sum(part.size for part in self.values)), self.info,
+                   self.status, self.suspicion)
+
+
+def _name(parameter: Parameter) -> str:
+    name = parameter.kind.name.lower()
+    if parameter.contact >= 0:
+        return f"{name} {parameter.contact}"
+    return name + " factor" if parameter.scaling == Scaling.FACTOR else name

@@ -1,0 +1,111 @@
+//! Options of a fit.
+
+use crate::error::{Result, fail};
+
+/// Measure of a residual r in units of its standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    /// r².
+    Square,
+    /// r² up to this number of standard deviations, and its tangent beyond (Huber 1964, doi:10.1214/aoms/1177703732).
+    Huber(f64),
+}
+
+/// Options of a fit.
+#[derive(Clone, Copy, Debug)]
+pub struct FitOptions {
+    /// Measure of the residuals.
+    pub loss: Loss,
+    /// Points from which the search begins: the given one, then those of a fixed sequence within the bounds.
+    pub starts: usize,
+    /// Largest number of iterations from each.
+    pub max_iterations: usize,
+    /// Step, in standard deviations of the unknowns, at which the search ends.
+    pub step: f64,
+    /// Whether the covariance is multiplied by χ² over the degrees of freedom, where standard deviations are known up to a factor.
+    pub scale_covariance: bool,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            loss: Loss::Square,
+            starts: 1,
+            max_iterations: 60,
+            step: 1e-6,
+            scale_covariance: false,
+        }
+    }
+}
+
+/// Most starts and iterations of a fit.
+const FIT_LARGEST: (usize, usize) = (1000, 10_000);
+
+/// Intervals of the integrals of the normal distribution.
+const NORMAL_INTERVALS: usize = 200;
+
+impl FitOptions {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// `Argument`, naming the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
+        if let Loss::Huber(k) = self.loss
+            && !(k > 0.0 && k.is_finite())
+        {
+            return fail!(Argument, "huber = {k}, needs a finite number > 0");
+        }
+        for (name, value, most) in [
+            ("starts", self.starts, FIT_LARGEST.0),
+            ("max_iterations", self.max_iterations, FIT_LARGEST.1),
+        ] {
+            if value == 0 || value > most {
+                return fail!(Argument, "{name} = {value}, needs 1 .. {most}");
+            }
+        }
+        if !(self.step > 0.0 && self.step < 1.0) {
+            return fail!(Argument, "step = {}, needs 0 < step < 1", self.step);
+        }
+        Ok(())
+    }
+}
+
+impl Loss {
+    /// The measure of a residual.
+    pub(super) fn cost(self, r: f64) -> f64 {
+        match self {
+            Self::Huber(k) if r.abs() > k => 2.0 * k * r.abs() - k * k,
+            _ => r * r,
+        }
+    }
+
+    /// Half of its derivative over r.
+    pub(super) fn weight(self, r: f64) -> f64 {
+        match self {
+            Self::Huber(k) if r.abs() > k => k / r.abs(),
+            _ => 1.0,
+        }
+    }
+
+    /// Variance of an estimate over that of least squares under normal noise: E ψ²/(E ψ')².
+    pub(super) fn inefficiency(self) -> f64 {
+        let Self::Huber(k) = self else { return 1.0 };
+        // Beyond 12 standard deviations nothing is left of the distribution.
+        let end = k.min(12.0);
+        let h = end / NORMAL_INTERVALS as f64;
+        let density = |r: f64| (-0.5 * r * r).exp() / std::f64::consts::TAU.sqrt();
+        let (mut inside, mut squares) = (0.0, 0.0);
+        for i in 0..=NORMAL_INTERVALS {
+            // Simpson's rule over one half of the distribution.
+            let share = match i {
+                0 | NORMAL_INTERVALS => 1.0,
+                _ if i % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            let r = h * i as f64;
+            inside += 2.0 * share * h / 3.0 * density(r);
+            squares += 2.0 * share * h / 3.0 * r * r * density(r);
+        }
+        (squares + k * k * (1.0 - inside).max(0.0)) / (inside * inside)
+    }
+}

@@ -1,0 +1,165 @@
+"""Fits in Python: data of tests from files and decays, values, uncertainty, profiles, comparison of models, and what is told."""
+
+import os
+import struct
+import tempfile
+import warnings
+
+import numpy as np
+
+import hbvib.io
+from common import check, finish, hbvib, raises
+
+
+def rubbing(kt=1.0, mu=0.3):
+    model = hbvib.Model(mass=1, stiffness=1, damping=0.04)
+    model.add_contact("jenkins", 0, kt=kt, mu=mu, preload=1)
+    model.add_force(0, 1.0)
+    return model
+
+
+def exact(model, omega, force):
+    loud = model.clone()
+    loud.clear_forces()
+    loud.add_force(0, force)
+    branch = loud.forced_response((omega[0], omega[-1]), at=omega, harmonics=9)
+    return np.array([branch.harmonics(branch.at(i).point[0])[1, 0] for i in range(len(omega))])
+
+
+random = np.random.default_rng(1)
+omega = np.linspace(1.05, 1.5, 12)
+model, data = rubbing(), []
+for force in (0.05, 0.2, 0.4):
+    x = exact(model, omega, force)
+    sigma = 0.02 * abs(x)
+    noise = sigma / np.sqrt(2) * (random.standard_normal(12) + 1j * random.standard_normal(12))
+    data.append(hbvib.Measured("response", omega, x + noise, sigma, force=force))
+names = {"kt": 0, "mu": 0, "damping": "factor"}
+fit = model.fit(names, data, harmonics=9)
+check("the truth is near", (abs(fit.theta - [1, 0.3, 1]) < 4 * fit.sd).all(), fit)
+check("chi2 is near its degrees of freedom", 0.6 < fit.chi2 / fit.degrees_of_freedom < 1.5, fit.chi2)
+check("residuals are those of values", np.allclose(fit.residuals[1][:, 0], (fit.values[1][:, 0] - data[1].value.real) * np.sqrt(2) / data[1].sigma))
+check("sums", abs(sum((r ** 2).sum() for r in fit.residuals) / fit.chi2 - 1) < 1e-12)
+check("the model has the values", abs(fit.model.contact(0).constants["kt"] - fit.theta[0]) < 1e-12)
+check("the report has all names", all(name in fit.report() for name in ("kt 0", "mu 0", "damping factor", "chi2")))
+
+# A profile of a parameter that is known well is a parabola: its interval is that of the covariance.
+low, high = fit.profile(1).interval(1.0)
+check("the profile agrees with the covariance", abs((high - low) / (2 * fit.sd[1]) - 1) < 0.1, (low, high, fit.sd[1]))
+
+# The predicted peak against that of the fitted model itself.
+peak = fit.predict("peak", 1.25, force=0.3, omega=(0.95, 1.6))
+louder = fit.model.clone()
+louder.clear_forces()
+louder.add_force(0, 0.3)
+own = louder.forced_response((0.95, 1.6), harmonics=9).peaks()
+check("a predicted peak", abs(peak.value[0] / own.amplitude[0] - 1) < 1e-8 and abs(peak.second[0] / own.omega[0] - 1) < 1e-8)
+check("its deviation and second order", 0 < peak.sigma[0] < 0.1 * peak.value[0] and abs(peak.shift[0]) < 0.3 * peak.sigma[0])
+at = fit.predict("response", [1.2], force=0.2)
+check("a predicted response is complex", at.value.dtype == complex and at.sigma.real[0] > 0 and at.sigma.imag[0] > 0)
+
+# Criteria prefer the law behind the data.
+stiff = hbvib.Model(mass=1, stiffness=2, damping=0.04)
+stiff.add_force(0, 1.0)
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    linear = stiff.fit({"stiffness": "factor", "damping": "factor"}, data, harmonics=9)
+check("criteria prefer friction", linear.info.aic > fit.info.aic + 100 and linear.info.bic > fit.info.bic + 100)
+
+# Data on the upper branch of a folded curve, up to its fold, from starts with which the fold lies elsewhere.
+spring = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+spring.add_spring_damper(0, spring=[0, 0, 0.5])
+spring.add_force(0, 0.12)
+fold = spring.forced_response((0.8, 1.8), harmonics=5).folds().omega.max()
+upper = np.linspace(0.9, fold - 0.01, 14)
+branch = spring.forced_response((0.8, 1.8), at=upper, harmonics=5)
+high = [branch.at(i).point[int(np.argmax(branch.at(i).amplitude))] for i in range(14)]
+x = np.array([branch.harmonics(point)[1, 0] for point in high])
+seen = hbvib.Measured("response", upper, x, 0.01 * abs(x), omega=(0.7, 1.9))
+for first in (0.9, 1.1):
+    start = [hbvib.Unknown(hbvib.Parameter("stiffness", scaling="factor"), first),
+             hbvib.Unknown(hbvib.Parameter("damping", scaling="factor"), 1.5)]
+    found = spring.fit(start, seen, harmonics=5)
+    check(f"a folded curve from {first}", (abs(found.theta - 1) < 1e-5).all(), found)
+
+# Words.
+quiet = hbvib.Measured("response", omega, exact(model, omega, 1e-3), 1e-5, force=1e-3)
+raises("all stick", hbvib.NumericalError, model.fit, {"kt": 0, "mu": 0}, quiet, harmonics=9, words="only kt is seen")
+with warnings.catch_warnings(record=True) as heard:
+    warnings.simplefilter("always")
+    big = [hbvib.Measured("response", one.x, 1e3 * one.value, 1e3 * one.sigma, force=one.force) for one in data]
+    try:
+        model.fit(names, big, harmonics=9, max_iterations=2)
+        told = any(issubclass(w.category, hbvib.SuspiciousUnits) and "1000" in str(w.message) for w in heard)
+    except hbvib.NumericalError as error:
+        told = "1e3" in str(error)
+check("millimetres are suspected", told)
+raises("a kind", ValueError, hbvib.Measured, "loudness", [1], [1], 1)
+raises("complex amplitudes", TypeError, hbvib.Measured, "amplitude", [1], [1j], 1)
+raises("a stranger", hbvib.UnsupportedError, model.fit, {"kn": 0}, data, words="kn")
+count = []
+stopped = model.fit(names, data, harmonics=9, progress=lambda state: count.append(state.parameter) or len(count) < 2)
+check("progress stops a fit and keeps it", stopped.status == hbvib.Status.STOPPED_BY_CALLER and count[1] < count[0])
+
+# A decay, integrated in time, gives the backbone of the nonlinear mode, and with it the parameters.
+t, dt = np.arange(0, 150, 0.01), 0.01
+state, z, path = np.array([1.5, 0.0]), 0.0, np.empty(len(t))
+kt, mu = 1.0, 0.3
+
+
+def slope(v, w):
+    return np.array([v[1], -v[0] - 0.04 * v[1] - w])
+
+
+z = mu  # force of the slider
+for i in range(len(t)):
+    path[i] = state[0]
+    moved = state + 0.5 * dt * slope(state, z)
+    force = np.clip(z + kt * (moved[0] - state[0]), -mu, mu)
+    new = state + dt * slope(moved, force)
+    z = np.clip(z + kt * (new[0] - state[0]), -mu, mu)
+    state = new
+decay = hbvib.decay_backbone(t, path, cycles=2)
+mode = model.nonlinear_mode((np.log10(decay.amplitude.min()) - 0.1, 0.3), harmonics=9, at=np.log10(decay.amplitude))
+at = [mode.mode_point(mode.at(i).point[0]).damping_ratio for i in range(len(decay.amplitude))]
+omegas = np.array([mode.at(i).omega[0] for i in range(len(decay.amplitude))])
+check("a decay has the frequency of the mode", (abs(decay.omega / omegas - 1) < 0.05).all(), decay.omega / omegas)
+small = decay.amplitude < 0.25
+check("and its damping where all stick", small.any() and (abs(decay.damping[small] / np.array(at)[small] - 1) < 0.1).all())
+raises("a short signal", ValueError, hbvib.decay_backbone, t[:20], path[:20], words="zero crossings")
+stuck = hbvib.Decay(*[part[small] for part in decay]).measured()
+one = model.fit([hbvib.Unknown(hbvib.Parameter("kt", 0), 0.7)], stuck, harmonics=5)
+check("the stuck end has kt", abs(one.theta[0] - 1) < 0.02, one)
+
+# Universal files: text and binary, even and uneven.
+folder = tempfile.mkdtemp()
+numbers = np.array([1 + 2j, -0.5 + 0.25j, 3e-4 - 1j])
+HEAD = ["a", "b", "c", "d", "e", "    4         1    0         0       NONE        12  -3       NONE         7   1"]
+AXES = ["        18    0    0    0", "         8    0    0    0", "        13    0    0    0", "         0    0    0    0"]
+
+
+def written(name, form, values, first="    58"):
+    path = os.path.join(folder, name)
+    with open(path, "wb") as file:
+        file.write("\n".join(["    -1", "   151", "text", "    -1", "    -1", first] + HEAD + [form] + AXES).encode() + b"\n" + values
+                   + b"\n    -1\n")
+    return hbvib.io.read_uff(path)
+
+
+even = "         6         3         1  1.00000e+01  5.00000e-01  0.00000e+00"
+text = " ".join(f"{z.real:.17e} {z.imag:.17e}" for z in numbers).encode()
+found = written("text.uff", even, text)
+check("text", len(found) == 1 and (found[0].values == numbers).all() and (found[0].x == [10, 10.5, 11]).all())
+check("node, direction, quantity", found[0][2:7] == (12, -3, 7, 1, "displacement") and found[0].text[0] == "a")
+packed = numbers.view(float).astype(">f8").tobytes()
+binary = f"    58b{2:6d}{2:6d}{11:12d}{len(packed):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
+found = written("binary.uff", even, packed, binary)
+check("binary", (found[0].values == numbers).all())
+uneven = even.replace("         1  1.0", "         0  0.0")
+packed = b"".join(struct.pack("<fdd", x, z.real, z.imag) for x, z in zip((1, 2, 4), numbers))
+binary = f"    58b{1:6d}{2:6d}{11:12d}{len(packed):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
+found = written("uneven.uff", uneven, packed, binary)
+check("uneven", (found[0].x == [1, 2, 4]).all() and (found[0].values == numbers).all())
+raises("too few", ValueError, written, "short.uff", even, b"1.0 2.0", words="needs 6")
+
+finish(28)
