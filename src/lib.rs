@@ -132,6 +132,8 @@ pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
 pub use analysis::interference::{Interference, interference};
+pub use analysis::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
+pub use analysis::life_load::{BestLoad, best_load_for_life};
 pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use analysis::nonlinear_mode::nonlinear_mode;
@@ -149,8 +151,9 @@ pub use analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
-    Amplitude, BatchOptions, Component, DampingForm, FloquetOptions, ForcedOptions, Measure, ModeChoice, ModeOptions,
-    Response, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions, Waves,
+    Amplitude, BatchOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions, LifeFollow, LifeOptions,
+    Measure, ModeChoice, ModeOptions, Response, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions,
+    VerifyOptions, Waves, Wear,
 };
 
 // Results.

@@ -31,6 +31,9 @@ mod inside_start;
 pub mod interference;
 mod kicked_motion;
 mod known_curve;
+pub mod life;
+pub mod life_load;
+mod life_step;
 pub mod linear_contacts;
 pub mod mode_band;
 mod mode_discretised;
@@ -66,6 +69,7 @@ mod verified_responses;
 pub mod verify;
 mod watched_responses;
 pub mod wheel_peaks;
+mod worn_state;
 
 pub use crate::analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
 pub use crate::analysis::band_curve::{BandPoint, band_curve};
@@ -78,6 +82,8 @@ pub use crate::analysis::freedom::{FreeSlider, freedom, freedom_with};
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
+pub use crate::analysis::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
+pub use crate::analysis::life_load::{BestLoad, best_load_for_life};
 pub use crate::analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
 pub use crate::analysis::parameter_range::{Follow, ParameterRange};

@@ -74,6 +74,19 @@ impl Model {
         Ok(())
     }
 
+    /// Gives a contact the normal load at rest that wear has left: a negative one opens a gap where the law has a normal stiffness, and is
+    /// none elsewhere. A load that follows a fixed speed becomes the constant one.
+    ///
+    /// # Errors
+    /// As [`Self::set_preload`].
+    pub(crate) fn set_worn_load(&mut self, id: usize, load: f64) -> Result<()> {
+        let kn = self.contacts().get(id).map_or(0.0, |contact| contact.kn);
+        let gap = if kn > 0.0 { (-load).max(0.0) / kn } else { 0.0 };
+        self.change_preload(id, load.max(0.0), gap)?;
+        self.speed_loads_mut().retain(|of| of.contact != id);
+        Ok(())
+    }
+
     /// Adds the force of an unbalance m·e that rotates with the frequency ω of the response: m_e ω² cos(ωt + phase) on
     /// `dof_x`, m_e ω² sin(ωt + phase) on `dof_y`.
     ///

@@ -20,12 +20,12 @@ use num_complex::Complex64;
 
 /// The equations of a forced response near one solution.
 pub(crate) struct ForcedPoint<'a> {
-    condensed: &'a Condensed,
+    pub(super) condensed: &'a Condensed,
     interrupt: &'a Interrupt<'a>,
-    problem: HarmonicBalance<'a>,
+    pub(super) problem: HarmonicBalance<'a>,
     workspace: Workspace,
     /// Newton's matrix at the point linearised last.
-    system: Lu<f64>,
+    pub(super) system: Lu<f64>,
     /// The same before its factorisation.
     matrix: Vec<f64>,
     active: Vec<bool>,

@@ -9,6 +9,7 @@ mod batch_of_chains;
 mod cost;
 mod design;
 mod differences;
+mod life;
 mod ring_damper_preload;
 mod sampled_curves;
 mod tracked_damping;

@@ -1,0 +1,482 @@
+//! Vibration over the life of a machine whose contacts wear.
+//!
+//! The depth that a contact has worn grows by h_j′ = α_j E_j/A_j per cycle with the work E_j of a cycle of the steady vibration, and the
+//! loads follow as N = N₀ − S h with the static stiffness S between the normals. That is an ordinary differential equation for h over the
+//! number of cycles; its steps are those of [`life_step`](super::life_step), with the exact derivatives of the works by the loads. Where a
+//! contact begins or ends to slip, or loses its load, rates keep their value and change their slope: a step ends there.
+
+use crate::analysis::life_step::{LifeState, LifeStep, ahead};
+use crate::analysis::worn_state::{WornState, WornStates};
+use crate::error::{Error, Result, Status, try_copy, try_push, try_vec};
+use crate::hooks::{Hooks, Progress};
+use crate::interrupt::Phase;
+use crate::model::Model;
+use crate::options::{LifeOptions, SolverOptions};
+
+const CONTEXT: &str = "the life";
+
+/// Share of the tolerance by which loads change over the step across an event.
+const LIFE_EVENT: f64 = 1e-2;
+
+/// Share of the distance to an event that the step before it goes.
+const LIFE_APPROACH: f64 = 0.95;
+
+/// Vibrations that are looked at to find an event.
+const LIFE_EVENT_TRIES: usize = 12;
+
+/// Halvings of a step that fails.
+const LIFE_HALVINGS: usize = 40;
+
+/// What happens to a contact, or to the amplitude.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LifeEventKind {
+    /// A contact begins to slip.
+    Slips,
+    /// A contact ends to slip: it sticks, or is open all the time.
+    Sticks,
+    /// A contact loses its load.
+    Lost,
+    /// A contact gets load again.
+    Pressed,
+    /// The amplitude passes the limit.
+    Limit,
+}
+
+/// An event of a life.
+#[derive(Clone, Copy, Debug)]
+pub struct LifeEvent {
+    /// Cycles.
+    pub cycles: f64,
+    /// What happens.
+    pub kind: LifeEventKind,
+    /// Number of the contact in the model; `None` for the amplitude.
+    pub contact: Option<usize>,
+}
+
+/// State at a wanted number of cycles, contacts in the order of [`LifeOptions::wear`].
+#[derive(Clone, Debug)]
+pub struct LifePoint {
+    /// Cycles.
+    pub cycles: f64,
+    /// Worn depths.
+    pub depths: Vec<f64>,
+    /// Normal loads at rest.
+    pub loads: Vec<f64>,
+    /// Works per cycle.
+    pub works: Vec<f64>,
+    /// Amplitude.
+    pub amplitude: f64,
+    /// Its angular frequency.
+    pub omega: f64,
+}
+
+/// A life.
+#[derive(Clone, Debug)]
+pub struct Life {
+    /// States at the wanted cycles, as many as were reached.
+    pub points: Vec<LifePoint>,
+    /// Events in their order.
+    pub events: Vec<LifeEvent>,
+    /// Cycles that were reached.
+    pub reached: f64,
+    /// Largest amplitude and the cycles at which it occurs.
+    pub largest: (f64, f64),
+    /// Amplitude at the beginning and at the end.
+    pub ends: (f64, f64),
+    /// Steps that were taken.
+    pub steps: usize,
+    /// Steady vibrations that were solved.
+    pub solutions: usize,
+    /// `Ok`, or why the life ended early: `StoppedByCaller`, `StoppedMaxPoints`, `StoppedStepTooSmall`.
+    pub status: Status,
+    /// Sentence of another status than `Ok`.
+    pub reason: Option<Error>,
+    depths: Vec<f64>,
+}
+
+impl Life {
+    /// Depths where the life ended, with which another one may go on.
+    #[must_use]
+    pub fn depths(&self) -> &[f64] {
+        &self.depths
+    }
+}
+
+/// Follows the wear of contacts over the cycles of a life. Progress reports each step with its cycles as `parameter`.
+///
+/// Wear between two states is small in practice: a state is the steady vibration under the loads of its cycles. Wear by the work of
+/// friction is Fouvry's law, <https://doi.org/10.1016/S0043-1648(03)00117-0>; with constant pressure and friction it is Archard's.
+///
+/// # Errors
+/// Those of [`LifeOptions::check`] and of the first steady vibration; `Unsupported` for contacts whose load follows a speed that is tied to
+/// the frequency. Later failures end the life with a status.
+pub fn life(model: &Model, solver: &SolverOptions, options: &LifeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<Life> {
+    let mut states = WornStates::new(model, solver, options)?;
+    let depths = if options.worn.is_empty() {
+        try_vec(states.len(), 0.0, CONTEXT)?
+    } else {
+        try_copy(options.worn, CONTEXT)?
+    };
+    let first = LifeState {
+        n: 0.0,
+        worn: states.at(&depths, hooks)?,
+        depths,
+    };
+    let mut walk = Walk {
+        found: Life {
+            points: Vec::new(),
+            events: Vec::new(),
+            reached: 0.0,
+            largest: (first.worn.amplitude, 0.0),
+            ends: (first.worn.amplitude, first.worn.amplitude),
+            steps: 0,
+            solutions: 0,
+            status: Status::Ok,
+            reason: None,
+            depths: Vec::new(),
+        },
+        options,
+        states,
+    };
+    let ended = walk.run(first, hooks);
+    walk.found.solutions = walk.states.solutions;
+    if let Err(e) = ended {
+        if matches!(e.status, Status::OutOfMemory | Status::Internal) {
+            return Err(e);
+        }
+        walk.found.status = e.status;
+        walk.found.reason = Some(e);
+    }
+    Ok(walk.found)
+}
+
+struct Walk<'a> {
+    states: WornStates<'a>,
+    options: &'a LifeOptions<'a>,
+    found: Life,
+}
+
+impl Walk<'_> {
+    fn run(&mut self, mut at: LifeState, hooks: &mut Hooks<'_>) -> Result<()> {
+        let end = self.options.cycles.last().copied().unwrap_or(0.0);
+        self.found.depths = try_copy(&at.depths, CONTEXT)?;
+        while self.options.cycles.get(self.found.points.len()) == Some(&0.0) {
+            self.push(&at, None, 0.0)?;
+        }
+        let mut last: Option<LifeStep> = None;
+        let mut delta = self.first_length(&at, end);
+        let mut halvings = 0;
+        while at.n < end {
+            hooks.interrupt().phase(Phase::Continuation, at.n / end)?;
+            if self.found.steps >= self.options.most_steps {
+                return Err(Error::new(
+                    Status::StoppedMaxPoints,
+                    format_args!("the life has {} steps at {} of {end} cycles", self.found.steps, at.n),
+                ));
+            }
+            let rest = end - at.n;
+            // A step of the last hundredth alone would be lost on rounding.
+            let length = if delta >= 0.99 * rest {
+                rest
+            } else {
+                delta.min(0.5 * rest).max(0.01 * delta)
+            };
+            let step = match LifeStep::take(
+                &mut self.states,
+                (&at, length),
+                last.as_ref(),
+                self.options.tolerance,
+                hooks,
+            ) {
+                Err(e) if matches!(e.status, Status::StoppedByCaller | Status::OutOfMemory) => return Err(e),
+                Ok(Some(step)) => step,
+                failed => {
+                    halvings += 1;
+                    if halvings > LIFE_HALVINGS {
+                        let reason = failed.err().map_or_else(String::new, |e| format!(": {e}"));
+                        return Err(Error::new(
+                            Status::StoppedStepTooSmall,
+                            format_args!("the life does not go on at {} cycles{reason}", at.n),
+                        ));
+                    }
+                    delta = 0.5 * length;
+                    continue;
+                }
+            };
+            if let Some(event) = self.event(&at, last.as_ref(), &step, hooks)? {
+                // Steps before an event know nothing of what follows it.
+                let distance = event - at.n;
+                let across = LIFE_EVENT * self.options.tolerance / at.size_of(&self.states, &at.worn.rate);
+                if distance > across && distance < length {
+                    delta = LIFE_APPROACH * distance;
+                    continue;
+                }
+                if distance > across {
+                    delta = 0.5 * length;
+                    continue;
+                }
+                at = self.across(&at, distance.max(0.0) + across, hooks)?;
+                last = None;
+                delta = self.first_length(&at, end - at.n);
+                continue;
+            }
+            let (error, power) = step.error(&self.states, last.as_ref())?;
+            let share = error / self.options.tolerance;
+            let factor = if share > 0.0 {
+                0.9 * share.powf(-1.0 / f64::from(power))
+            } else {
+                4.0
+            };
+            if share > 1.0 {
+                delta = length * factor.clamp(0.1, 0.9);
+                continue;
+            }
+            halvings = 0;
+            self.record(&step, hooks)?;
+            delta = length * factor.clamp(0.2, 4.0);
+            at = step.to.clone();
+            last = Some(step);
+        }
+        Ok(())
+    }
+
+    /// A length whose step of the second order has about the wanted error.
+    fn first_length(&self, at: &LifeState, rest: f64) -> f64 {
+        let speed = at.size_of(&self.states, &at.worn.rate);
+        if speed > 0.0 {
+            (self.options.tolerance.powf(0.25) / speed).min(rest)
+        } else {
+            rest
+        }
+    }
+
+    /// Cycles at which a contact changes its state within a step, if one does: along the path of the states before it, on which the work of
+    /// a contact that slips, or a load, is followed to 0 by Newton's method within a bracket.
+    fn event(
+        &mut self,
+        at: &LifeState,
+        last: Option<&LifeStep>,
+        step: &LifeStep,
+        hooks: &mut Hooks<'_>,
+    ) -> Result<Option<f64>> {
+        if !at.worn.changes(&step.to.worn) {
+            return Ok(None);
+        }
+        let (mut low, mut high) = (at.n, step.to.n);
+        let mut n = high;
+        let across = LIFE_EVENT * self.options.tolerance / at.size_of(&self.states, &at.worn.rate);
+        for tries in 0..LIFE_EVENT_TRIES {
+            let depths = ahead((at, last), n - at.n)?;
+            let probe = LifeState {
+                n,
+                worn: self.states.at(&depths, hooks)?,
+                depths,
+            };
+            let changed = at.worn.changes(&probe.worn);
+            if !changed && tries == 0 {
+                // The step alone meets the change: it is near its end.
+                return Ok(Some(high));
+            }
+            if changed {
+                high = n;
+            } else {
+                low = n;
+            }
+            let root = self.estimate(at, &probe).filter(|root| *root >= low && *root <= high);
+            let close = root.is_some_and(|root| (root - n).abs() <= 0.1 * across);
+            if close || high - low <= across {
+                return Ok(Some(root.unwrap_or(high)));
+            }
+            n = root
+                .unwrap_or(0.5 * (low + high))
+                .clamp(low + 1e-3 * (high - low), high - 1e-3 * (high - low));
+        }
+        Ok(Some(high))
+    }
+
+    /// The cycles at which a contact that is to change its state does so, by Newton's method from a probe at which its value is not 0.
+    fn estimate(&self, at: &LifeState, probe: &LifeState) -> Option<f64> {
+        let (a, b) = (&at.worn, &probe.worn);
+        let count = a.slips.len();
+        let mut first: Option<f64> = None;
+        for j in 0..count {
+            let root = if a.lost[j] != b.lost[j] {
+                let [from, to] = [at, probe].map(|state| self.states.raw_load(j, &state.depths));
+                at.n + (probe.n - at.n) * from / (from - to)
+            } else if b.slips[j] {
+                let slope: f64 = (0..count).map(|k| b.work_by_depth[k * count + j] * b.rate[k]).sum();
+                if a.slips[j] && slope >= 0.0 {
+                    continue;
+                }
+                probe.n - b.works[j] / slope
+            } else {
+                continue;
+            };
+            // A contact that slips already ends to do so in the future.
+            if root.is_finite() && (!a.slips[j] || root > probe.n || a.lost[j] != b.lost[j]) {
+                first = Some(first.map_or(root, |other: f64| other.min(root)));
+            }
+        }
+        first
+    }
+
+    /// The state a short distance ahead, beyond an event; the events are recorded.
+    fn across(&mut self, at: &LifeState, distance: f64, hooks: &mut Hooks<'_>) -> Result<LifeState> {
+        let mut length = distance;
+        for _ in 0..LIFE_HALVINGS {
+            let mut depths = try_copy(&at.depths, CONTEXT)?;
+            for (h, rate) in depths.iter_mut().zip(&at.worn.rate) {
+                *h += length * rate;
+            }
+            let to = LifeState {
+                n: at.n + length,
+                worn: self.states.at(&depths, hooks)?,
+                depths,
+            };
+            if !at.worn.changes(&to.worn) {
+                length *= 2.0;
+                continue;
+            }
+            self.tell(&at.worn, &to)?;
+            let step = LifeStep::short(at, to)?;
+            self.record(&step, hooks)?;
+            return Ok(step.to);
+        }
+        Err(Error::new(
+            Status::StoppedStepTooSmall,
+            format_args!("the life does not pass a change of a contact at {} cycles", at.n),
+        ))
+    }
+
+    /// Records what has changed.
+    fn tell(&mut self, a: &WornState, to: &LifeState) -> Result<()> {
+        let b = &to.worn;
+        for (j, wear) in self.options.wear.iter().enumerate() {
+            let kind = match (a.lost[j], b.lost[j], a.slips[j], b.slips[j]) {
+                (false, true, ..) => LifeEventKind::Lost,
+                (true, false, ..) => LifeEventKind::Pressed,
+                (_, _, false, true) => LifeEventKind::Slips,
+                (_, _, true, false) => LifeEventKind::Sticks,
+                _ => continue,
+            };
+            let event = LifeEvent {
+                cycles: to.n,
+                kind,
+                contact: Some(wear.contact),
+            };
+            try_push(&mut self.found.events, event, CONTEXT)?;
+        }
+        Ok(())
+    }
+
+    /// Records the states within a step.
+    fn record(&mut self, step: &LifeStep, hooks: &mut Hooks<'_>) -> Result<()> {
+        self.found.steps += 1;
+        while let Some(&n) = self.options.cycles.get(self.found.points.len()) {
+            if n > step.to.n {
+                break;
+            }
+            self.push(&step.to, Some(step), n)?;
+        }
+        let (from, to) = (step.from.n, step.to.n);
+        for at in turning(step) {
+            let amplitude = step.amplitude(at);
+            if amplitude > self.found.largest.0 {
+                self.found.largest = (amplitude, at);
+            }
+        }
+        let limit = self.options.limit;
+        let (a, b) = (step.from.worn.amplitude - limit, step.to.worn.amplitude - limit);
+        if limit > 0.0 && (a < 0.0) != (b < 0.0) {
+            let side = |n: f64| (step.amplitude(n) - limit < 0.0) == (a < 0.0);
+            let (mut low, mut high) = (from, to);
+            while high - low > 4.0 * f64::EPSILON * high {
+                let middle = 0.5 * (low + high);
+                if middle <= low || middle >= high {
+                    break;
+                }
+                if side(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            let event = LifeEvent {
+                cycles: high,
+                kind: LifeEventKind::Limit,
+                contact: None,
+            };
+            try_push(&mut self.found.events, event, CONTEXT)?;
+            self.found.events.sort_by(|a, b| a.cycles.total_cmp(&b.cycles));
+        }
+        self.found.reached = to;
+        self.found.ends.1 = step.to.worn.amplitude;
+        self.found.depths = try_copy(&step.to.depths, CONTEXT)?;
+        let end = self.options.cycles.last().copied().unwrap_or(to);
+        let progress = Progress {
+            point: self.found.steps,
+            parameter: to,
+            amplitude: step.to.worn.amplitude,
+            step: step.length(),
+            fraction_done: to / end,
+            ..Progress::default()
+        };
+        if hooks.report(&progress) {
+            return Err(Error::new(
+                Status::StoppedByCaller,
+                format_args!("stopped by the caller at {to} cycles"),
+            ));
+        }
+        Ok(())
+    }
+
+    /// The state at wanted cycles, of a step or of its end.
+    fn push(&mut self, at: &LifeState, step: Option<&LifeStep>, n: f64) -> Result<()> {
+        let within = step.filter(|_| n.to_bits() != at.n.to_bits());
+        let depths = match within {
+            Some(step) => step.depths(n)?,
+            None => try_copy(&at.depths, CONTEXT)?,
+        };
+        let rates = match within {
+            Some(step) => step.rates(n)?,
+            None => try_copy(&at.worn.rate, CONTEXT)?,
+        };
+        let mut loads = try_vec(depths.len(), 0.0, CONTEXT)?;
+        let mut works = try_vec(depths.len(), 0.0, CONTEXT)?;
+        for (j, wear) in self.options.wear.iter().enumerate() {
+            let load = self.states.raw_load(j, &depths);
+            loads[j] = if at.worn.lost[j] { 0.0 } else { load };
+            works[j] = if wear.rate > 0.0 {
+                rates[j] * wear.area / wear.rate
+            } else {
+                at.worn.works[j]
+            };
+        }
+        let share = within.map_or(1.0, |step| (n - step.from.n) / step.length());
+        let before = within.map_or(at.worn.omega, |step| step.from.worn.omega);
+        let point = LifePoint {
+            cycles: n,
+            depths,
+            loads,
+            works,
+            amplitude: within.map_or(at.worn.amplitude, |step| step.amplitude(n)),
+            omega: before + share * (at.worn.omega - before),
+        };
+        try_push(&mut self.found.points, point, CONTEXT)
+    }
+}
+
+/// Cycles within a step at which the cubic of its amplitude has its ends and turning points.
+fn turning(step: &LifeStep) -> impl Iterator<Item = f64> {
+    let (from, delta) = (step.from.n, step.length());
+    let (a0, a1) = (step.from.worn.amplitude, step.to.worn.amplitude);
+    let (g0, g1) = (delta * step.from.amplitude_slope(), delta * step.to.amplitude_slope());
+    // The derivative g0 + 2 b s + 3 c s².
+    let (b, c) = (3.0 * (a1 - a0) - 2.0 * g0 - g1, 2.0 * (a0 - a1) + g0 + g1);
+    let root = (b * b - 3.0 * c * g0).max(0.0).sqrt();
+    let q = -(b + b.signum() * root);
+    [1.0, q / (3.0 * c), g0 / q]
+        .into_iter()
+        .filter(|s| *s > 0.0 && *s <= 1.0)
+        .map(move |s| from + s * delta)
+}

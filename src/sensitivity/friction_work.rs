@@ -1,0 +1,90 @@
+//! The work per cycle that a contact takes at a solution, with its derivatives by the normal loads.
+//!
+//! With the harmonics y_h of the relative motions of a contact and f_h of its forces
+//!
+//! > E = π Σ_h h Im(f_h conj(y_h)) = Re Σ_h W_hᴴ f_h, W_h = iπh y_h.
+//!
+//! The derivative by the motions is −iπh f_h + (∂f/∂y)ᵀ W. One adjoint solution with it gives the derivatives by all parameters through
+//! the motion, and W that by the load of the contact itself at a fixed motion.
+
+use crate::condense::Condensed;
+use crate::contact::force_derivative::Constant;
+use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::model::Model;
+use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::contact_products::ContactMotion;
+use crate::sensitivity::forced_point::ForcedPoint;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+impl ForcedPoint<'_> {
+    /// Work per cycle of the forces along some coordinates, in the caller's units, and its adjoint, at the point of which the adjoint of the
+    /// amplitude was made last. The total derivative of the adjoint by ω is that of the work.
+    ///
+    /// # Errors
+    /// As [`ForcedPoint::adjoint`].
+    pub fn work(&mut self, u: &[f64], omega: f64, coordinates: &[usize]) -> Result<(f64, Adjoint)> {
+        let condensed = self.condensed;
+        let (set, length) = (condensed.set(), condensed.length());
+        let m = set.packed_len();
+        let mut lambda = try_vec(u.len(), 0.0, CONTEXT)?;
+        let (mut work, mut by_omega) = (0.0, 0.0);
+        for (i, &number) in set.numbers().iter().enumerate() {
+            if number == 0 {
+                continue;
+            }
+            let share = Complex64::new(0.0, PI * number as f64);
+            for &c in coordinates {
+                let forces = self.problem.forces();
+                let range = c * m..(c + 1) * m;
+                let (y, f) = (set.get(&u[range.clone()], i), set.get(&forces.forces()[range], i));
+                let weight = (share * y).conj();
+                work += (weight * f).re;
+                // What follows couples f less the force κy of the reference stiffness.
+                let kappa = condensed.kappa(c, i);
+                let own = -share * f + (weight * kappa).conj();
+                let at = c * m + set.offset(i);
+                lambda[at] += own.re;
+                lambda[at + 1] += own.im;
+                forces.couple_scalar(i, (0, c), weight, &mut lambda, 1);
+                by_omega += (weight * forces.by_omega(c, i)).re;
+            }
+        }
+        self.system.solve_transposed(&mut lambda);
+        let mut adjoint = self.of_lambda((u, omega), Complex64::ZERO, &lambda)?;
+        // The equations are in the unit of lengths, and a work in its square.
+        for z in &mut adjoint.field {
+            *z *= length;
+        }
+        adjoint.by_omega = length * (adjoint.by_omega + length * by_omega);
+        Ok((length * length * work, adjoint))
+    }
+}
+
+/// The derivative of the work of a contact by a constant of its own at a fixed motion; 0 where its law does not have the constant or it
+/// exists on one side only.
+///
+/// # Errors
+/// Those of the law; `OutOfMemory`, `StoppedByCaller`.
+pub(crate) fn work_at_fixed_motion(
+    (at_frequency, number, constant): (&Model, usize, Constant),
+    (condensed, samples): (&Condensed, usize),
+    adjoint: &Adjoint,
+    interrupt: &Interrupt<'_>,
+) -> Result<f64> {
+    let contact = &at_frequency.contacts()[number];
+    let Some(derivative) = contact.by_constant(constant).filter(|found| !found.is_one_sided) else {
+        return Ok(0.0);
+    };
+    let (set, length) = (condensed.set(), condensed.length());
+    let m = set.packed_len().max(1);
+    let mut motion = ContactMotion::new(at_frequency, number, condensed, adjoint)?;
+    for (field, y) in motion.field.chunks_exact_mut(m).zip(motion.motion.chunks_exact(m)) {
+        for (i, &h) in set.numbers().iter().enumerate() {
+            set.set(field, i, Complex64::new(0.0, PI * h as f64) * length * set.get(y, i));
+        }
+    }
+    let products = motion.products(contact, (condensed, samples, adjoint.omega), interrupt)?;
+    Ok(products.with(&derivative))
+}

@@ -1,0 +1,462 @@
+//! Wear over a life: closed forms, stored rows of another code, and the classical Runge-Kutta method on loads with the works that
+//! summaries of contacts tell.
+
+use crate::common::{data, number};
+use hbvib::{
+    Contact, Duty, Error, ForcedOptions, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, MatrixKind, MatrixView,
+    Model, SolverOptions, Status, Wear, best_load_for_life, forced_response, life,
+};
+
+fn solver(harmonics: usize) -> SolverOptions {
+    SolverOptions {
+        harmonics,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    }
+}
+
+fn run(model: &Model, harmonics: usize, options: &LifeOptions<'_>) -> Result<Life, Error> {
+    life(model, &solver(harmonics), options, &mut Hooks::default())
+}
+
+fn at(omega: f64) -> [Duty; 1] {
+    [Duty {
+        omega,
+        force: 1.0,
+        share: 1.0,
+    }]
+}
+
+fn close(name: &str, found: f64, wanted: f64, tolerance: f64) {
+    let error = (found - wanted).abs() / wanted.abs();
+    assert!(
+        error <= tolerance,
+        "{name}: {found} is not {wanted} (error {error:.3e}, allowed {tolerance:e})"
+    );
+}
+
+/// Masses 1 in a row from the ground, springs 1, damping 0.05 of K, and friction on each.
+fn chain(loads: &[f64]) -> Model {
+    let n = loads.len();
+    let mut k = vec![0.0; n * n];
+    let mut m = vec![0.0; n * n];
+    for i in 0..n {
+        m[i * n + i] = 1.0;
+        k[i * n + i] = if i + 1 < n { 2.0 } else { 1.0 };
+        if i > 0 {
+            k[i * n + i - 1] = -1.0;
+            k[(i - 1) * n + i] = -1.0;
+        }
+    }
+    let mut model = Model::new(n).unwrap();
+    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
+        .unwrap();
+    model.set_rayleigh(0.0, 0.05).unwrap();
+    for (i, load) in loads.iter().enumerate() {
+        model.add_contact(&Contact::jenkins(i, None, 1.0, 0.3, *load)).unwrap();
+    }
+    model.add_force(n - 1, 1, 0.3.into()).unwrap();
+    model
+}
+
+fn wear(rates: &[f64]) -> Vec<Wear> {
+    let contacts = rates.iter().enumerate();
+    contacts
+        .map(|(contact, rate)| Wear {
+            contact,
+            rate: *rate,
+            area: 1.0,
+        })
+        .collect()
+}
+
+/// Works of all contacts, and whether each slips, at a frequency or at the highest peak.
+fn works(model: &Model, loads: &[f64], harmonics: usize, range: (f64, f64)) -> (Vec<f64>, f64) {
+    let mut model = model.try_clone().unwrap();
+    for (contact, load) in loads.iter().enumerate() {
+        model.set_preload(contact, load.max(0.0)).unwrap();
+    }
+    let options = ForcedOptions {
+        omega_start: range.0,
+        omega_stop: range.1,
+        ..ForcedOptions::default()
+    };
+    let solver = SolverOptions {
+        response_dof: Some(model.ndof() - 1),
+        ..solver(harmonics)
+    };
+    let branch = forced_response(&model, &solver, &options, &mut Hooks::default()).unwrap();
+    let (point, amplitude) = if range.0 < range.1 {
+        let highest = branch.peaks().iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        let peak = highest.unwrap();
+        (peak.point, peak.amplitude)
+    } else {
+        (0, branch.amplitude()[0])
+    };
+    let of = |contact| branch.contact_summary(point, contact).unwrap().work;
+    ((0..loads.len()).map(of).collect(), amplitude)
+}
+
+/// The classical method of fourth order for the loads.
+fn by_runge_kutta(
+    model: &Model,
+    (rates, stiffness): (&[f64], &[f64]),
+    harmonics: usize,
+    range: (f64, f64),
+    (cycles, steps): (f64, usize),
+) -> Vec<f64> {
+    let n = rates.len();
+    let slope = |loads: &[f64]| -> Vec<f64> {
+        let (works, _) = works(model, loads, harmonics, range);
+        let row = |i: usize| (0..n).map(|j| -stiffness[j * n + i] * rates[j] * works[j]).sum();
+        (0..n).map(row).collect()
+    };
+    let step = cycles / steps as f64;
+    let mut loads: Vec<f64> = model.contacts().iter().map(|c| c.preload).collect();
+    let moved = |loads: &[f64], by: f64, slope: &[f64]| -> Vec<f64> {
+        loads.iter().zip(slope).map(|(n, s)| n + by * s).collect()
+    };
+    for _ in 0..steps {
+        let a = slope(&loads);
+        let b = slope(&moved(&loads, 0.5 * step, &a));
+        let c = slope(&moved(&loads, 0.5 * step, &b));
+        let d = slope(&moved(&loads, step, &c));
+        for i in 0..n {
+            loads[i] += step / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
+        }
+    }
+    loads
+}
+
+/// A mass so heavy that friction does not change its motion A: N = N*/(1 + (N*/N₀ − 1) e^{rn}), N* = kt A/μ, r = 4cμA with the loss c of
+/// load per work.
+#[test]
+fn wear_under_a_given_motion_is_the_logistic_curve() {
+    let (kt, mu, load, c, amplitude) = (2.0, 0.3, 1.7, 0.02, 0.9);
+    let mut model = Model::new(1).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1e12]))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1e8]))
+        .unwrap();
+    model.add_contact(&Contact::jenkins(0, None, kt, mu, load)).unwrap();
+    model.add_force(0, 1, ((1e8 - 1e12) * amplitude).into()).unwrap();
+    let end = kt * amplitude / mu;
+    let exact = |n: f64| end / (1.0 + (end / load - 1.0) * (4.0 * c * mu * amplitude * n).exp());
+    let cycles = [0.0, 3.0, 10.0, 31.0, 100.0, 200.0];
+    let mut errors = Vec::new();
+    for tolerance in [1e-3, 1e-5, 1e-7, 1e-9, 1e-10] {
+        let options = LifeOptions {
+            wear: &wear(&[c]),
+            stiffness: &[1.0],
+            follow: LifeFollow::Duties(&at(1.0)),
+            cycles: &cycles,
+            tolerance,
+            ..LifeOptions::default()
+        };
+        let found = run(&model, 5, &options).unwrap();
+        assert_eq!(found.status, Status::Ok);
+        let error = found.points.iter().map(|p| (p.loads[0] - exact(p.cycles)).abs() / load);
+        let error = error.fold(0.0_f64, f64::max);
+        assert!(error <= 20.0 * tolerance, "error {error:e} at {tolerance:e}");
+        errors.push((found.steps, error));
+        for p in &found.points {
+            let load = exact(p.cycles);
+            let work = 4.0 * mu * load * (amplitude - mu * load / kt);
+            assert!(
+                (p.works[0] - work).abs() <= 1e3 * tolerance * work,
+                "{} cycles",
+                p.cycles
+            );
+        }
+    }
+    let (steps, last) = errors[errors.len() - 1];
+    assert!(last <= 1e-8, "{last:e}");
+    // Of the fourth order: errors fall at least as the third power of the number of steps, apart from luck of single ones.
+    let (few, first) = errors[1];
+    let order = (first / last).ln() / (steps as f64 / few as f64).ln();
+    assert!(order > 3.0, "order {order}: {errors:?}");
+}
+
+#[test]
+fn wear_of_an_oscillator_is_that_of_stored_rows() {
+    let rows = data("wear_of_one_contact.json");
+    let mut model = Model::new(1).unwrap();
+    for (which, value) in [
+        (MatrixKind::Mass, 1.0),
+        (MatrixKind::Stiffness, 1.0),
+        (MatrixKind::Damping, 0.05),
+    ] {
+        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 0.6)).unwrap();
+    model.add_force(0, 1, 0.3.into()).unwrap();
+    for harmonics in [1, 9, 31] {
+        let row = &rows[format!("b_H{harmonics}").as_str()];
+        let list = |name: &str| -> Vec<f64> { row[name].as_array().unwrap().iter().map(number).collect() };
+        let (cycles, loads, amplitudes) = (list("n"), list("N"), list("amplitude"));
+        for (tolerance, allowed) in [(1e-8, 1e-6), (1e-4, 1e-3)] {
+            let options = LifeOptions {
+                wear: &wear(&[0.05]),
+                stiffness: &[1.0],
+                follow: LifeFollow::Duties(&at(1.1)),
+                cycles: &cycles,
+                tolerance,
+                ..LifeOptions::default()
+            };
+            let found = run(&model, harmonics, &options).unwrap();
+            assert_eq!(found.status, Status::Ok);
+            assert_eq!(found.points.len(), cycles.len());
+            for (i, point) in found.points.iter().enumerate() {
+                let name = format!("H {harmonics}, {} cycles", cycles[i]);
+                close(&name, point.loads[0], loads[i], allowed);
+                close(&name, point.amplitude, amplitudes[i], allowed);
+            }
+            if tolerance == 1e-4 {
+                assert!(found.solutions <= 30, "{} steady solutions", found.solutions);
+            }
+        }
+    }
+}
+
+/// Three contacts, elastic coupling of their normals, at a frequency and at the peak that is followed.
+#[test]
+fn wear_of_coupled_contacts_is_that_of_runge_kutta() {
+    let loads = [0.5, 0.8, 1.1];
+    let model = chain(&loads);
+    let rates = [0.05, 0.02, 0.08];
+    let stiffness = [1.0, -0.2, 0.0, -0.2, 1.2, -0.3, 0.0, -0.3, 0.9];
+    for range in [(0.82, 0.82), (0.6, 1.1)] {
+        let wanted = by_runge_kutta(&model, (&rates, &stiffness), 7, range, (6.0, 30));
+        let duties = at(range.0);
+        let options = LifeOptions {
+            wear: &wear(&rates),
+            stiffness: &stiffness,
+            follow: if range.0 < range.1 {
+                LifeFollow::Peak {
+                    omega_start: range.0,
+                    omega_stop: range.1,
+                }
+            } else {
+                LifeFollow::Duties(&duties)
+            },
+            cycles: &[0.0, 6.0],
+            tolerance: 1e-7,
+            ..LifeOptions::default()
+        };
+        let solver = SolverOptions {
+            response_dof: Some(2),
+            ..solver(7)
+        };
+        let found = life(&model, &solver, &options, &mut Hooks::default()).unwrap();
+        assert_eq!(found.status, Status::Ok, "{:?}", found.reason);
+        let end = &found.points[1];
+        for (found, wanted) in end.loads.iter().zip(&wanted) {
+            close(&format!("load in {range:?}"), *found, *wanted, 2e-6);
+        }
+        let (_, amplitude) = works(&model, &end.loads, 7, range);
+        close("amplitude", end.amplitude, amplitude, 1e-9);
+    }
+}
+
+/// A contact that sticks begins to slip as another one wears away: the step ends there, and the loads are those of many short steps.
+#[test]
+fn steps_end_where_a_contact_begins_to_slip() {
+    let model = chain(&[1.6, 0.3]);
+    let rates = [0.1, 0.1]; // the second one wears, and the motion grows
+    let stiffness = [1.0, 0.0, 0.0, 1.0];
+    let duties = at(0.62);
+    let options = LifeOptions {
+        wear: &wear(&rates),
+        stiffness: &stiffness,
+        follow: LifeFollow::Duties(&duties),
+        cycles: &[0.0, 20.0],
+        tolerance: 1e-6,
+        ..LifeOptions::default()
+    };
+    let found = run(&model, 5, &options).unwrap();
+    assert_eq!(found.status, Status::Ok, "{:?}", found.reason);
+    let slips: Vec<_> = found.events.iter().filter(|e| e.kind == LifeEventKind::Slips).collect();
+    assert_eq!(slips.len(), 1, "{:?}", found.events);
+    assert_eq!(slips[0].contact, Some(0));
+    let n = slips[0].cycles;
+    assert!(n > 0.0 && n < 20.0);
+    let begin = |n: f64| {
+        let options = LifeOptions {
+            cycles: &[n],
+            ..options
+        };
+        run(&model, 5, &options).unwrap().points[0].works[0]
+    };
+    assert_eq!(begin(n * (1.0 - 1e-4)), 0.0);
+    assert!(begin(n * (1.0 + 1e-4)) > 0.0);
+    let wanted = by_runge_kutta(&model, (&rates, &stiffness), 5, (0.62, 0.62), (20.0, 200));
+    for (found, wanted) in found.points[1].loads.iter().zip(&wanted) {
+        close("load", *found, *wanted, 1e-4);
+    }
+}
+
+#[test]
+fn a_life_goes_on_from_its_depths_and_tells_its_limit() {
+    let model = chain(&[0.6]);
+    let duties = at(0.9);
+    let options = LifeOptions {
+        wear: &wear(&[0.05]),
+        stiffness: &[1.0],
+        follow: LifeFollow::Duties(&duties),
+        cycles: &[4.0, 10.0],
+        tolerance: 1e-8,
+        ..LifeOptions::default()
+    };
+    let whole = run(&model, 5, &options).unwrap();
+    let first = run(
+        &model,
+        5,
+        &LifeOptions {
+            cycles: &[4.0],
+            ..options
+        },
+    )
+    .unwrap();
+    let second = LifeOptions {
+        cycles: &[6.0],
+        worn: first.depths(),
+        ..options
+    };
+    let second = run(&model, 5, &second).unwrap();
+    close("depth", second.points[0].depths[0], whole.points[1].depths[0], 1e-7);
+    let middle = whole.points[0].amplitude;
+    let told = run(
+        &model,
+        5,
+        &LifeOptions {
+            limit: middle,
+            ..options
+        },
+    )
+    .unwrap();
+    assert_eq!(told.events.len(), 1, "{:?}", told.events);
+    close("cycles of the limit", told.events[0].cycles, 4.0, 1e-3);
+    // Stuck, nothing wears.
+    let stuck = run(&chain(&[60.0]), 5, &options).unwrap();
+    assert_eq!(stuck.points[1].depths, [0.0]);
+}
+
+/// Against a scan of lives at many factors.
+#[test]
+fn the_best_load_for_a_life_is_that_of_a_scan() {
+    let model = chain(&[1.0]);
+    let options = LifeOptions {
+        wear: &wear(&[0.02]),
+        stiffness: &[1.0],
+        follow: LifeFollow::Peak {
+            omega_start: 0.6,
+            omega_stop: 2.0,
+        },
+        cycles: &[8.0],
+        tolerance: 1e-6,
+        ..LifeOptions::default()
+    };
+    let best = best_load_for_life(&model, &solver(3), &options, (0.2, 3.0), &mut Hooks::default()).unwrap();
+    let largest = |factor: f64| run(&chain(&[factor]), 3, &options).unwrap().largest.0;
+    let scanned = (0..25).map(|i| best.factor * (0.9 + 0.2 * f64::from(i) / 24.0));
+    let least = scanned.map(largest).fold(f64::INFINITY, f64::min);
+    assert!(best.amplitude <= least * (1.0 + 1e-6), "{best:?} against {least}");
+    close("its amplitude", largest(best.factor), best.amplitude, 1e-9);
+    // The new and the worn machine vibrate alike.
+    close("both ends", best.new, best.worn, 1e-5);
+}
+
+#[test]
+fn bad_options_are_named() {
+    let model = chain(&[1.0]);
+    let duties = at(0.9);
+    let options = LifeOptions {
+        wear: &wear(&[0.02]),
+        stiffness: &[1.0],
+        follow: LifeFollow::Duties(&duties),
+        cycles: &[8.0],
+        ..LifeOptions::default()
+    };
+    let refused = |options: &LifeOptions<'_>, status: Status, words: &str| {
+        let error = run(&model, 3, options).unwrap_err();
+        assert_eq!(error.status, status, "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    };
+    let other = Wear {
+        contact: 1,
+        ..options.wear[0]
+    };
+    refused(
+        &LifeOptions {
+            wear: &[other],
+            ..options
+        },
+        Status::Index,
+        "contact = 1",
+    );
+    refused(
+        &LifeOptions {
+            stiffness: &[],
+            ..options
+        },
+        Status::Argument,
+        "no normal stiffness",
+    );
+    refused(
+        &LifeOptions {
+            stiffness: &[1.0, 2.0],
+            ..options
+        },
+        Status::Dimension,
+        "1 x 1",
+    );
+    refused(
+        &LifeOptions {
+            cycles: &[2.0, 1.0],
+            ..options
+        },
+        Status::Argument,
+        "cycles[1] = 1",
+    );
+    refused(
+        &LifeOptions {
+            tolerance: 1.0,
+            ..options
+        },
+        Status::Argument,
+        "tolerance = 1",
+    );
+    refused(
+        &LifeOptions {
+            worn: &[-1.0],
+            ..options
+        },
+        Status::Argument,
+        "worn[0] = -1",
+    );
+    let none = LifeFollow::Duties(&[]);
+    refused(
+        &LifeOptions {
+            follow: none,
+            ..options
+        },
+        Status::Dimension,
+        "duties",
+    );
+    let nowhere = LifeFollow::Peak {
+        omega_start: 10.0,
+        omega_stop: 11.0,
+    };
+    refused(
+        &LifeOptions {
+            follow: nowhere,
+            ..options
+        },
+        Status::StoppedNoPeak,
+        "no peak",
+    );
+}
