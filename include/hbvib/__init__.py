@@ -46,6 +46,7 @@ from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
+from ._life import Life, LifeEvents
 from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
 from ._results import *
@@ -54,6 +55,7 @@ from ._sensitivity import Parameter, Sensitivities
 from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
+from ._time_sweep import TimeSweep
 from ._types import *
 from ._wheel_results import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
@@ -63,7 +65,7 @@ __all__ = [
     "OutOfMemoryError", "CallbackError", "Stopped", "StoppedEarly",
     # objects
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
-    "FreeSlider", "StaticHistory", "DamperPlace",
+    "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load",

@@ -180,6 +180,8 @@ fn derivatives_by_parameters_are_computed_and_refused() {
 #[test]
 fn residual_forces_have_their_freedom_and_band() {
     silent("band", |_| vec![]);
+    silent("life", |_| vec![]);
+    silent("run_up", |_| vec![]);
 }
 
 #[test]
