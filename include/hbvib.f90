@@ -2328,6 +2328,10 @@ module hbvib
       procedure :: set_preload => model_set_preload
       procedure :: set_slider => model_set_slider
       procedure :: band => model_band
+      procedure :: band_curve => model_band_curve
+      procedure :: mode_band => model_mode_band
+      procedure :: freedom => model_freedom
+      procedure :: add_damper => model_add_damper
       procedure :: add_jenkins => model_add_jenkins
       procedure :: add_springs => model_add_springs
       procedure :: add_iwan => model_add_iwan
@@ -2410,7 +2414,7 @@ module hbvib
    private :: model_set_aero, model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
    private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings, model_interference, &
       model_signed_diameter
-   private :: model_set_slider, model_band
+   private :: model_set_slider, model_band, model_band_curve, model_mode_band, model_freedom, model_add_damper
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -3391,6 +3395,146 @@ contains
       if (present(lower)) lower = least(:n)
       if (present(upper)) upper = largest(:n)
    end function model_band
+
+   !> The sliders of a point that stick through the period and change its vibration: contacts and directions from 1, their places,
+   !> and the derivatives of the amplitude by them.
+   function model_freedom(self, branch, point, contact, direction, place, derivative, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      integer, allocatable, intent(out) :: contact(:), direction(:)
+      real(dp), allocatable, intent(out), optional :: place(:), derivative(:)
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64), allocatable :: contacts(:), directions(:)
+      real(dp), allocatable :: places(:), derivatives(:)
+      integer(i64) :: p, room, n
+      status = HBVIB_OK
+      call point_to_zero(branch, status, point, p)
+      if (status /= HBVIB_OK) return
+      room = max(2*hbvib_model_contacts(self%handle), 0_i64)
+      allocate (contacts(room), directions(room), places(room), derivatives(room))
+      n = 0
+      status = hbvib_branch_freedom(self%handle, branch%handle, p, room, contacts, directions, places, derivatives, n, hooks)
+      if (status /= HBVIB_OK) return
+      contact = int(contacts(:n)) + 1
+      direction = int(directions(:n)) + 1
+      if (present(place)) place = places(:n)
+      if (present(derivative)) derivative = derivatives(:n)
+   end function model_freedom
+
+   !> The lower and the upper curve of a forced response over its residual forces, at all points of the curve or at some.
+   function model_band_curve(self, branch, lower, upper, omega, sliders, complete, points, options, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      real(dp), allocatable, intent(out) :: lower(:), upper(:)
+      real(dp), allocatable, intent(out), optional :: omega(:)
+      integer, allocatable, intent(out), optional :: sliders(:)
+      logical, allocatable, intent(out), optional :: complete(:)
+      integer, intent(in), optional :: points(:)
+      type(hbvib_band_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64), allocatable :: numbers(:), free(:), ended(:)
+      real(dp), allocatable :: frequency(:), least(:), largest(:)
+      integer(i64) :: count, found
+      integer :: i
+      status = HBVIB_OK
+      allocate (numbers(0))
+      count = hbvib_branch_points(branch%handle)
+      if (count < 0) status = int(count, i32)
+      if (present(points)) then
+         deallocate (numbers)
+         allocate (numbers(size(points)))
+         do i = 1, size(points)
+            call point_to_zero(branch, status, points(i), numbers(i))
+         end do
+         if (size(points) > 0) count = size(points)
+      end if
+      if (status /= HBVIB_OK) return
+      allocate (frequency(count), least(count), largest(count), free(count), ended(count))
+      found = 0
+      status = hbvib_band_curve(self%handle, branch%handle, size(numbers, kind=i64), numbers, options=options, hooks=hooks, &
+                                capacity=count, omega=frequency, lower=least, upper=largest, sliders=free, complete=ended, &
+                                count=found)
+      if (status /= HBVIB_OK) return
+      lower = least
+      upper = largest
+      if (present(omega)) omega = frequency
+      if (present(sliders)) sliders = int(free)
+      if (present(complete)) complete = ended /= 0
+   end function model_band_curve
+
+   !> The least and the largest damping ratio or, with of = HBVIB_MODE_BAND_OMEGA, frequency of a point of a nonlinear mode over all
+   !> residual forces: info, and the free sliders, contacts and directions from 1, with their places at both ends.
+   function model_mode_band(self, branch, point, info, of, contact, direction, lower, upper, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      type(hbvib_band_info), intent(out) :: info
+      integer(i32), intent(in), optional :: of
+      integer, allocatable, intent(out), optional :: contact(:), direction(:)
+      real(dp), allocatable, intent(out), optional :: lower(:), upper(:)
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64), allocatable :: contacts(:), directions(:)
+      real(dp), allocatable :: ends(:)
+      real(dp) :: states(1)
+      integer(i64) :: p, room, none(1)
+      integer(i32) :: result_of
+      integer :: n
+      status = HBVIB_OK
+      call point_to_zero(branch, status, point, p)
+      if (status /= HBVIB_OK) return
+      room = max(2*hbvib_model_contacts(self%handle), 0_i64)
+      allocate (contacts(room), directions(room), ends(2*(room + 2)))
+      result_of = HBVIB_MODE_BAND_DAMPING
+      if (present(of)) result_of = of
+      none = 0
+      status = hbvib_mode_band(self%handle, branch%handle, p, of=result_of, contacts_len=0_i64, contacts=none, hooks=hooks, &
+                               info=info, capacity=room, contact=contacts, direction=directions, ends=ends, &
+                               states_capacity=0_i64, states=states)
+      if (status /= HBVIB_OK) return
+      n = int(info%sliders)
+      if (present(contact)) contact = int(contacts(:n)) + 1
+      if (present(direction)) direction = int(directions(:n)) + 1
+      if (present(lower)) lower = ends(:n)
+      if (present(upper)) upper = ends(room + 3:room + 2 + n)
+   end function model_mode_band
+
+   !> Adds a damper under platforms, a rigid body whose motions are new degrees of freedom behind all others; its faces are given
+   !> beside it, with dofs from 1. dof and contact receive its first motion and its first contact, from 1.
+   function model_add_damper(self, damper, faces, dof, contact) result(status)
+      class(hbvib_model), intent(inout) :: self
+      type(hbvib_damper), intent(in) :: damper
+      type(hbvib_damper_face), intent(in) :: faces(:)
+      integer, intent(inout), optional :: dof, contact
+      integer(i32) :: status
+      type(hbvib_damper) :: given
+      type(hbvib_damper_face), allocatable, target :: from_zero(:)
+      integer(i64) :: first_dof, first_contact, ndof
+      character(32) :: name
+      integer :: i, k
+      status = HBVIB_OK
+      ndof = hbvib_model_dofs(self%handle)
+      allocate (from_zero(size(faces)))
+      from_zero(:) = faces
+      do i = 1, size(faces)
+         do k = 1, 3
+            write (name, '(a, i0, a, i0, a)') 'faces(', i, ')%dofs(', k, ')'
+            call to_zero(status, trim(name), faces(i)%dofs(k), ndof, from_zero(i)%dofs(k), HBVIB_GROUND)
+         end do
+      end do
+      if (status /= HBVIB_OK) return
+      given = damper
+      given%faces = c_null_ptr
+      if (size(faces) > 0) given%faces = c_loc(from_zero)
+      given%faces_len = size(faces)
+      status = hbvib_model_add_damper(self%handle, given, first_dof, first_contact)
+      if (status /= HBVIB_OK) return
+      if (present(dof)) dof = int(first_dof) + 1
+      if (present(contact)) contact = int(first_contact) + 1
+   end function model_add_damper
 
    !> Many Jenkins contacts, all arrays of one length. dof_b absent: the ground; sector_offset absent: 0.
    function model_add_jenkins(self, dof_a, kt, mu, preload, dof_b, sector_offset, first_id) result(status)

@@ -357,6 +357,8 @@ using VerificationInfo = Filled<hbvib_verification, hbvib_verification_init>;
 using FloquetOptions = Filled<hbvib_floquet_options, hbvib_floquet_options_init>;
 using FloquetInfo = Filled<hbvib_floquet_info, hbvib_floquet_info_init>;
 using Kick = Filled<hbvib_kick, hbvib_kick_init>;
+using DamperFace = Filled<hbvib_damper_face, hbvib_damper_face_init>;
+using Damper = Filled<hbvib_damper, hbvib_damper_init>;
 using BandOptions = Filled<hbvib_band_options, hbvib_band_options_init>;
 using BandInfo = Filled<hbvib_band_info, hbvib_band_info_init>;
 using Unknown = Filled<hbvib_unknown, hbvib_unknown_init>;
@@ -888,6 +890,22 @@ struct Band {
   std::vector<Index> contact, direction;
   std::vector<double> lower_place, upper_place;
 };
+/// Lower and upper curve of a response over its residual forces: angular frequency, both, free sliders, and whether the search of each
+/// point ended.
+struct BandCurve {
+  std::vector<double> omega, lower, upper;
+  std::vector<Index> sliders, complete;
+};
+/// The band of damping ratio or frequency of a nonlinear mode: numbers, free sliders, and their places at both ends.
+struct ModeBand {
+  BandInfo info;
+  std::vector<Index> contact, direction;
+  std::vector<double> lower_place, upper_place;
+};
+/// Degrees of freedom and contacts of a damper in its model: the first ones, which the others follow.
+struct DamperPlace {
+  Index dof, contact;
+};
 /// Multipliers of one period of a motion by falling modulus, and the reason of each.
 struct Floquet {
   hbvib_status status;
@@ -1223,6 +1241,15 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
 
   // Contacts: each returns the number of the (first) contact added. Arrays that may be left out: {}.
   Index add_contact(const Contact& c) { return add(hbvib_model_add_contact, &c); }
+  /// A damper under platforms: a rigid body whose motions are new degrees of freedom behind all others. Its faces are given beside it.
+  DamperPlace add_damper(Damper damper, const std::vector<DamperFace>& faces) {
+    const std::vector<hbvib_damper_face> given(faces.begin(), faces.end());
+    damper.faces = given.data();
+    damper.faces_len = static_cast<Index>(given.size());
+    DamperPlace place{};
+    use(hbvib_model_add_damper, &damper, &place.dof, &place.contact);
+    return place;
+  }
   /// preload + per_speed2 Omega^2 at the speed of rotation Omega.
   void set_preload(Index id, double preload, double per_speed2 = 0) { use(hbvib_model_set_preload_at_speed, id, preload, per_speed2); }
   /// Place of the slider of a friction contact before any motion, along t1 (direction 0) or t2 (1).
@@ -1540,6 +1567,38 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
                                nullptr, nullptr));
     const std::size_t n = detail::extent(out.info.sliders);
     out.contact.resize(n), out.direction.resize(n), out.lower_place.resize(n), out.upper_place.resize(n);
+    return out;
+  }
+  /// The lower and the upper curve of a forced response over its residual forces, at all points of the curve or at some.
+  BandCurve band_curve(const Branch& branch, In<Index> points = {}, const BandOptions& options = BandOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const auto kept = branch.core_;
+    const Index count = points.length() > 0 ? points.length() : branch.points();
+    const std::size_t n = detail::extent(count);
+    BandCurve out{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<Index>(n), std::vector<Index>(n)};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    Index found = 0;
+    call.done_whole(hbvib_band_curve(get(), branch.get(), points.length(), points.data(), nullptr, &options, &bound, count, out.omega.data(),
+                                     out.lower.data(), out.upper.data(), out.sliders.data(), out.complete.data(), &found));
+    return out;
+  }
+  /// The least and the largest damping ratio or frequency of a point of a nonlinear mode over all residual forces of contacts that stick,
+  /// or of some.
+  ModeBand mode_band(const Branch& branch, Index point, hbvib_mode_band_of of = HBVIB_MODE_BAND_DAMPING, In<Index> contacts = {},
+                     const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const auto kept = branch.core_;
+    const std::size_t room = detail::extent(2 * branch.reduction().contacts);
+    ModeBand out{BandInfo(), std::vector<Index>(room), std::vector<Index>(room), {}, {}};
+    std::vector<double> ends(2 * (room + 2));
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    call.done_whole(hbvib_mode_band(get(), branch.get(), point, nullptr, nullptr, of, contacts.length(), contacts.data(), &bound, &out.info,
+                                    static_cast<Index>(room), out.contact.data(), out.direction.data(), ends.data(), 0, nullptr));
+    const std::size_t n = detail::extent(out.info.sliders);
+    out.contact.resize(n), out.direction.resize(n);
+    for (std::size_t i = 0; i < n; i++) out.lower_place.push_back(ends[i]), out.upper_place.push_back(ends[room + 2 + i]);
     return out;
   }
   /// The highest peak of each design: values of the parameters, design after design. A stop by a hook keeps the designs

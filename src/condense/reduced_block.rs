@@ -7,7 +7,7 @@ use crate::condense::harmonic_block::Artificial;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::reduced_wave::{MotionRow, ReducedView};
+use crate::model::reduced_wave::{MotionRow, ReducedView, WaveDamping};
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;
@@ -49,6 +49,9 @@ pub(super) fn reduced_block(
             for i in 0..basis {
                 damping[j * n + i] = view.damping(i, j);
             }
+        } else if let WaveDamping::Proportional(_, beta) = view.pencil().damping {
+            // As proportional as the rest, so that the wave has modes.
+            damping[j * n + j] = (beta * view.pencil().stiffness(j)).into();
         }
     }
     let stuck = contact_classes.never_slipping.iter().map(|&i| &model.contacts()[i]);

@@ -4,8 +4,8 @@
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
     BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, ForcedOptions, Frame, Hooks,
-    MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, VerifyOptions, band,
-    band_curve, floquet, forced_response, freedom, parameter_response, sensitivity, verify,
+    MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, TimeOptions, VerifyOptions,
+    band, band_curve, floquet, forced_response, freedom, parameter_response, sensitivity, time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -200,6 +200,109 @@ fn a_band_at_a_frequency_has_its_extrema_between_the_limits() {
                 "{beside}"
             );
         }
+    }
+}
+
+/// Angular frequency, and places and amplitudes of states by time.
+const STATES: [(f64, [[f64; 2]; 3]); 4] = [
+    (
+        1.1,
+        [
+            [0.277_734_375, 0.295_935_297_543_621],
+            [0.2875, 0.291_872_042_767_228],
+            [0.4, 0.262_973_836_818_03],
+        ],
+    ),
+    (
+        1.2,
+        [
+            [0.8, 0.712_309_824_573_769],
+            [0.85, 0.713_739_420_472_758],
+            [1.488_281_25, 0.630_193_640_358_027],
+        ],
+    ),
+    (
+        1.25,
+        [
+            [0.6, 0.546_365_381_138_929],
+            [1.45, 0.680_233_933_686_658],
+            [1.462_304_687_5, 0.682_023_707_320_103],
+        ],
+    ),
+    (
+        1.3,
+        [
+            [0.358_984_375, 0.385_699_702_259_828],
+            [0.6, 0.426_445_037_337_798],
+            [1.536_132_812_5, 0.587_924_808_599_666],
+        ],
+    ),
+];
+
+/// Amplitude, and how far the slider at the platform is dragged from a place, by time.
+fn dragged_in_time(omega: f64, place: f64) -> (f64, f64) {
+    let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    model.set_slider(PLATFORM, 0, place).unwrap();
+    let branch = solve_at(&model, &harmonics(31), omega);
+    let start = crate::common::all_harmonics(&branch, 0);
+    let options = TimeOptions {
+        omega,
+        start: Some(&start),
+        ..TimeOptions::default()
+    };
+    let found = time_response(&model, &options, &mut Hooks::default()).unwrap();
+    (found.harmonics[3].norm(), (found.places[PLATFORM] - place).abs())
+}
+
+#[test]
+#[ignore = "101 harmonics at four frequencies, and integration in time"]
+fn ends_and_extrema_with_many_harmonics_are_those_in_time() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = harmonics(101);
+    for (omega, rows) in STATES {
+        let branch = solve_at(&model, &solver, omega);
+        let mut hooks = Hooks::default();
+        let found = band(&model, &branch, 0, &solver, &BandOptions::default(), &mut hooks).unwrap();
+        assert!(found.is_complete);
+        for [place, amplitude] in rows {
+            let (in_time, dragged) = dragged_in_time(omega, place);
+            println!(
+                "{omega} {place}: {:e}, dragged by {dragged:e}",
+                in_time / amplitude - 1.0
+            );
+            assert!((in_time / amplitude - 1.0).abs() < 1e-9 && dragged < 1e-12);
+        }
+        // A slider stays within each limit, and is dragged beyond it.
+        let (first, last) = (found.states[0], found.states[found.states.len() - 1]);
+        for (end, outward) in [(first, -1e-4), (last, 1e-4)] {
+            let (amplitude, stays) = dragged_in_time(omega, end.place - outward);
+            let (_, dragged) = dragged_in_time(omega, end.place + outward);
+            println!(
+                "{omega} limit {}: {stays:e} {dragged:e}, {}",
+                end.place,
+                end.value / amplitude - 1.0
+            );
+            assert!(stays < 1e-12 && dragged > 1e-6);
+        }
+        for end in [&found.lower, &found.upper] {
+            let (amplitude, dragged) = dragged_in_time(omega, end.places[0]);
+            println!(
+                "{omega}: {} at {}: {:e}, dragged by {dragged:e}",
+                end.value,
+                end.places[0],
+                end.value / amplitude - 1.0
+            );
+            // The slope of the curve multiplies the error of a limit.
+            let accuracy = if end.at_limit.is_empty() { 1e-6 } else { 1e-5 };
+            assert!((end.value / amplitude - 1.0).abs() < accuracy && dragged < 1e-4);
+            // An extremum between the limits is one in time as well.
+            if end.at_limit.is_empty() && end.value > 0.7 {
+                for beside in [-2e-3, 2e-3] {
+                    assert!(dragged_in_time(omega, end.places[0] + beside).0 < amplitude);
+                }
+            }
+        }
+        assert!((omega - 1.2).abs() > 1e-9 || found.upper.at_limit.is_empty());
     }
 }
 

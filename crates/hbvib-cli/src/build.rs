@@ -4,6 +4,7 @@ use crate::at_speeds::at_speeds;
 use crate::check::near;
 use crate::contacts::{Entry, contacts};
 use crate::counted::counted;
+use crate::dampers::add_dampers;
 use crate::events;
 use crate::face_images::FaceImages;
 use crate::faces::{self, Sector};
@@ -162,7 +163,8 @@ pub fn built(job: &Job) -> Outcome<Built> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let (names, areas) = add_contacts(job, (&nodes, &image_rows, &surfaces), &mut model, &mut report)?;
+    let (mut names, mut areas) = add_contacts(job, (&nodes, &image_rows, &surfaces), &mut model, &mut report)?;
+    add_dampers(job, &nodes, &mut model, (&mut names, &mut areas))?;
     for one in &job.output.hysteresis {
         one.contact(&names)?;
     }

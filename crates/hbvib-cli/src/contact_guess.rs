@@ -112,7 +112,8 @@ impl Guess {
             text,
             "\n[[contact]]\nname = \"{a}\"\nkind = \"friction_3d\"\n{:<35} # from side b to side a\n\
              {:<36}# of each pair of nodes; here a hundredth of the mesh at a node: measure it\n\
-             {:<36}# the smaller, the more constant is the load of each pair\nmu = {MU}\n{:<36}# force of each pair at rest: with this one some of them begin to slip\n\n\
+             {:<36}# the smaller, the more constant is the load of each pair\nmu = {MU}\n{:<36}# force of each pair at rest: with this one some of them begin to slip\n\
+             balanced = true                     # by stresses that are not in the matrices: neither side gives way\n\n\
              [contact.nodes]\na = {a:?}\nb = {b:?}\nlargest_distance = {:.3e}\n",
             format!("normal = [{x:.6}, {y:.6}, {z:.6}]"),
             format!("kt = {:.3e}", self.stiffness),

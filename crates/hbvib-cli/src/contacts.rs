@@ -31,7 +31,7 @@ pub struct Entry {
     pub areas: Vec<Option<f64>>,
     /// Pairs that were left out, because they repeat others.
     pub repeated: usize,
-    /// Constant forces that balance contacts of a static step, whose stresses the matrices do not tell.
+    /// Constant forces that balance contacts whose stresses at rest the matrices do not tell.
     pub balance: Vec<(usize, f64)>,
 }
 
@@ -72,6 +72,11 @@ pub fn contacts(
         Some(file) => Some(loads(job, (part, file), (&mut pairs, width), (table, has_areas))?),
         None => None,
     };
+    if part.balanced && part.per_speed2 != 0.0 {
+        return Err(
+            "balanced leaves no room for per_speed2: the forces that hold a preload do not follow the speed".into(),
+        );
+    }
     if part.tangent.is_some() && part.normal.is_none() && part.surfaces.is_none() {
         return Err("tangent without normal".into());
     }
@@ -128,7 +133,7 @@ pub fn contacts(
         .collect();
     let contacts = all?;
     let mut balance = Vec::new();
-    if at_rest.is_some() {
+    if at_rest.is_some() || part.balanced {
         for (k, contact) in contacts.iter().enumerate() {
             balance.extend(balanced(contact, part.normal.or_else(|| pairs.normals.get(k).copied())));
         }

@@ -1,5 +1,6 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::job_damper::DamperPart;
 use crate::job_faces::FacesPart;
 use crate::job_fit::{DataPart, FitPart};
 use crate::job_motion::{MotionPart, UnitsPart};
@@ -20,6 +21,9 @@ pub struct Job {
     pub model: ModelPart,
     #[serde(default)]
     pub contact: Vec<ContactPart>,
+    /// Dampers under platforms, behind all contacts.
+    #[serde(default)]
+    pub damper: Vec<DamperPart>,
     #[serde(default)]
     pub force: Vec<ForcePart>,
     #[serde(default)]
@@ -182,6 +186,9 @@ pub struct ContactPart {
     /// Preload and gap of each pair from a static step.
     #[serde(rename = "static")]
     pub at_rest: Option<StaticPart>,
+    /// Constant forces hold the preload at rest, as stresses do that the matrices do not tell; with a static step they always do.
+    #[serde(default)]
+    pub balanced: bool,
     #[serde(default)]
     pub sector_offset: i64,
     #[serde(default)]

@@ -113,6 +113,9 @@ fn refuse(job: &Job) -> Outcome<()> {
     if !part.at_speed.is_empty() {
         return Err("[[model.at_speed]] is not reduced; matrices at one speed are".into());
     }
+    if !job.damper.is_empty() {
+        return Err("[[damper]] is not reduced: reduce the job without it, and add it to the reduced one".into());
+    }
     if part
         .faces
         .as_ref()

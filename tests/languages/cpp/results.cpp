@@ -357,8 +357,39 @@ void residual_forces() {
   claim(free.size() == 1 && free[0].contact == 0 && free[0].direction == 0, "one slider is free");
   const auto band = model.band(branch, 0);
   claim(band.info.sliders == 1 && band.info.upper > 1.05 * band.info.lower && band.lower_place.size() == 1, "the response is a band");
+  const auto curve = model.band_curve(branch);
+  claim(curve.omega.size() == 1 && curve.sliders[0] == 1 && curve.complete[0] == 1, "the curve has one point");
+  near(curve.upper[0], band.info.upper, 1e-12, "with the same upper end");
+  near(curve.lower[0], band.info.lower, 1e-12, "and lower end");
   model.set_slider(0, band.upper_place[0]);
   near(model.forced_response(s, {1.25, 1.25}).field(HBVIB_AMPLITUDE)[0], band.info.upper, 1e-6, "its end is a response");
+}
+
+/// The same wedge as a damper by one call.
+void damper_under_platforms() {
+  auto model = hbvib::Model::plain(1);
+  const double mass[1][1] = {{1}}, damping[1][1] = {{0.04}};
+  model.set_matrix(HBVIB_MASS, mass);
+  model.set_matrix(HBVIB_STIFFNESS, mass);
+  model.set_matrix(HBVIB_DAMPING, damping);
+  hbvib::Damper damper;
+  damper.mass = 0.01, damper.radius = 0.05, damper.length = 0.2, damper.orbit = 25;
+  damper.support[0] = 1e-3, damper.support[1] = 1e-4, damper.support_damping[0] = 4e-3, damper.support_damping[1] = 1e-5;
+  std::vector<hbvib::DamperFace> faces(2);
+  for (auto& face : faces) face.kt = 1, face.kn = 1.5;
+  faces[0].angle = -0.7853981633974483, faces[0].mu = 0.6;
+  faces[1].angle = 0.7853981633974483, faces[1].mu = 0.15, faces[1].dofs[0] = 0;
+  const auto place = model.add_damper(damper, faces);
+  claim(place.dof == 1 && place.contact == 0 && model.dofs() == 4 && model.contacts() == 2, "a damper has three motions and two contacts");
+  model.set_speed(2);
+  model.add_force(0, 1, 0.02);
+  hbvib::SolverOptions s;
+  s.tolerance = 0, s.harmonics = 5;
+  const auto free = model.freedom(model.forced_response(s, {1.25, 1.25}), 0);
+  claim(!free.empty() && free[0].contact == 0, "its contact with the ground is free");
+  const auto mode = model.nonlinear_mode(s, hbvib::ModeOptions(-0.6, -0.5));
+  const auto band = model.mode_band(mode, 0);
+  claim(band.info.sliders > 0 && band.info.upper >= band.info.lower && !band.upper_place.empty(), "its damping is a band");
 }
 
 }  // namespace
@@ -375,5 +406,6 @@ int main() {
     nonlinear_mode();
     rotation();
     residual_forces();
+    damper_under_platforms();
   });
 }

@@ -74,6 +74,7 @@ program physics
    call own_force()
    call modes()
    call friction()
+   call damper()
    call in_time()
    call one_law_in_many_words()
    call never_slipping()
@@ -274,6 +275,58 @@ contains
       call expect('one side alone is refused', ring%fix([1]) == HBVIB_E_ARGUMENT)
       call works(ring%free(), 'free')
    end subroutine faces
+
+   !> A wedge damper between the ground and a blade, from its geometry.
+   subroutine damper()
+      type(hbvib_model) :: blade
+      type(hbvib_branch) :: mode
+      type(hbvib_damper) :: wedge
+      type(hbvib_damper_face) :: sides(2)
+      type(hbvib_band_info) :: bounds
+      integer :: first_dof, first_contact, most
+      integer, allocatable :: contact(:), direction(:), sliders(:)
+      real(dp), allocatable :: place(:), slope(:), lower(:), upper(:), omega(:)
+      logical, allocatable :: complete(:)
+      call works(blade%new(1), 'a blade')
+      call works(blade%set_matrix(HBVIB_MASS, reshape([1._dp], [1, 1])), 'mass')
+      call works(blade%set_matrix(HBVIB_STIFFNESS, reshape([1._dp], [1, 1])), 'stiffness')
+      call works(blade%set_matrix(HBVIB_DAMPING, reshape([0.04_dp], [1, 1])), 'damping')
+      wedge%mass = 0.01_dp
+      wedge%radius = 0.05_dp
+      wedge%length = 0.2_dp
+      wedge%orbit = 25
+      wedge%support = [1e-3_dp, 1e-4_dp]
+      wedge%support_damping = [4e-3_dp, 1e-5_dp]
+      sides%kt = 1
+      sides%kn = 1.5_dp
+      sides%angle = [-0.7853981633974483_dp, 0.7853981633974483_dp]
+      sides%mu = [0.6_dp, 0.15_dp]
+      sides(2)%dofs(1) = 2
+      call refused(blade%add_damper(wedge, sides), HBVIB_E_INDEX, 'faces(2)%dofs(1) = 2', 'a platform that is not there')
+      sides(2)%dofs(1) = 1
+      call works(blade%add_damper(wedge, sides, first_dof, first_contact), 'a damper')
+      call expect('its motions and contacts follow all others', first_dof == 2 .and. first_contact == 1 .and. blade%dofs() == 4)
+      call works(blade%set_speed(2._dp), 'a speed')
+      call works(blade%add_force(1, 1, 0.02_dp), 'a force')
+      call works(blade%forced_response(branch, 1.25_dp, 1.25_dp, harmonics=5), 'a point with a damper')
+      call works(blade%freedom(branch, 1, contact, direction, place, slope), 'freedom')
+      call expect('its contact with the ground is free', size(contact) == 1 .and. contact(1) == 1 .and. direction(1) == 1 .and. &
+                  size(place) == 1 .and. abs(slope(1)) > 0)
+      call works(blade%band(branch, 1, bounds), 'its band')
+      call works(blade%band_curve(branch, lower, upper, omega, sliders, complete), 'the curves of a band')
+      call expect('the curves are its ends', close(lower(1), bounds%lower, 1e-12_dp) .and. close(upper(1), bounds%upper, 1e-12_dp) &
+                  .and. sliders(1) == 1 .and. complete(1) .and. close(omega(1), 1.25_dp, 1e-14_dp))
+      call works(blade%band_curve(branch, lower, upper, points=[1]), 'the curves at one point')
+      call expect('they have one point', size(lower) == 1 .and. size(upper) == 1)
+      call refused(blade%band_curve(branch, lower, upper, points=[0]), HBVIB_E_INDEX, 'point = 0', 'point 0')
+      call works(blade%nonlinear_mode(mode, -0.6_dp, -0.5_dp, harmonics=5), 'a mode')
+      call works(blade%mode_band(mode, 1, bounds, contact=contact, lower=lower, upper=upper), 'the band of its damping')
+      most = int(bounds%sliders)
+      call expect('its damping is a band', most > 0 .and. bounds%upper >= bounds%lower .and. size(contact) == most .and. &
+                  size(upper) == most .and. size(lower) == most)
+      call works(mode%free(), 'free')
+      call works(blade%free(), 'free')
+   end subroutine damper
 
    subroutine in_time()
       real(dp), parameter :: omega = 1.3_dp, k = 2, c = 0.3_dp, load = 0.7_dp
