@@ -152,6 +152,11 @@ module hbvib
    ! hbvib_suspicion
    integer(c_int32_t), parameter, public :: HBVIB_SUSPICION_NONE = 0, HBVIB_SUSPICION_RESPONSE = 1, &
       HBVIB_SUSPICION_FREQUENCY = 2
+   ! hbvib_life_follow
+   integer(c_int32_t), parameter, public :: HBVIB_LIFE_DUTIES = 0, HBVIB_LIFE_PEAK = 1
+   ! hbvib_life_event
+   integer(c_int32_t), parameter, public :: HBVIB_LIFE_SLIPS = 0, HBVIB_LIFE_STICKS = 1, HBVIB_LIFE_LOST = 2, &
+      HBVIB_LIFE_PRESSED = 3, HBVIB_LIFE_LIMIT = 4
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -398,6 +403,24 @@ module hbvib
       integer(c_int64_t) :: periods = 0, events = 0
    end type hbvib_time_info
 
+   !> Options of hbvib_time_sweep.
+   type, bind(c) :: hbvib_sweep_options
+      integer(c_int32_t) :: struct_size = 72, reserved = 0
+      real(c_double) :: omega_start = 0, omega_stop = 0, rate = 0
+      integer(c_int64_t) :: dof = 0
+      real(c_double) :: tolerance = 1e-11_c_double
+      integer(c_int64_t) :: max_periods = 10000
+      type(c_ptr) :: start = c_null_ptr
+      integer(c_int64_t) :: start_len = 0
+   end type hbvib_sweep_options
+
+   !> Numbers of a sweep in time.
+   type, bind(c) :: hbvib_sweep_info
+      integer(c_int32_t) :: struct_size = 40, reserved = 0
+      real(c_double) :: largest = 0, largest_omega = 0, largest_time = 0
+      integer(c_int64_t) :: events = 0
+   end type hbvib_sweep_info
+
    !> Options of hbvib_verify.
    type, bind(c) :: hbvib_verify_options
       integer(c_int32_t) :: struct_size = 32, method = 0
@@ -523,6 +546,32 @@ module hbvib
       integer(c_int64_t) :: degrees_of_freedom = 0, data = 0, free = 0, iterations = 0, starts = 0, at_bound = 0, slipping = 0
       real(c_double) :: aic = 0, bic = 0, condition = 0, harmonic_error = 0, suspected_factor = 1
    end type hbvib_fit_info
+
+   !> Options of hbvib_life.
+   type, bind(c) :: hbvib_life_options
+      integer(c_int32_t) :: struct_size = 128, follow = 0
+      type(c_ptr) :: contacts = c_null_ptr, rates = c_null_ptr, areas = c_null_ptr
+      integer(c_int64_t) :: contacts_len = 0
+      type(c_ptr) :: stiffness = c_null_ptr, worn = c_null_ptr, duty_omega = c_null_ptr, duty_force = c_null_ptr, &
+         duty_share = c_null_ptr
+      integer(c_int64_t) :: duties_len = 0
+      real(c_double) :: omega_start = 0, omega_stop = 0, tolerance = 1e-4_c_double, limit = 0
+      integer(c_int64_t) :: most_steps = 10000
+   end type hbvib_life_options
+
+   !> Numbers of a life.
+   type, bind(c) :: hbvib_life_info
+      integer(c_int32_t) :: struct_size = 72, reserved = 0
+      integer(c_int64_t) :: steps = 0, solutions = 0, points = 0
+      real(c_double) :: reached = 0, largest = 0, largest_at = 0, amplitude_new = 0, amplitude_worn = 0
+   end type hbvib_life_info
+
+   !> Loads with which the largest amplitude over a life is least.
+   type, bind(c) :: hbvib_best_load
+      integer(c_int32_t) :: struct_size = 48, reserved = 0
+      real(c_double) :: factor = 0, amplitude = 0, amplitude_new = 0, amplitude_worn = 0
+      integer(c_int64_t) :: lives = 0
+   end type hbvib_best_load
 
    abstract interface
       !> A force of the caller.
@@ -1663,6 +1712,32 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_time_response
 
+      function hbvib_sweep_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_sweep_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_sweep_options_init
+
+      function hbvib_sweep_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_sweep_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_sweep_info_init
+
+      function hbvib_time_sweep(model, options, hooks, capacity, time, omega, amplitude, count, info) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_sweep_options), intent(in) :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: time(*), omega(*), amplitude(*)
+         integer(c_int64_t), intent(inout), optional :: count
+         type(hbvib_sweep_info), intent(inout), optional :: info
+         integer(c_int32_t) :: status
+      end function hbvib_time_sweep
+
       function hbvib_verify_options_init(o, size_of_o) bind(c) result(status)
          import
          type(hbvib_verify_options), intent(inout) :: o
@@ -2093,6 +2168,56 @@ module hbvib
          real(c_double), intent(inout), optional :: sigma(*), shift(*)
          integer(c_int32_t) :: status
       end function hbvib_predict
+
+      function hbvib_life_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_life_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_life_options_init
+
+      function hbvib_life_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_life_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_life_info_init
+
+      function hbvib_life(model, solver, options, hooks, n, cycles, depths, loads, works, amplitude, omega, capacity, &
+         event_cycles, event_kind, event_contact, events, info) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_life_options), intent(in) :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: n
+         real(c_double), intent(in) :: cycles(*)
+         real(c_double), intent(inout), optional :: depths(*), loads(*), works(*), amplitude(*), omega(*)
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: event_cycles(*)
+         integer(c_int64_t), intent(inout), optional :: event_kind, event_contact(*), events
+         type(hbvib_life_info), intent(inout), optional :: info
+         integer(c_int32_t) :: status
+      end function hbvib_life
+
+      function hbvib_best_load_init(b, size_of_b) bind(c) result(status)
+         import
+         type(hbvib_best_load), intent(inout) :: b
+         integer(c_size_t), value :: size_of_b
+         integer(c_int32_t) :: status
+      end function hbvib_best_load_init
+
+      function hbvib_best_load_for_life(model, solver, options, cycles, factor_low, factor_high, hooks, &
+         out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_life_options), intent(in) :: options
+         real(c_double), value :: cycles, factor_low, factor_high
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_best_load), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_best_load_for_life
 
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)

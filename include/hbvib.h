@@ -3435,6 +3435,96 @@ hbvib_status hbvib_time_response(const hbvib_model *model,
                                  int64_t samples_len,
                                  hbvib_time_info *info);
 
+/// Options of hbvib_time_sweep. Fill it by hbvib_sweep_options_init, then set frequencies and rate.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// Must be 0.
+  int32_t reserved;
+  /// First angular frequency of harmonic 1, > 0, rad per time unit.
+  double omega_start;
+  /// Last one, > 0; below the first for a run-down.
+  double omega_stop;
+  /// Change of the angular frequency per time, > 0 in both senses.
+  double rate;
+  /// Degree of freedom whose displacement is observed; default 0.
+  int64_t dof;
+  /// As of hbvib_time_options, for the first periodic motion and the steps of smooth laws.
+  double tolerance;
+  /// Cap on the periods that the first periodic motion takes.
+  int64_t max_periods;
+  /// Motion to find the first periodic one from, complex (H + 1) x ndof, as in
+  /// hbvib_time_options; or NULL: rest.
+  const double *start;
+  /// Complex numbers in start.
+  int64_t start_len;
+} hbvib_sweep_options;
+
+/// Fills the options of a sweep in time: degree of freedom 0, tolerance = 1e-11.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_sweep_options_init(hbvib_sweep_options *o, size_t size_of_o);
+
+/// Numbers of a sweep in time. Fill it by hbvib_sweep_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Largest displacement of the sweep.
+  double largest;
+  /// Angular frequency at its time.
+  double largest_omega;
+  /// Its time, from the begin of the sweep.
+  double largest_time;
+  /// Changes between stick, slip, open and closed, or between the lines of a table, of all
+  /// contacts.
+  int64_t events;
+} hbvib_sweep_info;
+
+/// Fills the numbers of a sweep in time with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_sweep_info_init(hbvib_sweep_info *i, size_t size_of_i);
+
+/// Integrates the motion in time while the frequency of the forces changes at a constant rate, as
+/// in a run-up: the phase of harmonic 1 is omega_start t +- rate t^2 / 2, from the periodic motion
+/// at omega_start on, at phase 0. Exact events as in hbvib_time_response, and its models, plain
+/// ones alone.
+///
+/// model      a plain model; a wheel from hbvib_wheel_new is one.
+/// options    frequencies, rate, observed degree of freedom.
+/// hooks      progress, called after each turn with its frequency in `parameter`; log, phase and
+///            cancellation. NULL: none.
+/// capacity   turns of the phase by 2 pi that fit into each array.
+/// time       receives the times at which turns begin, from 0; or NULL.
+/// omega      receives the angular frequencies there; or NULL.
+/// amplitude  receives the largest displacements within turns; or NULL.
+/// count      receives the number of turns, also when `capacity` is too small; or NULL.
+/// info       receives the largest displacement; fill it by hbvib_sweep_info_init before; or NULL.
+/// HBVIB_STOPPED_BY_CALLER: the turns so far.
+/// Errors: HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_INDEX (options), HBVIB_E_DIMENSION (start,
+/// capacity: the arrays are untouched), HBVIB_E_UNSUPPORTED (a cyclic model, an unbalance, a speed
+/// tied to the frequency, what hbvib_time_response refuses), HBVIB_E_NO_CONVERGENCE,
+/// HBVIB_E_NO_BOUNDED_SOLUTION, HBVIB_E_CALLBACK, HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_time_sweep(const hbvib_model *model,
+                              const hbvib_sweep_options *options,
+                              const hbvib_hooks *hooks,
+                              int64_t capacity,
+                              double *time,
+                              double *omega,
+                              double *amplitude,
+                              int64_t *count,
+                              hbvib_sweep_info *info);
+
 /// Options of hbvib_verify. Fill it by hbvib_verify_options_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
@@ -4907,6 +4997,211 @@ hbvib_status hbvib_predict(const hbvib_model *model,
                            double *values,
                            double *sigma,
                            double *shift);
+
+/// Vibration that wears contacts.
+typedef enum {
+  /// Steady states of given frequencies, forces and shares of the time.
+  HBVIB_LIFE_DUTIES = 0,
+  /// The peak of the response, as it moves.
+  HBVIB_LIFE_PEAK = 1,
+} hbvib_life_follow;
+
+/// Events of a life.
+typedef enum {
+  /// A contact begins to slip.
+  HBVIB_LIFE_SLIPS = 0,
+  /// A contact ends to slip.
+  HBVIB_LIFE_STICKS = 1,
+  /// A contact loses its load.
+  HBVIB_LIFE_LOST = 2,
+  /// A contact gets load again.
+  HBVIB_LIFE_PRESSED = 3,
+  /// The amplitude passes the limit.
+  HBVIB_LIFE_LIMIT = 4,
+} hbvib_life_event;
+
+/// Options of hbvib_life. Fill it by hbvib_life_options_init, then set contacts and vibration.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// A value of enum hbvib_life_follow; default HBVIB_LIFE_DUTIES.
+  int32_t follow;
+  /// Contacts that wear, contacts_len numbers; their laws have a normal load.
+  const int64_t *contacts;
+  /// Worn volume per work of friction of each of them, >= 0.
+  const double *rates;
+  /// Area of each of them, > 0, or NULL: 1.
+  const double *areas;
+  /// Number of contacts that wear, 1 .. 2000.
+  int64_t contacts_len;
+  /// Static stiffness between their normals, force per depth, contacts_len x contacts_len,
+  /// symmetric; NULL: the normal stiffness of each contact by itself, which its law then has.
+  const double *stiffness;
+  /// Depths that are worn at the beginning, contacts_len numbers >= 0; NULL: none.
+  const double *worn;
+  /// Angular frequencies of the duties, > 0, duties_len numbers; NULL with HBVIB_LIFE_PEAK.
+  const double *duty_omega;
+  /// Factors on the forces in each duty, >= 0; NULL: 1.
+  const double *duty_force;
+  /// Shares of the time of each duty, >= 0, relative to their sum; NULL: equal ones.
+  const double *duty_share;
+  /// Number of duties.
+  int64_t duties_len;
+  /// First angular frequency of the range of HBVIB_LIFE_PEAK, > 0.
+  double omega_start;
+  /// Last one.
+  double omega_stop;
+  /// Error allowed of the loads, relative to the largest one at the beginning, and of the
+  /// amplitude: 1e-12 .. 0.1; default 1e-4.
+  double tolerance;
+  /// Amplitude whose crossing is an event; default 0: none.
+  double limit;
+  /// Largest number of steps, >= 1; default 10000.
+  int64_t most_steps;
+} hbvib_life_options;
+
+/// Fills the options of a life: no contact, no duty, a tolerance of 1e-4.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_life_options_init(hbvib_life_options *o, size_t size_of_o);
+
+/// Numbers of a life. Fill it by hbvib_life_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Steps that were taken.
+  int64_t steps;
+  /// Steady vibrations that were solved.
+  int64_t solutions;
+  /// Wanted cycles that were reached.
+  int64_t points;
+  /// Cycles that were reached.
+  double reached;
+  /// Largest amplitude over the life.
+  double largest;
+  /// Cycles at which it occurs.
+  double largest_at;
+  /// Amplitude at the beginning.
+  double amplitude_new;
+  /// Amplitude at the cycles that were reached.
+  double amplitude_worn;
+} hbvib_life_info;
+
+/// Fills the numbers of a life with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_life_info_init(hbvib_life_info *i, size_t size_of_i);
+
+/// Follows the wear of contacts over the cycles of a life. The depth that a contact has worn grows
+/// per cycle by its rate times the work of friction of a cycle over its area, and the loads are
+/// those of the model less stiffness times depths. Rates are those of the steady vibration under
+/// the loads of the time. Steps keep the tolerance, and end where a contact begins or ends to slip
+/// or loses its load.
+///
+/// model           stays as it is: it has the loads without wear.
+/// solver          options, tolerance 0 or not; NULL: the defaults.
+/// options         contacts, vibration, tolerance.
+/// hooks           progress, called at each step with its cycles in `parameter`; phase and
+///                 cancellation. NULL: none.
+/// n               number of wanted cycles, >= 1.
+/// cycles          wanted cycles, >= 0, in ascending order; the last is the end of the life.
+/// depths          receives the worn depths, n x contacts_len, or NULL.
+/// loads           receives the loads, n x contacts_len, or NULL.
+/// works           receives the works of a cycle, n x contacts_len, or NULL.
+/// amplitude       receives the amplitudes, n numbers, or NULL; the largest of several duties.
+/// omega           receives their angular frequencies, n numbers, or NULL.
+/// capacity        events that fit into each of the next arrays.
+/// event_cycles    receives the cycles of the first events, or NULL.
+/// event_kind      receives values of enum hbvib_life_event, or NULL.
+/// event_contact   receives numbers of contacts, -1 for the amplitude; or NULL.
+/// events          receives the number of events; or NULL.
+/// info            receives the numbers of the life; fill it by hbvib_life_info_init before; or
+///                 NULL.
+/// A life that ends early has a positive status: HBVIB_STOPPED_STEP_TOO_SMALL where no vibration is
+/// found beyond, HBVIB_STOPPED_MAX_POINTS, HBVIB_STOPPED_BY_CALLER; states beyond are NaN.
+/// Errors: HBVIB_E_INDEX (contacts), HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_NOT_FINITE
+/// (options, cycles, overlapping arrays), HBVIB_E_UNSUPPORTED (a contact without load, a load that
+/// follows a speed tied to the frequency, a law of the caller), those of hbvib_forced_response for
+/// the first vibration, HBVIB_STOPPED_NO_PEAK where that has no peak. Threads: any number on one
+/// model.
+HBVIB_NODISCARD
+hbvib_status hbvib_life(const hbvib_model *model,
+                        const hbvib_solver_options *solver,
+                        const hbvib_life_options *options,
+                        const hbvib_hooks *hooks,
+                        int64_t n,
+                        const double *cycles,
+                        double *depths,
+                        double *loads,
+                        double *works,
+                        double *amplitude,
+                        double *omega,
+                        int64_t capacity,
+                        double *event_cycles,
+                        int64_t *event_kind,
+                        int64_t *event_contact,
+                        int64_t *events,
+                        hbvib_life_info *info);
+
+/// Loads with which the largest amplitude over a life is least. Fill it by hbvib_best_load_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Factor on the loads of the contacts that wear.
+  double factor;
+  /// Largest amplitude over the life with it.
+  double amplitude;
+  /// Amplitude of the new machine.
+  double amplitude_new;
+  /// Amplitude at the end of the life.
+  double amplitude_worn;
+  /// Lives that were followed.
+  int64_t lives;
+} hbvib_best_load;
+
+/// Fills the best loads with zeros.
+///
+/// b          the struct; untouched on error.
+/// size_of_b  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_best_load_init(hbvib_best_load *b, size_t size_of_b);
+
+/// Searches for the factor on the loads of the contacts that wear, as the model has them, with
+/// which the largest amplitude over the life is least: as a rule that with which the new and the
+/// worn machine vibrate alike. Of several minima it is the lowest that nine lives over the range of
+/// factors show.
+///
+/// model        the model with the loads of which factors are sought.
+/// solver       options; NULL: the defaults.
+/// options      contacts, vibration, tolerance: as of hbvib_life.
+/// cycles       end of the life, > 0.
+/// factor_low   least factor, > 0.
+/// factor_high  largest factor.
+/// hooks        progress, called after each life with its factor in `parameter`; cancellation.
+///              NULL: none.
+/// out          receives the factor; fill it by hbvib_best_load_init before.
+/// Errors: as of hbvib_life; HBVIB_E_ARGUMENT (factors, cycles); the status of a life that ended
+/// early; HBVIB_STOPPED_BY_CALLER. Nothing is written then. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_best_load_for_life(const hbvib_model *model,
+                                      const hbvib_solver_options *solver,
+                                      const hbvib_life_options *options,
+                                      double cycles,
+                                      double factor_low,
+                                      double factor_high,
+                                      const hbvib_hooks *hooks,
+                                      hbvib_best_load *out);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

@@ -314,6 +314,17 @@ typedef enum {
   HBVIB_SUSPICION_RESPONSE = 1,
   HBVIB_SUSPICION_FREQUENCY = 2
 } hbvib_suspicion;
+typedef enum {
+  HBVIB_LIFE_DUTIES = 0,
+  HBVIB_LIFE_PEAK = 1
+} hbvib_life_follow;
+typedef enum {
+  HBVIB_LIFE_SLIPS = 0,
+  HBVIB_LIFE_STICKS = 1,
+  HBVIB_LIFE_LOST = 2,
+  HBVIB_LIFE_PRESSED = 3,
+  HBVIB_LIFE_LIMIT = 4
+} hbvib_life_event;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
@@ -340,6 +351,8 @@ typedef struct hbvib_mode_info hbvib_mode_info;
 typedef struct hbvib_synthesis_options hbvib_synthesis_options;
 typedef struct hbvib_time_options hbvib_time_options;
 typedef struct hbvib_time_info hbvib_time_info;
+typedef struct hbvib_sweep_options hbvib_sweep_options;
+typedef struct hbvib_sweep_info hbvib_sweep_info;
 typedef struct hbvib_verify_options hbvib_verify_options;
 typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
@@ -355,6 +368,9 @@ typedef struct hbvib_data hbvib_data;
 typedef struct hbvib_unknown hbvib_unknown;
 typedef struct hbvib_fit_options hbvib_fit_options;
 typedef struct hbvib_fit_info hbvib_fit_info;
+typedef struct hbvib_life_options hbvib_life_options;
+typedef struct hbvib_life_info hbvib_life_info;
+typedef struct hbvib_best_load hbvib_best_load;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
@@ -712,6 +728,26 @@ struct hbvib_time_info {
   int64_t periods;
   int64_t events;
 };
+struct hbvib_sweep_options {
+  uint32_t struct_size;
+  int32_t reserved;
+  double omega_start;
+  double omega_stop;
+  double rate;
+  int64_t dof;
+  double tolerance;
+  int64_t max_periods;
+  const double *start;
+  int64_t start_len;
+};
+struct hbvib_sweep_info {
+  uint32_t struct_size;
+  int32_t reserved;
+  double largest;
+  double largest_omega;
+  double largest_time;
+  int64_t events;
+};
 struct hbvib_verify_options {
   uint32_t struct_size;
   int32_t method;
@@ -887,6 +923,46 @@ struct hbvib_fit_info {
   double harmonic_error;
   double suspected_factor;
 };
+struct hbvib_life_options {
+  uint32_t struct_size;
+  int32_t follow;
+  const int64_t *contacts;
+  const double *rates;
+  const double *areas;
+  int64_t contacts_len;
+  const double *stiffness;
+  const double *worn;
+  const double *duty_omega;
+  const double *duty_force;
+  const double *duty_share;
+  int64_t duties_len;
+  double omega_start;
+  double omega_stop;
+  double tolerance;
+  double limit;
+  int64_t most_steps;
+};
+struct hbvib_life_info {
+  uint32_t struct_size;
+  int32_t reserved;
+  int64_t steps;
+  int64_t solutions;
+  int64_t points;
+  double reached;
+  double largest;
+  double largest_at;
+  double amplitude_new;
+  double amplitude_worn;
+};
+struct hbvib_best_load {
+  uint32_t struct_size;
+  int32_t reserved;
+  double factor;
+  double amplitude;
+  double amplitude_new;
+  double amplitude_worn;
+  int64_t lives;
+};
 uint32_t hbvib_version(void);
 const char *hbvib_version_string(void);
 const char *hbvib_status_name(hbvib_status status);
@@ -1015,6 +1091,9 @@ hbvib_status hbvib_branch_synthesis_peaks_with_hooks(const hbvib_branch *branch,
 hbvib_status hbvib_time_options_init(hbvib_time_options *o, size_t size_of_o);
 hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
 hbvib_status hbvib_time_response(const hbvib_model *model, const hbvib_time_options *options, const hbvib_hooks *hooks, double *harmonics, int64_t harmonics_len, double *samples, int64_t samples_len, hbvib_time_info *info);
+hbvib_status hbvib_sweep_options_init(hbvib_sweep_options *o, size_t size_of_o);
+hbvib_status hbvib_sweep_info_init(hbvib_sweep_info *i, size_t size_of_i);
+hbvib_status hbvib_time_sweep(const hbvib_model *model, const hbvib_sweep_options *options, const hbvib_hooks *hooks, int64_t capacity, double *time, double *omega, double *amplitude, int64_t *count, hbvib_sweep_info *info);
 hbvib_status hbvib_verify_options_init(hbvib_verify_options *o, size_t size_of_o);
 hbvib_status hbvib_verification_init(hbvib_verification *v, size_t size_of_v);
 hbvib_status hbvib_verify(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_verify_options *options, const hbvib_hooks *hooks, double *harmonics, int64_t harmonics_len, double *errors, int64_t errors_len, hbvib_verification *out);
@@ -1056,6 +1135,11 @@ hbvib_status hbvib_fit_options_init(hbvib_fit_options *o, size_t size_of_o);
 hbvib_status hbvib_fit_info_init(hbvib_fit_info *i, size_t size_of_i);
 hbvib_status hbvib_fit(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_fit_options *options, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, const hbvib_unknown *unknowns, const hbvib_data *data, int64_t data_len, hbvib_fit_info *info, double *theta, double *covariance, int64_t residuals_len, double *residuals, double *values, hbvib_model **out);
 hbvib_status hbvib_predict(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_data *wanted, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, const double *theta, const double *covariance, int64_t capacity, double *values, double *sigma, double *shift);
+hbvib_status hbvib_life_options_init(hbvib_life_options *o, size_t size_of_o);
+hbvib_status hbvib_life_info_init(hbvib_life_info *i, size_t size_of_i);
+hbvib_status hbvib_life(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_life_options *options, const hbvib_hooks *hooks, int64_t n, const double *cycles, double *depths, double *loads, double *works, double *amplitude, double *omega, int64_t capacity, double *event_cycles, int64_t *event_kind, int64_t *event_contact, int64_t *events, hbvib_life_info *info);
+hbvib_status hbvib_best_load_init(hbvib_best_load *b, size_t size_of_b);
+hbvib_status hbvib_best_load_for_life(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_life_options *options, double cycles, double factor_low, double factor_high, const hbvib_hooks *hooks, hbvib_best_load *out);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_forced_residual(const hbvib_model *model, const hbvib_solver_options *solver, double omega, const double *x, int64_t x_len, double *r, int64_t r_len, double *jac, int64_t jac_len, double *d_omega, int64_t d_omega_len);

@@ -172,7 +172,7 @@ pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,
     LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch, Turn,
 };
-pub use time_integration::TimeResponse;
+pub use time_integration::{FrequencySweep, SweepOptions, SweepTurn, TimeResponse, sweep};
 
 #[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}

@@ -48,6 +48,7 @@ from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError
 from ._fit_results import Fit, Predicted, Profile, SuspiciousUnits
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
+from ._life import Life, LifeEvents
 from ._measured import Measured, Unknown
 from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
@@ -57,6 +58,7 @@ from ._sensitivity import ComplexSensitivities, Parameter, Sensitivities
 from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
+from ._time_sweep import TimeSweep
 from ._types import *
 from ._wheel_results import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
@@ -67,7 +69,7 @@ __all__ = [
     # objects
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
     "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
-    "FreeSlider", "StaticHistory", "DamperPlace",
+    "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "decay_backbone",

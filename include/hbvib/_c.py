@@ -11,7 +11,7 @@ __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block
     "Measure", "Component", "Field", "Reading", "FlexibilityWay", "State", "ContactState", "DampingForm",
     "ModeMultiple", "SynthesisFlag", "SteadyMethod", "Waves", "MultiplierClass", "Grazing", "Bifurcation",
     "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow", "BandOf", "ModeBandOf", "DataKind", "Scale",
-    "Suspicion"]
+    "Suspicion", "LifeFollow", "LifeEvent"]
 
 
 class Status(enum.IntEnum):
@@ -886,6 +886,40 @@ class Suspicion(enum.IntEnum):
     RESPONSE = 1
     FREQUENCY = 2
 
+
+class LifeFollow(enum.IntEnum):
+    """Vibration that wears contacts.
+
+    DUTIES   Steady states of given frequencies, forces and shares of the time.
+    PEAK   The peak of the response, as it moves.
+
+    >>> import hbvib
+    >>> hbvib.LifeFollow(0)
+    <LifeFollow.DUTIES: 0>
+    """
+    DUTIES = 0
+    PEAK = 1
+
+
+class LifeEvent(enum.IntEnum):
+    """Events of a life.
+
+    SLIPS   A contact begins to slip.
+    STICKS   A contact ends to slip.
+    LOST   A contact loses its load.
+    PRESSED   A contact gets load again.
+    LIMIT   The amplitude passes the limit.
+
+    >>> import hbvib
+    >>> hbvib.LifeEvent(0)
+    <LifeEvent.SLIPS: 0>
+    """
+    SLIPS = 0
+    STICKS = 1
+    LOST = 2
+    PRESSED = 3
+    LIMIT = 4
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -942,6 +976,9 @@ synthesis_options: uint32 struct_size; int32 model_damping; double force_factor 
 time_options: uint32 struct_size; int32 method; double omega; int64 harmonics samples; double tolerance; int64
     max_periods; pointer start; int64 start_len; pointer places; int64 places_len
 time_info: uint32 struct_size; int32 reserved; double period residual; int64 periods events
+sweep_options: uint32 struct_size; int32 reserved; double omega_start omega_stop rate; int64 dof; double tolerance;
+    int64 max_periods; pointer start; int64 start_len
+sweep_info: uint32 struct_size; int32 reserved; double largest largest_omega largest_time; int64 events
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
     response_error motion_error above distance peak peak_error residual; int64 periods events worst_response; double
@@ -966,6 +1003,11 @@ unknown: uint32 struct_size; int32 scale; double start lower upper prior_mean pr
 fit_options: uint32 struct_size; int32 scale_covariance; double huber; int64 starts max_iterations; double step
 fit_info: uint32 struct_size; int32 suspicion; double chi2 loss; int64 degrees_of_freedom data free iterations starts
     at_bound slipping; double aic bic condition harmonic_error suspected_factor
+life_options: uint32 struct_size; int32 follow; pointer contacts rates areas; int64 contacts_len; pointer stiffness worn
+    duty_omega duty_force duty_share; int64 duties_len; double omega_start omega_stop tolerance limit; int64 most_steps
+life_info: uint32 struct_size; int32 reserved; int64 steps solutions points; double reached largest largest_at
+    amplitude_new amplitude_worn
+best_load: uint32 struct_size; int32 reserved; double factor amplitude amplitude_new amplitude_worn; int64 lives
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -1107,6 +1149,9 @@ branch_synthesis_peaks_with_hooks: h h synthesis_options l p p p p p p p p hooks
 time_options_init: time_options z
 time_info_init: time_info z
 time_response: h time_options hooks p l p l time_info
+sweep_options_init: sweep_options z
+sweep_info_init: sweep_info z
+time_sweep: h sweep_options hooks l p p p p sweep_info
 verify_options_init: verify_options z
 verification_init: verification z
 verify: h h l verify_options hooks p l p l verification
@@ -1148,6 +1193,11 @@ fit_options_init: fit_options z
 fit_info_init: fit_info z
 fit: h solver_options fit_options hooks parameter l unknown data l fit_info p p l p p p
 predict: h solver_options data hooks parameter l p p l p p p
+life_options_init: life_options z
+life_info_init: life_info z
+life: h solver_options life_options hooks l p p p p p p l p p p p life_info
+best_load_init: best_load z
+best_load_for_life: h solver_options life_options d d d hooks best_load
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -1330,6 +1380,10 @@ if TYPE_CHECKING:
         def hbvib_time_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_time_response(self, model: Any, options: Any, hooks: Any, harmonics: Any, harmonics_len: int, samples:
             Any, samples_len: int, info: Any) -> int: ...
+        def hbvib_sweep_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_sweep_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_time_sweep(self, model: Any, options: Any, hooks: Any, capacity: int, time: Any, omega: Any,
+            amplitude: Any, count: Any, info: Any) -> int: ...
         def hbvib_verify_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_verification_init(self, v: Any, size_of_v: int) -> int: ...
         def hbvib_verify(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, harmonics: Any,
@@ -1398,6 +1452,14 @@ if TYPE_CHECKING:
             values: Any, out: Any) -> int: ...
         def hbvib_predict(self, model: Any, solver: Any, wanted: Any, hooks: Any, parameters: Any, count: int, theta:
             Any, covariance: Any, capacity: int, values: Any, sigma: Any, shift: Any) -> int: ...
+        def hbvib_life_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_life_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_life(self, model: Any, solver: Any, options: Any, hooks: Any, n: int, cycles: Any, depths: Any, loads:
+            Any, works: Any, amplitude: Any, omega: Any, capacity: int, event_cycles: Any, event_kind: Any,
+            event_contact: Any, events: Any, info: Any) -> int: ...
+        def hbvib_best_load_init(self, b: Any, size_of_b: int) -> int: ...
+        def hbvib_best_load_for_life(self, model: Any, solver: Any, options: Any, cycles: float, factor_low: float,
+            factor_high: float, hooks: Any, out: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,

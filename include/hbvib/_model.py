@@ -18,12 +18,14 @@ from ._convert import _array, _member, _whole
 from ._damper import _Dampers
 from ._fit import _Fits
 from ._library import lib
+from ._life import _Lives
 from ._linear_modes import _LinearModes
 from ._mode_band import _ModeBands
 from ._sensitivity import _Sensitivity
 from ._static_history import _StaticHistories
 from ._structs import _new
 from ._time_integration import _TimeIntegration
+from ._time_sweep import _TimeSweeps
 from ._wheel import _Wheels
 from ._wheel_studies import _WheelStudies
 
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands, _ModeBands, _Fits,
-            _StaticHistories, _Wheels, _WheelStudies, _Dampers):
+            _StaticHistories, _Wheels, _WheelStudies, _Dampers, _Lives, _TimeSweeps):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.
 

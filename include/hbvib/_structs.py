@@ -10,7 +10,7 @@ import numpy as np
 from ._c import FlexibilityWay, ModeMultiple, Part, Storage, Tangent
 from ._convert import _array, _member, _numbers, _pointer, _real, _whole
 from ._library import lib, structs
-from ._types import (ContactSummary, Descent, Energy, JacobianGap, Kick, ModeInfo, ModePoint, Reduction, Searched, TimeInfo,
+from ._types import (BestLoad, ContactSummary, Descent, Energy, JacobianGap, Kick, ModeInfo, ModePoint, Reduction, Searched, TimeInfo,
                      VerificationInfo)
 
 
@@ -115,6 +115,7 @@ _RECORDS: dict[type, tuple[str, dict[str, Callable[..., Any]]]] = {
     Descent: ("hbvib_descent", {}),
     Searched: ("hbvib_searched", {}),
     Kick: ("hbvib_kick", dict(verified=bool)),
+    BestLoad: ("hbvib_best_load", {}),
     TimeInfo: ("hbvib_time_info", {}),
     VerificationInfo: ("hbvib_verification", dict(same_solution=bool, marched=bool,
                                                   response=lambda pair: complex(*pair))),

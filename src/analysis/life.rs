@@ -2,7 +2,7 @@
 //!
 //! The depth that a contact has worn grows by h_j′ = α_j E_j/A_j per cycle with the work E_j of a cycle of the steady vibration, and the
 //! loads follow as N = N₀ − S h with the static stiffness S between the normals. That is an ordinary differential equation for h over the
-//! number of cycles; its steps are those of [`life_step`](super::life_step), with the exact derivatives of the works by the loads. Where a
+//! number of cycles; its steps are those of `life_step`, with the exact derivatives of the works by the loads. Where a
 //! contact begins or ends to slip, or loses its load, rates keep their value and change their slope: a step ends there.
 
 use crate::analysis::life_step::{LifeState, LifeStep, ahead};
@@ -141,11 +141,17 @@ pub fn life(model: &Model, solver: &SolverOptions, options: &LifeOptions<'_>, ho
     let ended = walk.run(first, hooks);
     walk.found.solutions = walk.states.solutions;
     if let Err(e) = ended {
-        if matches!(e.status, Status::OutOfMemory | Status::Internal) {
+        if matches!(e.status, Status::OutOfMemory | Status::Internal | Status::Callback) {
             return Err(e);
         }
-        walk.found.status = e.status;
-        walk.found.reason = Some(e);
+        // A vibration that is not found on the way ends the life as a step that is too small.
+        let status = if (e.status as i32) < 0 {
+            Status::StoppedStepTooSmall
+        } else {
+            e.status
+        };
+        walk.found.status = status;
+        walk.found.reason = Some(Error::new(status, format_args!("{e}")));
     }
     Ok(walk.found)
 }

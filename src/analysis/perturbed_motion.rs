@@ -253,6 +253,7 @@ fn through_a_lapse(
     let observers = Observers {
         recorder,
         variation: Some(&mut blocks),
+        largest: None,
     };
     event_loop.run(system, &mut state, observers)?;
     let moved = |i: usize| {

@@ -186,13 +186,13 @@ impl<'a> WornStates<'a> {
                 omega_stop,
             } => {
                 let found = self.peak((&model, &state), (omega_start, omega_stop), hooks)?;
-                self.add(&mut state, &found, 1.0)?;
+                self.add(&mut state, &found, 1.0);
             }
             LifeFollow::Duties(duties) => {
                 let total: f64 = duties.iter().map(|duty| duty.share * duty.omega).sum();
                 for (d, duty) in duties.iter().enumerate() {
                     let found = self.duty((&model, &state), (d, duty), hooks)?;
-                    self.add(&mut state, &found, duty.share * duty.omega / total)?;
+                    self.add(&mut state, &found, duty.share * duty.omega / total);
                 }
             }
         }
@@ -207,7 +207,7 @@ impl<'a> WornStates<'a> {
     }
 
     /// Adds a vibration with its share of the cycles, with derivatives by depths: ∂/∂h = −S ∂/∂N.
-    fn add(&self, state: &mut WornState, found: &Vibration, share: f64) -> Result<()> {
+    fn add(&self, state: &mut WornState, found: &Vibration, share: f64) {
         let n = self.len();
         let largest = found.amplitude > state.amplitude;
         if largest {
@@ -236,7 +236,6 @@ impl<'a> WornStates<'a> {
                 }
             }
         }
-        Ok(())
     }
 
     /// Options that keep the response degree of freedom of the first solution.

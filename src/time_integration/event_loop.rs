@@ -7,6 +7,7 @@ use crate::interrupt::Phase;
 use crate::time_integration::event_law::Element;
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
+use crate::time_integration::largest_motion::LargestMotion;
 use crate::time_integration::linear_step::Taylor;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial, first_fall};
 use crate::time_integration::unrolled_structure::System;
@@ -176,6 +177,8 @@ pub(crate) struct Observers<'a, 'v> {
     pub recorder: Option<&'a mut HarmonicAnalysis>,
     /// Perturbations of the motion.
     pub variation: Option<&'a mut (dyn Variation + 'v)>,
+    /// Largest motion of a degree of freedom.
+    pub largest: Option<&'a mut LargestMotion<'v>>,
 }
 
 enum Stepper {
@@ -232,11 +235,23 @@ impl EventLoop {
         state: &mut State,
         observers: Observers<'_, '_>,
     ) -> Result<LapseSummary> {
+        let end = system.lapse();
+        self.run_for(system, state, end, observers)
+    }
+
+    /// The same over a given time.
+    pub fn run_for(
+        &mut self,
+        system: &mut System<'_>,
+        state: &mut State,
+        end: f64,
+        observers: Observers<'_, '_>,
+    ) -> Result<LapseSummary> {
         let Observers {
             mut recorder,
             mut variation,
+            mut largest,
         } = observers;
-        let end = system.lapse();
         let mut summary = LapseSummary::default();
         summary.update(state);
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.dependent);
@@ -278,6 +293,9 @@ impl EventLoop {
             let h = self.polynomial.length;
             if let Some(r) = recorder.as_deref_mut() {
                 r.add(&self.polynomial, theta, system.interrupt)?;
+            }
+            if let Some(largest) = largest.as_deref_mut() {
+                largest.add(&self.polynomial, theta);
             }
             if theta > 0.0 {
                 if let Some(variation) = variation.as_deref_mut() {

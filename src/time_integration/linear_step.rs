@@ -26,6 +26,8 @@ const OVERFLOW: f64 = 1e200;
 pub(super) struct Taylor {
     force: Vec<f64>,
     turning: Vec<Complex64>,
+    /// Its values for the term before.
+    before: Vec<Complex64>,
     /// Length of the step to try next.
     trial: f64,
 }
@@ -38,6 +40,7 @@ impl Taylor {
         Ok(Self {
             force: try_vec(n, 0.0, CONTEXT)?,
             turning: try_vec(system.loads.len(), Complex64::ZERO, CONTEXT)?,
+            before: try_vec(system.loads.len(), Complex64::ZERO, CONTEXT)?,
             trial: 0.1 * system.lapse(),
         })
     }
@@ -65,8 +68,9 @@ impl Taylor {
                 *c = h * v;
             }
             for (turning, load) in self.turning.iter_mut().zip(&system.loads) {
-                *turning = load.value * Complex64::cis(load.harmonic as f64 * system.omega * t);
+                *turning = load.value * system.turn(load.harmonic, t);
             }
+            self.before.fill(Complex64::ZERO);
             for k in 0..=DEGREE - 2 {
                 system.interrupt.check_before(system.operations())?;
                 self.next_term(system, pieces, k, h, step)?;
@@ -101,9 +105,21 @@ impl Taylor {
         let n = self.force.len();
         let f = &mut self.force;
         f.fill(0.0);
-        for (turning, load) in self.turning.iter_mut().zip(&system.loads) {
-            f[load.dof] += turning.re;
-            *turning *= Complex64::I * (load.harmonic as f64 * system.omega * h / (k + 1) as f64);
+        if system.omega_rate == 0.0 {
+            for (turning, load) in self.turning.iter_mut().zip(&system.loads) {
+                f[load.dof] += turning.re;
+                *turning *= Complex64::I * (load.harmonic as f64 * system.omega * h / (k + 1) as f64);
+            }
+        } else {
+            // From c′ = ihφ′c with φ′ = ω + ω′t: (k + 1) c_{k+1} = ih (φ′₀ c_k + ω′ c_{k−1}), times the length of the step.
+            let omega = system.omega + system.omega_rate * step.begin;
+            for ((turning, before), load) in self.turning.iter_mut().zip(&mut self.before).zip(&system.loads) {
+                f[load.dof] += turning.re;
+                let factor = Complex64::I * (load.harmonic as f64 * h / (k + 1) as f64);
+                let next = factor * (omega * *turning + system.omega_rate * h * *before);
+                *before = *turning;
+                *turning = next;
+            }
         }
         let (low, high) = step.coefficients.split_at_mut((k + 1) * n);
         let this = &low[k * n..];

@@ -2,10 +2,12 @@
 
 mod event_law;
 mod event_loop;
+mod frequency_sweep;
 mod gauss;
 mod harmonic_analysis;
 mod implicit_step;
 mod initial_state;
+mod largest_motion;
 mod linear_step;
 mod periodic_response;
 mod perturbation_basis;
@@ -18,6 +20,7 @@ mod variation;
 mod variational_equations;
 mod variational_step;
 
+pub use frequency_sweep::{FrequencySweep, SweepOptions, SweepTurn, sweep};
 pub use periodic_response::{TimeResponse, solve};
 
 // The variational equations of the room `stability`.

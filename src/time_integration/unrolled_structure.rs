@@ -96,8 +96,10 @@ pub(crate) struct System<'s> {
     pub folded: bool,
     /// x_{s+j}(t + T/sectors) = x_s(t) with this j.
     pub follower: usize,
-    /// Angular frequency of harmonic 1.
+    /// Angular frequency of harmonic 1, at time 0 where it changes.
     pub omega: f64,
+    /// Its change per time; 0 in a periodic motion.
+    pub omega_rate: f64,
     mass: Mass,
     /// M
     pub inertia: Sparse,
@@ -157,6 +159,7 @@ impl<'s> System<'s> {
             folded: false,
             follower: structure.sectors_per_part(),
             omega,
+            omega_rate: 0.0,
             mass: Mass::new(&inertia, ndof, interrupt)?,
             inertia: Sparse::new(&inertia)?,
             damping: Sparse::new(&damping)?,
@@ -274,6 +277,7 @@ impl<'s> System<'s> {
             folded: true,
             follower: self.follower,
             omega: self.omega,
+            omega_rate: self.omega_rate,
             mass: Mass::new(&inertia, self.ndof, self.interrupt)?,
             inertia: Sparse::new(&inertia)?,
             damping: Sparse::new(&fold(&self.damping)?)?,
@@ -313,8 +317,17 @@ impl<'s> System<'s> {
     /// Adds the loads at time t to `f`.
     pub fn load(&self, t: f64, f: &mut [f64]) {
         for load in &self.loads {
-            f[load.dof] += (load.value * Complex64::cis(load.harmonic as f64 * self.omega * t)).re;
+            f[load.dof] += (load.value * self.turn(load.harmonic, t)).re;
         }
+    }
+
+    /// e^{ihφ} at time t, with the phase φ = ωt, or ωt + ω′t²/2 where the frequency changes.
+    pub fn turn(&self, harmonic: usize, t: f64) -> Complex64 {
+        let h = harmonic as f64;
+        if self.omega_rate == 0.0 {
+            return Complex64::cis(h * self.omega * t);
+        }
+        Complex64::cis(h * t * (self.omega + 0.5 * self.omega_rate * t))
     }
 
     /// Sets the modes at a state; stretches are moved into their range. `dependent` receives the modes of sliders

@@ -185,6 +185,8 @@ fn parameters_are_fitted_to_data_and_predicted() {
 #[test]
 fn residual_forces_have_their_freedom_and_band() {
     silent("band", |_| vec![]);
+    silent("life", |_| vec![]);
+    silent("run_up", |_| vec![]);
 }
 
 #[test]

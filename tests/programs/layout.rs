@@ -60,6 +60,8 @@ fn in_rust() -> String {
         hbvib_synthesis_options { struct_size, model_damping, force_factor, damping_ratio }
         hbvib_time_options { struct_size, method, omega, harmonics, samples, tolerance, max_periods, start, start_len, places, places_len }
         hbvib_time_info { struct_size, reserved, period, residual, periods, events }
+        hbvib_sweep_options { struct_size, reserved, omega_start, omega_stop, rate, dof, tolerance, max_periods, start, start_len }
+        hbvib_sweep_info { struct_size, reserved, largest, largest_omega, largest_time, events }
         hbvib_verify_options { struct_size, method, tolerance, max_periods, same_within }
         hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events, worst_response, worst_response_error }
         hbvib_floquet_options { struct_size, waves, refine, modes, tolerance, max_periods }
@@ -75,6 +77,9 @@ fn in_rust() -> String {
         hbvib_unknown { struct_size, scale, start, lower, upper, prior_mean, prior_sigma, tied_to, has_start, has_lower, has_upper, reserved }
         hbvib_fit_options { struct_size, scale_covariance, huber, starts, max_iterations, step }
         hbvib_fit_info { struct_size, suspicion, chi2, loss, degrees_of_freedom, data, free, iterations, starts, at_bound, slipping, aic, bic, condition, harmonic_error, suspected_factor }
+        hbvib_life_options { struct_size, follow, contacts, rates, areas, contacts_len, stiffness, worn, duty_omega, duty_force, duty_share, duties_len, omega_start, omega_stop, tolerance, limit, most_steps }
+        hbvib_life_info { struct_size, reserved, steps, solutions, points, reached, largest, largest_at, amplitude_new, amplitude_worn }
+        hbvib_best_load { struct_size, reserved, factor, amplitude, amplitude_new, amplitude_worn, lives }
         // END GENERATED
     }
 }

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod run_up;
 mod time_response;
 mod time_response_balance;
 mod time_response_friction;

@@ -87,7 +87,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Time",
         about: "integration in time, and points of a branch compared with it",
-        files: &["time", "time_verify"],
+        files: &["time", "time_sweep", "time_verify"],
     },
     Section {
         title: "Stability",
@@ -110,6 +110,7 @@ pub const SECTIONS: [Section; 13] = [
             "static_history",
             "fit_data",
             "fit",
+            "life",
         ],
     },
     Section {

@@ -19,7 +19,7 @@ const PEAK: &str = ">>> peak = branch.peaks().point[0]\n";
 const MODE: &str = ">>> mode = model.nonlinear_mode((-2, 1))\n";
 
 /// Classes, the parts that come before, and the lines of the example itself.
-const EXAMPLES: [(&str, &[&str], &str); 17] = [
+const EXAMPLES: [(&str, &[&str], &str); 18] = [
     (
         "SolverOptions",
         &[MODEL, CONTACT],
@@ -127,6 +127,14 @@ True
 >>> branch = model.forced_response((0.9, 1.3), at=[1.1017664364])
 >>> upper, saddle, lower = branch.at(0).point
 >>> model.smallest_kick(branch, int(lower), int(saddle), dof=0, phases=4).verified
+True
+",
+    ),
+    (
+        "BestLoad",
+        &[MODEL, CONTACT],
+        ">>> best = model.best_load_for_life(0, 0.02, cycles=5, peak=(0.8, 1.6), stiffness=1, harmonics=3)
+>>> abs(best.amplitude_new / best.amplitude_worn - 1) < 1e-5
 True
 ",
     ),

@@ -29,7 +29,7 @@ const OPTIONS: [(&str, &[&str]); 6] = [
 ];
 
 /// Structs of results, and the names of their classes where those are not their own.
-const RESULTS: [(&str, &str); 11] = [
+const RESULTS: [(&str, &str); 12] = [
     ("hbvib_energy", "Energy"),
     ("hbvib_contact_summary", "ContactSummary"),
     ("hbvib_mode_point", "ModePoint"),
@@ -38,6 +38,7 @@ const RESULTS: [(&str, &str); 11] = [
     ("hbvib_descent", "Descent"),
     ("hbvib_searched", "Searched"),
     ("hbvib_kick", "Kick"),
+    ("hbvib_best_load", "BestLoad"),
     ("hbvib_jacobian_gap", "JacobianGap"),
     ("hbvib_time_info", "TimeInfo"),
     ("hbvib_verification", "VerificationInfo"),

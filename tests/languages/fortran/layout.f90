@@ -32,6 +32,8 @@ program layout
    call synthesis_options()
    call time_options()
    call time_info()
+   call sweep_options()
+   call sweep_info()
    call verify_options()
    call verification()
    call floquet_options()
@@ -47,6 +49,9 @@ program layout
    call unknown()
    call fit_options()
    call fit_info()
+   call life_options()
+   call life_info()
+   call best_load()
    ! END GENERATED
 
 contains
@@ -497,6 +502,32 @@ contains
       call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
    end subroutine time_info
 
+   subroutine sweep_options()
+      type(hbvib_sweep_options), target :: s
+      call whole('hbvib_sweep_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('omega_start', c_loc(s), c_loc(s%omega_start), c_sizeof(s%omega_start))
+      call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
+      call field('rate', c_loc(s), c_loc(s%rate), c_sizeof(s%rate))
+      call field('dof', c_loc(s), c_loc(s%dof), c_sizeof(s%dof))
+      call field('tolerance', c_loc(s), c_loc(s%tolerance), c_sizeof(s%tolerance))
+      call field('max_periods', c_loc(s), c_loc(s%max_periods), c_sizeof(s%max_periods))
+      call field('start', c_loc(s), c_loc(s%start), c_sizeof(s%start))
+      call field('start_len', c_loc(s), c_loc(s%start_len), c_sizeof(s%start_len))
+   end subroutine sweep_options
+
+   subroutine sweep_info()
+      type(hbvib_sweep_info), target :: s
+      call whole('hbvib_sweep_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('largest', c_loc(s), c_loc(s%largest), c_sizeof(s%largest))
+      call field('largest_omega', c_loc(s), c_loc(s%largest_omega), c_sizeof(s%largest_omega))
+      call field('largest_time', c_loc(s), c_loc(s%largest_time), c_sizeof(s%largest_time))
+      call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
+   end subroutine sweep_info
+
    subroutine verify_options()
       type(hbvib_verify_options), target :: s
       call whole('hbvib_verify_options', c_sizeof(s))
@@ -716,6 +747,55 @@ contains
       call field('harmonic_error', c_loc(s), c_loc(s%harmonic_error), c_sizeof(s%harmonic_error))
       call field('suspected_factor', c_loc(s), c_loc(s%suspected_factor), c_sizeof(s%suspected_factor))
    end subroutine fit_info
+
+   subroutine life_options()
+      type(hbvib_life_options), target :: s
+      call whole('hbvib_life_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('follow', c_loc(s), c_loc(s%follow), c_sizeof(s%follow))
+      call field('contacts', c_loc(s), c_loc(s%contacts), c_sizeof(s%contacts))
+      call field('rates', c_loc(s), c_loc(s%rates), c_sizeof(s%rates))
+      call field('areas', c_loc(s), c_loc(s%areas), c_sizeof(s%areas))
+      call field('contacts_len', c_loc(s), c_loc(s%contacts_len), c_sizeof(s%contacts_len))
+      call field('stiffness', c_loc(s), c_loc(s%stiffness), c_sizeof(s%stiffness))
+      call field('worn', c_loc(s), c_loc(s%worn), c_sizeof(s%worn))
+      call field('duty_omega', c_loc(s), c_loc(s%duty_omega), c_sizeof(s%duty_omega))
+      call field('duty_force', c_loc(s), c_loc(s%duty_force), c_sizeof(s%duty_force))
+      call field('duty_share', c_loc(s), c_loc(s%duty_share), c_sizeof(s%duty_share))
+      call field('duties_len', c_loc(s), c_loc(s%duties_len), c_sizeof(s%duties_len))
+      call field('omega_start', c_loc(s), c_loc(s%omega_start), c_sizeof(s%omega_start))
+      call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
+      call field('tolerance', c_loc(s), c_loc(s%tolerance), c_sizeof(s%tolerance))
+      call field('limit', c_loc(s), c_loc(s%limit), c_sizeof(s%limit))
+      call field('most_steps', c_loc(s), c_loc(s%most_steps), c_sizeof(s%most_steps))
+   end subroutine life_options
+
+   subroutine life_info()
+      type(hbvib_life_info), target :: s
+      call whole('hbvib_life_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('steps', c_loc(s), c_loc(s%steps), c_sizeof(s%steps))
+      call field('solutions', c_loc(s), c_loc(s%solutions), c_sizeof(s%solutions))
+      call field('points', c_loc(s), c_loc(s%points), c_sizeof(s%points))
+      call field('reached', c_loc(s), c_loc(s%reached), c_sizeof(s%reached))
+      call field('largest', c_loc(s), c_loc(s%largest), c_sizeof(s%largest))
+      call field('largest_at', c_loc(s), c_loc(s%largest_at), c_sizeof(s%largest_at))
+      call field('amplitude_new', c_loc(s), c_loc(s%amplitude_new), c_sizeof(s%amplitude_new))
+      call field('amplitude_worn', c_loc(s), c_loc(s%amplitude_worn), c_sizeof(s%amplitude_worn))
+   end subroutine life_info
+
+   subroutine best_load()
+      type(hbvib_best_load), target :: s
+      call whole('hbvib_best_load', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('factor', c_loc(s), c_loc(s%factor), c_sizeof(s%factor))
+      call field('amplitude', c_loc(s), c_loc(s%amplitude), c_sizeof(s%amplitude))
+      call field('amplitude_new', c_loc(s), c_loc(s%amplitude_new), c_sizeof(s%amplitude_new))
+      call field('amplitude_worn', c_loc(s), c_loc(s%amplitude_worn), c_sizeof(s%amplitude_worn))
+      call field('lives', c_loc(s), c_loc(s%lives), c_sizeof(s%lives))
+   end subroutine best_load
 
    ! END GENERATED
 

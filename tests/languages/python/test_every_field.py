@@ -357,6 +357,41 @@ def tied(**o):
 
 
 OTHER_DOF = new("hbvib_response", n=1, dofs=np.array([1]))
+worn = hbvib.Model(mass=np.eye(2), stiffness=np.array([[2.0, -1.0], [-1.0, 1.0]]), rayleigh=(0, 0.05))
+for place in (0, 1):
+    worn.add_contact("jenkins", place, kt=1, mu=0.3, preload=0.5)
+worn.add_force(1, 0.3)
+
+
+reached = []
+
+
+def lived(**o):
+    given = dict(contacts=np.array([0, 1]), contacts_len=2, rates=np.array([0.05, 0.02]), duty_omega=np.array([0.8, 1.1]), duties_len=2,
+                 stiffness=np.array([2.0, 0.0, 0.0, 2.0]), tolerance=1e-7, omega_start=0.5, omega_stop=1.2)
+    options, cycles, loads, amplitude = new("hbvib_life_options", **{**given, **o}), np.array([0.0, 3.0]), np.empty(4), np.empty(2)
+    solver, info = new("hbvib_solver_options", harmonics=3, tolerance=0.0), new("hbvib_life_info")
+    events = ctypes.c_int64()
+    call("hbvib_life", worn.handle, solver, options, None, 2, cycles, None, loads, None, amplitude, None, 0, None, None, None, events, info)
+    reached.append(amplitude)
+    return bits(*loads, *amplitude, events.value, info.steps, info.points)
+
+
+def peaked(**o):
+    return lived(**{"follow": 1, **o})
+
+
+def swept(**o):
+    options, info = new("hbvib_sweep_options", **{**dict(omega_start=0.8, omega_stop=1.1, rate=1e-2), **o}), new("hbvib_sweep_info")
+    call("hbvib_time_sweep", worn.handle, options, None, 0, None, None, None, None, info)
+    return bits(info.largest, info.largest_omega, info.events)
+
+
+def kicked_off(**o):
+    return swept(**{"start": np.array([0.0, 0, 0, 0, 0.1, 0, 0.1, 0]), "start_len": 4, **o})
+
+
+lived()
 FOLLOW = hbvib.Follow
 KIND = hbvib.ParameterKind
 # Structs, their fields, and claims about each field with a call and a value.
@@ -579,6 +614,37 @@ TABLE = {
                          (CHANGES, lambda **o: chosen(**{"contacts": np.array([1]), **o}), 0)],
         "starts": [(same("With one it has no effect"), of_damper, 1), (refused("starts"), of_damper, 0)],
     },
+    "hbvib_life_options": {
+        "struct_size": [(refused("struct_size"), lived, 8)],
+        "follow": [(CHANGES, lived, 1), (refused("follow"), lived, 2)],
+        "contacts": [(CHANGES, lived, np.array([1, 0])), (refused("contact"), lived, np.array([0, 9])), (refused("contacts"), lived, NONE)],
+        "rates": [(CHANGES, lived, np.array([0.05, 0.03])), (refused("rate"), lived, np.array([NAN, 0.1])), (refused("rates"), lived, NONE)],
+        "areas": [(CHANGES, lived, np.array([2.0, 1.0])), (refused("area"), lived, np.array([0.0, 1.0]))],
+        "contacts_len": [(refused("contacts_len"), lived, -1), (refused("0 contacts"), lived, 0)],
+        "stiffness": [(CHANGES, lived, np.array([1.0, 0.1, 0.1, 1.0])), (refused("stiffness"), lived, np.array([NAN, 0, 0, 1]))],
+        "worn": [(CHANGES, lived, np.array([0.01, 0.0])), (refused("worn"), lived, np.array([-1.0, 0.0]))],
+        "duty_omega": [(CHANGES, lived, np.array([0.8, 1.2])), (refused("omega"), lived, np.array([0.8, 0.0])), (refused("duty_omega"), lived, NONE)],
+        "duty_force": [(CHANGES, lived, np.array([1.0, 2.0])), (refused("force"), lived, np.array([1.0, -1.0]))],
+        "duty_share": [(CHANGES, lived, np.array([1.0, 2.0])), (refused("share"), lived, np.array([1.0, -1.0]))],
+        "duties_len": [(CHANGES, lived, 1), (refused("duties_len"), lived, -1)],
+        "omega_start": [(CHANGES, peaked, 0.8), (refused("omega_start"), peaked, 0.0)],
+        "omega_stop": [(CHANGES, peaked, 3.0), (refused("omega_stop"), peaked, NAN)],
+        "tolerance": [(CHANGES, lived, 1e-9), (refused("tolerance"), lived, 1.0)],
+        "limit": [(CHANGES, lived, float(reached[0].mean())), (refused("limit"), lived, -1.0)],
+        "most_steps": [(CHANGES, lived, 1), (refused("most_steps"), lived, 0)],
+    },
+    "hbvib_sweep_options": {
+        "struct_size": [(refused("struct_size"), swept, 8)],
+        "reserved": [(refused("reserved"), swept, 1)],
+        "omega_start": [(CHANGES, swept, 0.85), (refused("omega_start"), swept, 0.0)],
+        "omega_stop": [(CHANGES, swept, 0.85), (refused("omega_stop"), swept, NAN)],
+        "rate": [(CHANGES, swept, 2e-2), (refused("rate"), swept, 0.0)],
+        "dof": [(CHANGES, swept, 1), (refused("dof"), swept, 9)],
+        "tolerance": [(CHANGES, swept, 1e-3), (refused("tolerance"), swept, 1.0)],
+        "max_periods": [(refused("max_periods"), swept, 0), (refused("1 period"), swept, 1)],
+        "start": [(CHANGES, kicked_off, NONE), (refused("start"), kicked_off, np.array([NAN] * 8))],
+        "start_len": [(refused("start_len"), kicked_off, -1), (refused("start"), kicked_off, 3)],
+    },
     "hbvib_damper_face": {
         "struct_size": [(refused("struct_size"), on_platform, 8)],
         "reserved": [(refused("reserved"), on_platform, 1)],
@@ -652,6 +718,8 @@ FILLED = {
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
     "hbvib_band_info", "hbvib_fit_info", "hbvib_wheel_info",
     "hbvib_descent", "hbvib_searched", "hbvib_kick",
+    "hbvib_band_info", "hbvib_wheel_info",
+    "hbvib_descent", "hbvib_searched", "hbvib_kick", "hbvib_life_info", "hbvib_best_load", "hbvib_sweep_info",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED
 check("every struct is in a table or filled by the library", listed == set(hbvib.structs), listed ^ set(hbvib.structs))

@@ -146,6 +146,14 @@ pressed.set_preload(0, 0.1, per_speed2=0.1)
 pressed.set_speed(1.0)
 pressed.add_force(0, 1.0, harmonic=0)
 
+worn = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+worn.add_contact("jenkins", 0, kt=1, mu=0.3, preload=0.6)
+worn.add_force(0, 0.3)
+
+
+def lived(life):
+    return life.loads, life.events.cycles, life.steps
+
 
 def ends_of(**o):
     found = damper.band(**o)
@@ -244,6 +252,31 @@ ANALYSES = {
     "static_history": (*analysis(lambda **o: pressed.static_history(**o).forces, factors=[1.0, 1.0], speeds=[1.0, 0.5]), {
         "factors": [(CHANGES, [1.0, 0.5]), (refused("factors"), [NAN, 1.0])],
         "speeds": [(CHANGES, [1.0, 0.7]), (refused("speeds"), [NAN, 1.0])]}),
+    "life": (*analysis(lambda **o: np.concatenate([np.ravel(x) for x in lived(worn.life(**o))]), contacts=[0], rates=0.05,
+                       cycles=[4.0], omega=[1.1, 1.2], force=[1.0, 0.5], share=[1.0, 1.0], areas=1.0, stiffness=1.0, worn=[0.01],
+                       accuracy=1e-4, limit=0.0, most_steps=100, harmonics=3), {
+        "contacts": [(refused("contact"), [9])], "rates": [(CHANGES, 0.06), (refused("rate"), -1.0)],
+        "cycles": [(CHANGES, [5.0]), (refused("cycles"), [-1.0])], "omega": [(CHANGES, [1.1, 1.3]), (refused("omega"), [0.0, 1.0])],
+        "force": [(CHANGES, [1.0, 0.6]), (refused("force"), [1.0, -1.0])], "share": [(CHANGES, [1.0, 2.0]), (refused("share"), [-1.0, 1.0])],
+        "areas": [(CHANGES, 2.0), (refused("area"), 0.0)], "stiffness": [(CHANGES, 2.0), (refused("stiffness"), NAN)],
+        "worn": [(CHANGES, [0.02]), (refused("worn"), [-1.0])], "accuracy": [(CHANGES, 1e-9), (refused("tolerance"), 1.0)],
+        "limit": [(CHANGES, 1.23), (refused("limit"), -1.0)], "most_steps": [(CHANGES, 1), (refused("most_steps"), 0)],
+        "peak": [(refused("either"), (0.8, 1.6))]}),
+    "best_load_for_life": (*analysis(lambda **o: np.array([worn.best_load_for_life(**o).factor]), contacts=[0], rates=0.05, cycles=2.0,
+                                     factors=(0.5, 3.0), peak=(0.8, 1.8), areas=1.0, stiffness=1.0, worn=[0.01], accuracy=1e-4,
+                                     most_steps=100, harmonics=1), {
+        "contacts": [(refused("contact"), [9])], "rates": [(CHANGES, 0.06), (refused("rate"), -1.0)],
+        "cycles": [(CHANGES, 3.0), (refused("cycles"), -1.0)], "factors": [(refused("factor_low"), (0.0, 1.0))],
+        "omega": [(refused("either"), [1.1])], "force": [(refused("omega"), [1.0])], "share": [(refused("omega"), [1.0])],
+        "peak": [(refused("omega"), (0.0, 1.0))],
+        "areas": [(CHANGES, 2.0), (refused("area"), 0.0)], "stiffness": [(CHANGES, 2.0), (refused("stiffness"), NAN)],
+        "worn": [(CHANGES, [0.02]), (refused("worn"), [-1.0])], "accuracy": [(CHANGES, 1e-8), (refused("tolerance"), 1.0)],
+        "most_steps": [(refused("most_steps"), 0)]}),
+    "time_sweep": (*analysis(lambda **o: (lambda found: [found.amplitude, found.largest])(worn.time_sweep(**o)), omega=(0.8, 1.2), rate=1e-2,
+                             dof=0, tolerance=1e-11, max_periods=10_000, start=[[0.0], [0.1]]), {
+        "omega": [(CHANGES, (0.8, 1.1)), (refused("omega_start"), (0.0, 1.0))], "rate": [(CHANGES, 2e-2), (refused("rate"), -1.0)],
+        "dof": [(refused("dof"), 3)], "tolerance": [(refused("tolerance"), 0.0)], "max_periods": [(refused("max_periods"), 0)],
+        "start": [(refused("start"), [[NAN], [0.1]])]}),
     "energy": (*analysis(branch.energy, point=3), {"point": [(CHANGES, 4), (refused("point"), -1)]}),
     "slip": (*analysis(branch.slip, point=crest), {"point": [(CHANGES, 0), (refused("point"), -1)]}),
     "leading_response": (*analysis(lambda **o: np.array([sure.leading_response(**o)]), point=0), {
@@ -253,10 +286,14 @@ ANALYSES = {
     "at": (*analysis(branch.at, wanted=0), {"wanted": [(CHANGES, 1), (refused("wanted"), 2)]}),
     "field": (*analysis(branch.field, field="omega"), {"field": [(CHANGES, "amplitude"), (refused("omega"), "speed")]}),
 }
+OF_LIVES = {"life", "best_load_for_life"}
 HOOKS = {"progress", "log", "log_level", "cancel", "phase"}
 for name, (function, run, base, claims) in ANALYSES.items():
     method = getattr(hbvib.Model, name, None) or getattr(hbvib.Branch, name, None) or getattr(hbvib, name)
     arguments = set(inspect.signature(method).parameters) - {"self", "constants"} - HOOKS
+    if name in OF_LIVES:  # options of the solver have their claims where it has them: test_every_field.py
+        arguments -= {field for field, _ in hbvib.structs["hbvib_solver_options"]._fields_}
+        base = set(claims)
     check(f"{name}: every argument has a claim", arguments <= set(claims) and base == set(claims), arguments ^ set(claims))
     reference = outcome(run)
     for argument, listed in claims.items():

@@ -37,6 +37,8 @@ for name, text in declared:
 structs = re.findall(r"\}\s*(hbvib_\w+);", re.sub(r"typedef enum \{.*?\}[^;]*;", "", HEADER, flags=re.S))
 check("every struct in the header's order", structs == list(hbvib.structs), set(structs) ^ set(hbvib.structs))
 PREFIXES = dict(
+    LifeFollow="LIFE_",
+    LifeEvent="LIFE_",
     ContactState="CONTACTS_",
     State="STATE_",
     DampingForm="DAMPING_",
@@ -72,7 +74,7 @@ for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
     "ParameterKind Scaling Quantity Derivative Follow BandOf ModeBandOf DataKind Scale Suspicion AeroForm Mistuning FlexibilityWay Measure "
-    "Component Reading"
+    "Component Reading LifeFollow LifeEvent"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)

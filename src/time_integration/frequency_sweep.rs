@@ -1,0 +1,267 @@
+//! Motion in time while the frequency of the forces changes at a constant rate, as in a run-up.
+//!
+//! The phase of harmonic 1 is φ(t) = ω_a t + ω′t²/2 from the periodic motion at ω_a on. The motion is integrated turn after
+//! turn, each from event to event as a periodic one: exactly between events where the contacts are linear between them.
+
+use crate::error::{Result, Status, fail, try_push};
+use crate::hooks::{Hooks, LogLevel, Progress};
+use crate::model::Model;
+use crate::model::speed::Speed;
+use crate::options::TimeOptions;
+use crate::time_integration::event_loop::{EventLoop, Observers, State};
+use crate::time_integration::initial_state::state_of;
+use crate::time_integration::largest_motion::LargestMotion;
+use crate::time_integration::shooting::{Search, check_shooting};
+use crate::time_integration::unrolled_structure::System;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+const CONTEXT: &str = "a sweep in time";
+
+/// Most turns of a sweep.
+const MOST_TURNS: f64 = 1e8;
+
+/// Options of a sweep of the frequency in time.
+#[derive(Clone, Copy, Debug)]
+pub struct SweepOptions<'a> {
+    /// First angular frequency of harmonic 1, rad per time unit, above zero.
+    pub omega_start: f64,
+    /// Last one; below the first for a run-down.
+    pub omega_stop: f64,
+    /// |dω/dt|, above zero.
+    pub rate: f64,
+    /// Degree of freedom whose displacement is observed.
+    pub dof: usize,
+    /// As [`TimeOptions::tolerance`], for the first periodic motion and the steps of smooth laws.
+    pub tolerance: f64,
+    /// Most periods that the first periodic motion may take.
+    pub max_periods: usize,
+    /// Guess of the first periodic motion, as [`TimeOptions::start`]; `None`: rest.
+    pub start: Option<&'a [Complex64]>,
+}
+
+impl Default for SweepOptions<'_> {
+    fn default() -> Self {
+        let time = TimeOptions::default();
+        Self {
+            omega_start: 0.0,
+            omega_stop: 0.0,
+            rate: 0.0,
+            dof: 0,
+            tolerance: time.tolerance,
+            max_periods: time.max_periods,
+            start: None,
+        }
+    }
+}
+
+impl<'a> SweepOptions<'a> {
+    fn first(&self) -> TimeOptions<'a> {
+        TimeOptions {
+            omega: self.omega_start,
+            tolerance: self.tolerance,
+            max_periods: self.max_periods,
+            start: self.start,
+            ..TimeOptions::default()
+        }
+    }
+
+    /// Checks every field, for a model of `ndof` degrees of freedom.
+    ///
+    /// # Errors
+    /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.
+    pub fn check(&self, ndof: usize) -> Result<()> {
+        for (name, value) in [
+            ("omega_start", self.omega_start),
+            ("omega_stop", self.omega_stop),
+            ("rate", self.rate),
+        ] {
+            if !value.is_finite() {
+                return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");
+            }
+            if value <= 0.0 {
+                return fail!(Argument, "{name} = {value}, needs a number > 0");
+            }
+        }
+        if self.dof >= ndof {
+            return fail!(Index, "dof = {}, needs 0 .. {}", self.dof, ndof.saturating_sub(1));
+        }
+        let turns = (self.omega_stop.powi(2) - self.omega_start.powi(2)).abs() / (2.0 * TAU * self.rate);
+        if turns > MOST_TURNS {
+            return fail!(
+                Argument,
+                "rate = {}: the sweep has {turns:.3e} turns, needs at most {MOST_TURNS:e}",
+                self.rate
+            );
+        }
+        self.first().check(ndof)
+    }
+}
+
+/// One turn of a sweep.
+#[derive(Clone, Copy, Debug)]
+pub struct SweepTurn {
+    /// Time at its begin.
+    pub time: f64,
+    /// Angular frequency at its begin.
+    pub omega: f64,
+    /// Largest displacement within it.
+    pub amplitude: f64,
+}
+
+/// The motion of a sweep.
+#[derive(Clone, Debug)]
+pub struct FrequencySweep {
+    /// `Ok` or `StoppedByCaller`, with the turns so far.
+    pub status: Status,
+    /// Turns.
+    pub turns: Vec<SweepTurn>,
+    /// Largest displacement of the sweep.
+    pub largest: f64,
+    /// Angular frequency at that time.
+    pub largest_omega: f64,
+    /// That time, from the begin of the sweep.
+    pub largest_time: f64,
+    /// Changes of contacts.
+    pub events: usize,
+}
+
+/// Integrates the motion of a plain model from its periodic motion at the first frequency on, while the frequency changes at a constant
+/// rate.
+///
+/// # Errors
+/// Those of [`SweepOptions::check`]; `Unsupported` for a cyclic model, an unbalance or a speed that follows the frequency, and what
+/// integration in time refuses; `NoConvergence` without a periodic motion at the first frequency; `OutOfMemory`.
+pub fn sweep(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<'_>) -> Result<FrequencySweep> {
+    options.check(model.ndof())?;
+    model.check_matrices(false)?;
+    let structure = model.structure();
+    if structure.sectors() > 1 {
+        return fail!(
+            Unsupported,
+            "a sweep in time needs a plain model; a wheel makes one of a cyclic model"
+        );
+    }
+    if model.excitation().has_unbalance() || matches!(model.speed(), Speed::PerOmega(_)) {
+        return fail!(
+            Unsupported,
+            "an unbalance or a speed follows the frequency, which changes"
+        );
+    }
+    check_shooting(structure.ndof())?;
+    let interrupt = hooks.interrupt();
+    let mut system = System::new(model, options.omega_start, &interrupt)?;
+    let mut event_loop = EventLoop::new(&system, options.tolerance)?;
+    let start = match options.start {
+        Some(harmonics) => state_of(model, &system, harmonics)?,
+        None => State::rest(&system)?,
+    };
+    let first = options.first();
+    let mut found = FrequencySweep {
+        status: Status::Ok,
+        turns: Vec::new(),
+        largest: 0.0,
+        largest_omega: options.omega_start,
+        largest_time: 0.0,
+        events: 0,
+    };
+    let mut quiet = Hooks {
+        cancelled: hooks.cancelled,
+        phase: hooks.phase,
+        ..Hooks::default()
+    };
+    let steady = Search::new(&mut system, &mut event_loop, &first, &mut quiet, start)?.run()?;
+    if steady.status != Status::Ok {
+        found.status = steady.status;
+        return Ok(found);
+    }
+    hooks.log(LogLevel::Info, "the periodic motion at the first frequency is found");
+    let mut observed = Vec::new();
+    for term in system.degrees.image(options.dof).1 {
+        try_push(&mut observed, term, CONTEXT)?;
+    }
+    let mut walk = Walk {
+        bases: Vec::new(),
+        down: options.omega_stop < options.omega_start,
+        options,
+        observed: &observed,
+        state: steady.state,
+    };
+    for load in &system.loads {
+        try_push(&mut walk.bases, load.value, CONTEXT)?;
+    }
+    match walk.run((&mut system, &mut event_loop), &mut found, hooks) {
+        Err(e) if e.status == Status::StoppedByCaller => found.status = e.status,
+        outcome => outcome?,
+    }
+    Ok(found)
+}
+
+struct Walk<'a> {
+    /// Values of the loads at phase 0.
+    bases: Vec<Complex64>,
+    down: bool,
+    options: &'a SweepOptions<'a>,
+    /// Terms of the observed degree of freedom in the independent ones.
+    observed: &'a [(usize, f64)],
+    state: State,
+}
+
+impl Walk<'_> {
+    fn run(
+        &mut self,
+        (system, event_loop): (&mut System<'_>, &mut EventLoop),
+        found: &mut FrequencySweep,
+        hooks: &mut Hooks<'_>,
+    ) -> Result<()> {
+        let options = self.options;
+        let rate = if self.down { -options.rate } else { options.rate };
+        let whole = (options.omega_stop - options.omega_start) / rate;
+        let mut time = 0.0;
+        while time < whole {
+            let omega = options.omega_start + rate * time;
+            // The phase of the exact time, not a sum of turns.
+            let phase = time * (options.omega_start + 0.5 * rate * time);
+            system.omega = omega;
+            system.omega_rate = rate;
+            for (load, base) in system.loads.iter_mut().zip(&self.bases) {
+                load.value = base * Complex64::cis((load.harmonic as f64 * phase) % TAU);
+            }
+            // ωT + ω′T²/2 = 2π; the last turn of a run-down may have no end.
+            let root = (omega * omega + 2.0 * rate * TAU).max(0.0).sqrt();
+            let turn = 2.0 * TAU / (omega + root);
+            let is_last = turn >= whole - time;
+            let length = if is_last { whole - time } else { turn };
+            let mut largest = LargestMotion::new(self.observed);
+            let observers = Observers {
+                largest: Some(&mut largest),
+                ..Observers::default()
+            };
+            let summary = event_loop.run_for(system, &mut self.state, length, observers)?;
+            found.events += summary.events;
+            let turn = SweepTurn {
+                time,
+                omega,
+                amplitude: largest.size,
+            };
+            try_push(&mut found.turns, turn, CONTEXT)?;
+            if largest.size > found.largest {
+                found.largest = largest.size;
+                found.largest_time = time + largest.time;
+                found.largest_omega = omega + rate * largest.time;
+            }
+            let progress = Progress {
+                point: found.turns.len(),
+                parameter: omega,
+                amplitude: largest.size,
+                fraction_done: (time / whole).min(1.0),
+                ..Progress::default()
+            };
+            if hooks.report(&progress) {
+                return fail!(StoppedByCaller, "stopped by the caller at omega = {omega}");
+            }
+            time = if is_last { whole } else { time + length };
+        }
+        Ok(())
+    }
+}
