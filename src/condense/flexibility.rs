@@ -247,8 +247,23 @@ impl Workspace {
         b: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        self.adjoint_with_factors(condensed, i, omega, b, interrupt)
+    }
+
+    /// The same with the current factors, those of the i-th harmonic at `omega`.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn adjoint_with_factors(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        b: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let dynamic = made(&mut self.dynamic, condensed)?;
-        dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         for z in b.iter_mut() {
             *z = z.conj();
         }

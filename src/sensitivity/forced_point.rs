@@ -2,10 +2,11 @@
 //!
 //! One transposed solution of Newton's matrix, and one of the structure per harmonic.
 
-use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::condense::near_rigid_motion;
-use crate::error::{Result, Status, boxed, try_copy, try_push, try_vec};
+use crate::condense::{Condensed, HarmonicBlock};
+use crate::error::{Result, Status, boxed, fail, try_copy, try_push, try_vec};
+use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
 use crate::linalg::linear_system::Jacobian;
@@ -41,6 +42,34 @@ pub(crate) struct ForcedPoint<'a> {
     turn: Option<Complex64>,
     /// The complex amplitude that was read last, in the unit of lengths.
     seen: Complex64,
+}
+
+/// A result A − λᵀR whose adjoint motion is wanted.
+struct Wanted<'b> {
+    /// 0: the result is −λᵀR alone.
+    amplitude: Complex64,
+    lambda: &'b [f64],
+    /// The derivatives of a watched response.
+    watched: Option<&'b Derivatives>,
+}
+
+impl Wanted<'_> {
+    /// The load of the adjoint motion in the i-th carried harmonic.
+    fn fill(&self, (block, set, i): (&HarmonicBlock, &HarmonicSet, usize), field: &mut [Complex64]) {
+        let (m, n) = (set.packed_len(), field.len());
+        field.fill(Complex64::ZERO);
+        for (c, row) in block.rows.iter().enumerate() {
+            let of_row = set.get(&self.lambda[c * m..(c + 1) * m], i);
+            for &(p, a) in row.terms() {
+                field[p] += a.conj() * of_row;
+            }
+        }
+        if let Some(of) = self.watched.filter(|_| self.amplitude != Complex64::ZERO) {
+            for (z, g) in field.iter_mut().zip(&of.by_motion[i * n..(i + 1) * n]) {
+                *z += g;
+            }
+        }
+    }
 }
 
 impl<'a> ForcedPoint<'a> {
@@ -165,12 +194,21 @@ impl<'a> ForcedPoint<'a> {
             factored => factored?,
         }
         self.system.solve_transposed(&mut of_real);
-        let real = self.of_lambda((u, omega), unit, &of_real)?;
+        let by_real = self.watched.as_mut().and_then(|(_, known)| known.take());
         self.turn = Some(Complex64::I);
         let mut of_imaginary = try_vec(u.len(), 0.0, CONTEXT)?;
         self.response_gradient(u, omega, &mut of_imaginary)?;
         self.system.solve_transposed(&mut of_imaginary);
-        let imaginary = self.of_lambda((u, omega), unit, &of_imaginary)?;
+        let by_imaginary = self.watched.as_mut().and_then(|(_, known)| known.take());
+        let wanted = [(&of_real, &by_real), (&of_imaginary, &by_imaginary)].map(|(lambda, watched)| Wanted {
+            amplitude: unit,
+            lambda,
+            watched: watched.as_ref(),
+        });
+        let mut found = self.of_lambdas((u, omega), &wanted)?;
+        let (Some(imaginary), Some(real)) = (found.pop(), found.pop()) else {
+            return fail!(Internal, "an adjoint is missing");
+        };
         self.turn = None;
         Ok(Some((self.seen * self.condensed.length(), [real, imaginary])))
     }
@@ -222,15 +260,37 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// As [`Self::adjoint`].
-    pub fn of_lambda(&mut self, (u, omega): (&[f64], f64), amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
+    pub fn of_lambda(&mut self, at: (&[f64], f64), amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
+        let known = self.watched.as_mut().and_then(|(_, known)| known.take());
+        let wanted = Wanted {
+            amplitude,
+            lambda,
+            watched: known.as_ref(),
+        };
+        let found = self.of_lambdas(at, &[wanted]);
+        if let Some((_, place)) = &mut self.watched {
+            *place = known;
+        }
+        match found?.pop() {
+            Some(adjoint) => Ok(adjoint),
+            None => fail!(Internal, "an adjoint is missing"),
+        }
+    }
+
+    /// The same for several λ of one point, with one factorisation per harmonic.
+    fn of_lambdas(&mut self, (u, omega): (&[f64], f64), wanted: &[Wanted<'_>]) -> Result<Vec<Adjoint>> {
         let condensed = self.condensed;
-        let mut adjoint = Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?;
+        let mut found = Vec::new();
+        for _ in wanted {
+            try_push(
+                &mut found,
+                Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?,
+                CONTEXT,
+            )?;
+        }
         let set = condensed.set();
         let (m, n) = (set.packed_len(), condensed.ndof());
-        let observes = amplitude != Complex64::ZERO && self.watched.is_none();
-        let watched = self.watched.as_ref().and_then(|(_, known)| known.as_ref());
-        let watched = watched.filter(|_| amplitude != Complex64::ZERO);
-        let turn = amplitude / amplitude.norm();
+        let length = condensed.length();
         let independent = condensed.degrees().independent();
         let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
         let mut field = try_vec(n, Complex64::ZERO, CONTEXT)?;
@@ -243,26 +303,6 @@ impl<'a> ForcedPoint<'a> {
             }
             let at = (i, omega);
             near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, &mut x, self.interrupt)?;
-            field.fill(Complex64::ZERO);
-            for (c, row) in block.rows.iter().enumerate() {
-                let of_row = set.get(&lambda[c * m..(c + 1) * m], i);
-                for &(p, a) in row.terms() {
-                    field[p] += a.conj() * of_row;
-                }
-            }
-            if observes && i == self.problem.observed() {
-                for &(p, a) in self.response.terms() {
-                    field[p] += a.conj() * turn;
-                }
-            }
-            for (z, g) in field
-                .iter_mut()
-                .zip(watched.iter().flat_map(|of| &of.by_motion[i * n..(i + 1) * n]))
-            {
-                *z += g;
-            }
-            self.workspace
-                .adjoint(condensed, i, omega, &mut field, self.interrupt)?;
             let load = &mut self.by_omega[i * n..(i + 1) * n];
             load.fill(Complex64::ZERO);
             self.workspace.add_frequency_slope(condensed, i, omega, &x, load);
@@ -280,25 +320,44 @@ impl<'a> ForcedPoint<'a> {
                     load[p] -= a.conj() * of_law;
                 }
             }
-            let length = condensed.length();
-            for (z, q) in field.iter().zip(&*load) {
-                adjoint.by_omega += length * (z.conj() * q).re;
-            }
-            let range = i * independent..(i + 1) * independent;
             for z in &mut x {
                 *z *= length;
             }
             if block.number == 0 {
-                for z in x.iter_mut().chain(&mut field) {
+                for z in &mut x {
                     z.im = 0.0;
                 }
             }
-            condensed.expand(i, &x, &mut adjoint.motion[range.clone()])?;
-            condensed.expand(i, &field, &mut adjoint.field[range])?;
+            for (one, adjoint) in wanted.iter().zip(&mut found) {
+                one.fill((block, set, i), &mut field);
+                if one.amplitude != Complex64::ZERO && self.watched.is_none() && i == self.problem.observed() {
+                    let turn = one.amplitude / one.amplitude.norm();
+                    for &(p, a) in self.response.terms() {
+                        field[p] += a.conj() * turn;
+                    }
+                }
+                // The factors are those of the motion.
+                self.workspace
+                    .adjoint_with_factors(condensed, i, omega, &mut field, self.interrupt)?;
+                for (z, q) in field.iter().zip(&self.by_omega[i * n..(i + 1) * n]) {
+                    adjoint.by_omega += length * (z.conj() * q).re;
+                }
+                if block.number == 0 {
+                    for z in &mut field {
+                        z.im = 0.0;
+                    }
+                }
+                let range = i * independent..(i + 1) * independent;
+                condensed.expand(i, &x, &mut adjoint.motion[range.clone()])?;
+                condensed.expand(i, &field, &mut adjoint.field[range])?;
+            }
         }
-        adjoint.by_omega += condensed.length() * watched.map_or(0.0, |of| of.by_omega);
-        adjoint.amplitude = condensed.length() * amplitude.norm();
-        Ok(adjoint)
+        for (one, adjoint) in wanted.iter().zip(&mut found) {
+            let watched = one.watched.filter(|_| one.amplitude != Complex64::ZERO);
+            adjoint.by_omega += length * watched.map_or(0.0, |of| of.by_omega);
+            adjoint.amplitude = length * one.amplitude.norm();
+        }
+        Ok(found)
     }
 
     /// Writes the carried harmonics of the response degree of freedom at `u`; returns the share of the period that each
