@@ -145,6 +145,7 @@ pub use analysis::parameter_range::{Follow, ParameterRange};
 pub use analysis::parameter_response::parameter_response;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::response_of_motion::response_of;
+pub use analysis::run_through::sweep;
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::smallest_kick::{Kick, smallest_kick};
 pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
@@ -156,8 +157,8 @@ pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
     Amplitude, BatchOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions, LifeFollow, LifeOptions,
-    Measure, ModeChoice, ModeOptions, Response, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions,
-    VerifyOptions, Waves, Wear,
+    Measure, ModeChoice, ModeOptions, Response, SolverOptions, SteadyMethod, SweepOptions, SynthesisOptions,
+    TimeOptions, VerifyOptions, Waves, Wear,
 };
 
 // Results.
@@ -172,7 +173,7 @@ pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,
     LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch, Turn,
 };
-pub use time_integration::{FrequencySweep, SweepOptions, SweepTurn, TimeResponse, sweep};
+pub use time_integration::{FrequencySweep, SweepTurn, TimeResponse};
 
 #[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}

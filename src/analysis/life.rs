@@ -27,7 +27,7 @@ const LIFE_EVENT_TRIES: usize = 12;
 /// Halvings of a step that fails.
 const LIFE_HALVINGS: usize = 40;
 
-/// What happens to a contact, or to the amplitude.
+/// Change of a contact, or of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LifeEventKind {
     /// A contact begins to slip.
@@ -47,7 +47,7 @@ pub enum LifeEventKind {
 pub struct LifeEvent {
     /// Cycles.
     pub cycles: f64,
-    /// What happens.
+    /// Its kind.
     pub kind: LifeEventKind,
     /// Number of the contact in the model; `None` for the amplitude.
     pub contact: Option<usize>,

@@ -50,7 +50,7 @@ impl Tried {
 }
 
 /// Searches within a range of factors on the loads of the contacts that wear, as the model has them, for the one with which the largest
-/// amplitude over the life is least. Of several minima it is the lowest of those that nine lives over the range show.
+/// amplitude over the life is least. It is the lowest of the minima that nine lives over the range show.
 ///
 /// # Errors
 /// `Argument` for the range; those of [`life`]; the status of a life that ended early; `StoppedByCaller`.

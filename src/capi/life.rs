@@ -490,7 +490,7 @@ pub unsafe extern "C" fn hbvib_best_load_init(b: *mut hbvib_best_load, size_of_b
 
 /// Searches for the factor on the loads of the contacts that wear, as the model has them, with
 /// which the largest amplitude over the life is least: as a rule that with which the new and the
-/// worn machine vibrate alike. Of several minima it is the lowest that nine lives over the range of
+/// worn machine vibrate alike. It is the lowest of the minima that nine lives over the range of
 /// factors show.
 ///
 /// model        the model with the loads of which factors are sought.

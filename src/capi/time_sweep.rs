@@ -10,9 +10,10 @@ use super::model::hbvib_model;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
+use crate::analysis;
 use crate::error::Error;
 use crate::model::Model;
-use crate::time_integration::{SweepOptions, SweepTurn, sweep};
+use crate::options::SweepOptions;
 use core::ptr;
 use num_complex::Complex64;
 
@@ -185,18 +186,18 @@ pub unsafe extern "C" fn hbvib_time_sweep(
             Column::Reals(omega, 6, "omega"),
             Column::Reals(amplitude, 7, "amplitude"),
         ];
-        let found = unsafe { with_hooks(&hooks, |hooks| sweep(&model, &options, hooks)) }
+        let found = unsafe { with_hooks(&hooks, |hooks| analysis::sweep(&model, &options, hooks)) }
             .map_err(|e: Error| if e.argument == 0 { e.in_argument(1) } else { e })?;
-        let row = |turn: &SweepTurn| {
+        let turns = found.turns.iter().map(|turn| {
             [
                 Entry::Real(turn.time),
                 Entry::Real(turn.omega),
                 Entry::Real(turn.amplitude),
             ]
-        };
+        });
         let wanted = [time, omega, amplitude].iter().any(|p| !p.is_null());
         let room = if wanted { capacity } else { found.turns.len() as i64 };
-        unsafe { fill_list(&columns, found.turns.iter().map(row), (room, 4), (count, 8)) }?;
+        unsafe { fill_list(&columns, turns, (room, 4), (count, 8)) }?;
         if !info.is_null() {
             let value = hbvib_sweep_info {
                 largest: found.largest,

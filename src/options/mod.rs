@@ -8,6 +8,7 @@ mod life_options;
 mod mode_options;
 mod response;
 mod solver_options;
+mod sweep_options;
 mod synthesis_options;
 mod time_options;
 mod waves;
@@ -22,6 +23,7 @@ pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeGuess, ModeOption
 pub(crate) use response::check_responses;
 pub use response::{Component, Measure, Response};
 pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
+pub use sweep_options::SweepOptions;
 pub use synthesis_options::SynthesisOptions;
 pub use time_options::{SteadyMethod, TimeOptions, VerifyOptions};
 pub use waves::Waves;

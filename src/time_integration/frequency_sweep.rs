@@ -7,7 +7,7 @@ use crate::error::{Result, Status, fail, try_push};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
 use crate::model::speed::Speed;
-use crate::options::TimeOptions;
+use crate::options::SweepOptions;
 use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::initial_state::state_of;
 use crate::time_integration::largest_motion::LargestMotion;
@@ -17,86 +17,6 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 const CONTEXT: &str = "a sweep in time";
-
-/// Most turns of a sweep.
-const MOST_TURNS: f64 = 1e8;
-
-/// Options of a sweep of the frequency in time.
-#[derive(Clone, Copy, Debug)]
-pub struct SweepOptions<'a> {
-    /// First angular frequency of harmonic 1, rad per time unit, above zero.
-    pub omega_start: f64,
-    /// Last one; below the first for a run-down.
-    pub omega_stop: f64,
-    /// |dω/dt|, above zero.
-    pub rate: f64,
-    /// Degree of freedom whose displacement is observed.
-    pub dof: usize,
-    /// As [`TimeOptions::tolerance`], for the first periodic motion and the steps of smooth laws.
-    pub tolerance: f64,
-    /// Most periods that the first periodic motion may take.
-    pub max_periods: usize,
-    /// Guess of the first periodic motion, as [`TimeOptions::start`]; `None`: rest.
-    pub start: Option<&'a [Complex64]>,
-}
-
-impl Default for SweepOptions<'_> {
-    fn default() -> Self {
-        let time = TimeOptions::default();
-        Self {
-            omega_start: 0.0,
-            omega_stop: 0.0,
-            rate: 0.0,
-            dof: 0,
-            tolerance: time.tolerance,
-            max_periods: time.max_periods,
-            start: None,
-        }
-    }
-}
-
-impl<'a> SweepOptions<'a> {
-    fn first(&self) -> TimeOptions<'a> {
-        TimeOptions {
-            omega: self.omega_start,
-            tolerance: self.tolerance,
-            max_periods: self.max_periods,
-            start: self.start,
-            ..TimeOptions::default()
-        }
-    }
-
-    /// Checks every field, for a model of `ndof` degrees of freedom.
-    ///
-    /// # Errors
-    /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.
-    pub fn check(&self, ndof: usize) -> Result<()> {
-        for (name, value) in [
-            ("omega_start", self.omega_start),
-            ("omega_stop", self.omega_stop),
-            ("rate", self.rate),
-        ] {
-            if !value.is_finite() {
-                return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");
-            }
-            if value <= 0.0 {
-                return fail!(Argument, "{name} = {value}, needs a number > 0");
-            }
-        }
-        if self.dof >= ndof {
-            return fail!(Index, "dof = {}, needs 0 .. {}", self.dof, ndof.saturating_sub(1));
-        }
-        let turns = (self.omega_stop.powi(2) - self.omega_start.powi(2)).abs() / (2.0 * TAU * self.rate);
-        if turns > MOST_TURNS {
-            return fail!(
-                Argument,
-                "rate = {}: the sweep has {turns:.3e} turns, needs at most {MOST_TURNS:e}",
-                self.rate
-            );
-        }
-        self.first().check(ndof)
-    }
-}
 
 /// One turn of a sweep.
 #[derive(Clone, Copy, Debug)]
@@ -126,15 +46,11 @@ pub struct FrequencySweep {
     pub events: usize,
 }
 
-/// Integrates the motion of a plain model from its periodic motion at the first frequency on, while the frequency changes at a constant
-/// rate.
+/// See the analysis of the same name.
 ///
 /// # Errors
-/// Those of [`SweepOptions::check`]; `Unsupported` for a cyclic model, an unbalance or a speed that follows the frequency, and what
-/// integration in time refuses; `NoConvergence` without a periodic motion at the first frequency; `OutOfMemory`.
-pub fn sweep(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<'_>) -> Result<FrequencySweep> {
-    options.check(model.ndof())?;
-    model.check_matrices(false)?;
+/// As there.
+pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<'_>) -> Result<FrequencySweep> {
     let structure = model.structure();
     if structure.sectors() > 1 {
         return fail!(

@@ -20,7 +20,7 @@ mod variation;
 mod variational_equations;
 mod variational_step;
 
-pub use frequency_sweep::{FrequencySweep, SweepOptions, SweepTurn, sweep};
+pub use frequency_sweep::{FrequencySweep, SweepTurn, run_through};
 pub use periodic_response::{TimeResponse, solve};
 
 // The variational equations of the room `stability`.

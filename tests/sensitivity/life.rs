@@ -198,7 +198,7 @@ fn wear_of_an_oscillator_is_that_of_stored_rows() {
         let row = &rows[format!("b_H{harmonics}").as_str()];
         let list = |name: &str| -> Vec<f64> { row[name].as_array().unwrap().iter().map(number).collect() };
         let (cycles, loads, amplitudes) = (list("n"), list("N"), list("amplitude"));
-        for (tolerance, allowed) in [(1e-8, 1e-6), (1e-4, 1e-3)] {
+        for (tolerance, allowed, most) in [(1e-8, 1e-6, usize::MAX), (1e-4, 1e-3, 30)] {
             let options = LifeOptions {
                 wear: &wear(&[0.05]),
                 stiffness: &[1.0],
@@ -215,9 +215,7 @@ fn wear_of_an_oscillator_is_that_of_stored_rows() {
                 close(&name, point.loads[0], loads[i], allowed);
                 close(&name, point.amplitude, amplitudes[i], allowed);
             }
-            if tolerance == 1e-4 {
-                assert!(found.solutions <= 30, "{} steady solutions", found.solutions);
-            }
+            assert!(found.solutions <= most, "{} steady solutions", found.solutions);
         }
     }
 }
@@ -291,7 +289,7 @@ fn steps_end_where_a_contact_begins_to_slip() {
         };
         run(&model, 5, &options).unwrap().points[0].works[0]
     };
-    assert_eq!(begin(n * (1.0 - 1e-4)), 0.0);
+    assert_eq!(begin(n * (1.0 - 1e-4)).to_bits(), 0);
     assert!(begin(n * (1.0 + 1e-4)) > 0.0);
     let wanted = by_runge_kutta(&model, (&rates, &stiffness), 5, (0.62, 0.62), (20.0, 200));
     for (found, wanted) in found.points[1].loads.iter().zip(&wanted) {
