@@ -141,8 +141,8 @@ class _Lives(_Owner):
         options, numbers = _life_options((contacts, rates, areas), (omega, force, share, peak), stiffness, worn, accuracy, limit,
                                          most_steps)
         n, c = len(wanted), len(numbers)
-        depths, loads, works = np.empty((n, c)), np.empty((n, c)), np.empty((n, c))
-        amplitude, at = np.empty(n), np.empty(n)
+        depths, loads, works = (np.full((n, c), np.nan) for _ in range(3))
+        amplitude, at = np.full(n, np.nan), np.full(n, np.nan)
         room = max(64, 8 * c)
         told, kinds, whose = np.empty(room), np.empty(room, np.int64), np.empty(room, np.int64)
         count, info = ctypes.c_int64(), _new("hbvib_life_info")
@@ -169,7 +169,7 @@ class _Lives(_Owner):
         factors     (low, high) of the search.
         cycles      end of the life.
         The rest as in life, progress after each life with its factor as `parameter`. Stopped is raised where the search
-        is stopped. Options of the solver; harmonics without tolerance means tolerance = 0:
+        is stopped, and where a life ends early, as without a peak. Options of the solver; harmonics without tolerance means tolerance = 0:
 
         {options}
 
@@ -188,7 +188,7 @@ class _Lives(_Owner):
             hooks = _hooks(guard, progress, None, LogLevel.INFO, cancel, phase)
             status = _call("hbvib_best_load_for_life", self.handle, settings, options, float(cycles), low, high, hooks, found,
                            guard=guard)
-        if status == Status.STOPPED_BY_CALLER:
+        if status != Status.OK:  # without a result
             raise Stopped(_sentence(status), Status(status), 0)
         return _record(BestLoad, found)
 

@@ -268,7 +268,7 @@ ANALYSES = {
         "contacts": [(refused("contact"), [9])], "rates": [(CHANGES, 0.06), (refused("rate"), -1.0)],
         "cycles": [(CHANGES, 3.0), (refused("cycles"), -1.0)], "factors": [(refused("factor_low"), (0.0, 1.0))],
         "omega": [(refused("either"), [1.1])], "force": [(refused("omega"), [1.0])], "share": [(refused("omega"), [1.0])],
-        "peak": [(refused("omega"), (0.0, 1.0))],
+        "peak": [(refused("omega"), (0.0, 1.0)), (refused("no peak"), (9.0, 10.0))],
         "areas": [(CHANGES, 2.0), (refused("area"), 0.0)], "stiffness": [(CHANGES, 2.0), (refused("stiffness"), NAN)],
         "worn": [(CHANGES, [0.02]), (refused("worn"), [-1.0])], "accuracy": [(CHANGES, 1e-8), (refused("tolerance"), 1.0)],
         "most_steps": [(refused("most_steps"), 0)]}),
