@@ -12,6 +12,8 @@ use crate::results::{Branch, Searched};
 ///
 /// # Errors
 /// As [`crate::analysis::forced_response()`].
+// Inlined, its variables would lie on the stack under every response.
+#[inline(never)]
 pub(super) fn forced_response(
     model: &Model,
     solver: &SolverOptions,
