@@ -15,7 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
 
-from ._test_files import TestFunction, read_uff
+try:
+    from ._test_files import TestFunction, read_uff
+except ImportError:  # this file alone, without the package: it reads and writes matrices
+    pass
 
 if TYPE_CHECKING:
     from ._results import IntArray
