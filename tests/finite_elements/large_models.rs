@@ -207,6 +207,7 @@ fn agrees_with_direct_factors(elements: [usize; 3], (setup, beside): (f64, f64),
 }
 
 #[test]
+#[ignore = "a quarter of a minute; tests/deep.sh runs it"]
 fn a_sector_of_thousands_of_degrees_of_freedom_agrees_with_direct_factors() {
     agrees_with_direct_factors([12, 16, 5], (f64::INFINITY, 1.5e9), true);
 }

@@ -36,7 +36,6 @@ mod fe_modes;
 mod fe_pressed;
 mod fe_sector;
 mod fe_stops;
-mod fitted_sector;
 mod friction_patch;
 mod large_models;
 mod large_plate;

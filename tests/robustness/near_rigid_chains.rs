@@ -88,6 +88,7 @@ fn chain(random: &mut Random) -> Chain {
 }
 
 #[test]
+#[ignore = "a quarter of a minute; tests/deep.sh runs it"]
 fn errors_of_near_rigid_chains_are_within_the_tolerance() {
     let seed = from_environment("HBVIB_SEED", 3);
     let cases = from_environment("HBVIB_CASES", 20);
