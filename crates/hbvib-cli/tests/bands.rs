@@ -153,7 +153,7 @@ fn a_damper_of_a_job_is_that_of_the_library() {
         model.set_matrix(kind, &hbvib::MatrixView::dense(1, &[value])).unwrap();
     }
     let face = hbvib::DamperFace {
-        angle: -0.785_398_163_397_448_3,
+        angle: -std::f64::consts::FRAC_PI_4,
         stiffness: [1.0, 1.5],
         mu: 0.6,
         ..hbvib::DamperFace::default()
