@@ -226,7 +226,7 @@ fn best_of(search: &Search<'_>, first: &State, hooks: &mut Hooks<'_>) -> Result<
         for state in further_starts(search, first, poor)? {
             starts += 1;
             let found = search.from(state, &mut |i, state| report(hooks, (i, state), &mut stopped))?;
-            // What fits not much better than a state that does not see an unknown does not tell it.
+            // A state that fits not much better than one that does not see an unknown does not tell it.
             let gain = if unseen(&best.state) { FIT_TELLS } else { 0.0 };
             if found.state.cost < best.state.cost - gain {
                 best = found;

@@ -212,13 +212,14 @@ impl Walk<'_> {
             if let Some(event) = self.event(&at, last.as_ref(), &step, hooks)? {
                 // Steps before an event know nothing of what follows it.
                 let distance = event - at.n;
-                let across = LIFE_EVENT * self.options.tolerance / at.size_of(&self.states, &at.worn.rate);
-                if distance > across && distance < length {
-                    delta = LIFE_APPROACH * distance;
-                    continue;
-                }
+                let across = self.length_across(&at, length);
                 if distance > across {
-                    delta = 0.5 * length;
+                    // An event at the end of the step alone is known no better.
+                    delta = if distance < length {
+                        LIFE_APPROACH * distance
+                    } else {
+                        0.5 * length
+                    };
                     continue;
                 }
                 at = self.across(&at, distance.max(0.0) + across, hooks)?;
@@ -256,6 +257,11 @@ impl Walk<'_> {
         }
     }
 
+    /// Cycles over which loads change by the share of the tolerance that a step across an event may have, at most those of the step.
+    fn length_across(&self, at: &LifeState, length: f64) -> f64 {
+        (LIFE_EVENT * self.options.tolerance / at.size_of(&self.states, &at.worn.rate)).min(length)
+    }
+
     /// Cycles at which a contact changes its state within a step, if one does: along the path of the states before it, on which the work of
     /// a contact that slips, or a load, is followed to 0 by Newton's method within a bracket.
     fn event(
@@ -270,7 +276,7 @@ impl Walk<'_> {
         }
         let (mut low, mut high) = (at.n, step.to.n);
         let mut n = high;
-        let across = LIFE_EVENT * self.options.tolerance / at.size_of(&self.states, &at.worn.rate);
+        let across = self.length_across(at, step.length());
         for tries in 0..LIFE_EVENT_TRIES {
             let depths = ahead((at, last), n - at.n)?;
             let probe = LifeState {

@@ -37,6 +37,13 @@ pub(super) fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Op
     Ok(Some(p))
 }
 
+/// Writes an entry of an array of the caller, unless it is NULL.
+pub(super) unsafe fn put<T>(p: *mut T, i: usize, value: T) {
+    if !p.is_null() {
+        unsafe { p.add(i).write(value) };
+    }
+}
+
 /// The number of bytes that `len` values take, refused where no array in memory can be so long.
 fn byte_len<T>(p: *const T, len: usize, argument: i32, name: &str) -> Result<usize> {
     len.checked_mul(size_of::<T>())

@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{Column, Entry, Range, check_pointer, count, disjoint, fill_list, input, optional, output};
+use super::arrays::{Column, Entry, Range, check_pointer, count, disjoint, fill_list, input, optional, output, put};
 use super::boundary::{WithArgument, call};
 use super::branch_tree::insert_tree;
 use super::handles::{KeptBranch, read};
@@ -333,13 +333,6 @@ pub unsafe extern "C" fn hbvib_band(
         }
         Ok(Status::Ok)
     })
-}
-
-/// Writes an entry of an array of the caller, unless it is NULL.
-unsafe fn put<T>(p: *mut T, i: usize, value: T) {
-    if !p.is_null() {
-        unsafe { p.add(i).write(value) };
-    }
 }
 
 /// Gives the branch of an end to the caller, unless it wants none.

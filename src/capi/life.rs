@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{Range, check_pointer, count, disjoint, input, optional, output};
+use super::arrays::{Range, check_pointer, count, disjoint, input, optional, output, put};
 use super::boundary::{WithArgument, call};
 use super::handles::read;
 use super::model::hbvib_model;
@@ -418,13 +418,6 @@ pub unsafe extern "C" fn hbvib_life(
             reason: found.reason,
         })
     })
-}
-
-/// Writes one value of an array that the caller may leave out.
-unsafe fn put<T>(p: *mut T, i: usize, value: T) {
-    if !p.is_null() {
-        unsafe { p.add(i).write(value) };
-    }
 }
 
 fn numbers(found: &Life) -> hbvib_life_info {

@@ -41,7 +41,7 @@ impl ForcedPoint<'_> {
                 let (y, f) = (set.get(&u[range.clone()], i), set.get(&forces.forces()[range], i));
                 let weight = (share * y).conj();
                 work += (weight * f).re;
-                // What follows couples f less the force κy of the reference stiffness.
+                // The coupling below is that of f less the force κy of the reference stiffness.
                 let kappa = condensed.kappa(c, i);
                 let own = -share * f + (weight * kappa).conj();
                 let at = c * m + set.offset(i);

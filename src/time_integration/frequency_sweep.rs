@@ -46,7 +46,7 @@ pub struct FrequencySweep {
     pub events: usize,
 }
 
-/// See the analysis of the same name.
+/// The work of [`crate::analysis::sweep`], with options that are checked.
 ///
 /// # Errors
 /// As there.
