@@ -50,6 +50,10 @@
 
 #![deny(unsafe_code)]
 
+// The numerics below, under the paths that they have in this crate.
+#[doc(hidden)]
+pub use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
+
 mod adaptivity;
 #[doc(hidden)]
 pub mod aft;
@@ -65,17 +69,9 @@ pub mod contact;
 #[doc(hidden)]
 pub mod continuation;
 #[doc(hidden)]
-pub mod error;
-#[doc(hidden)]
 pub mod error_estimate;
 #[doc(hidden)]
-pub mod fourier;
-#[doc(hidden)]
 pub mod hooks;
-#[doc(hidden)]
-pub mod interrupt;
-#[doc(hidden)]
-pub mod linalg;
 #[doc(hidden)]
 pub mod model;
 #[doc(hidden)]
@@ -86,8 +82,6 @@ pub mod problem;
 pub mod results;
 #[doc(hidden)]
 pub mod sensitivity;
-#[doc(hidden)]
-pub mod shortage;
 #[doc(hidden)]
 pub mod stability;
 #[doc(hidden)]
@@ -102,6 +96,7 @@ pub use contact::patch::Patch;
 pub use contact::relative_motion::{Direction, Frame};
 pub use contact::rigid_point::RigidPoint;
 pub use contact::{Contact, ContactKind};
+#[doc(inline)]
 pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
@@ -154,20 +149,23 @@ pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};
 pub use analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
+#[doc(inline)]
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
     Amplitude, BatchOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions, LifeFollow, LifeOptions,
-    Measure, ModeChoice, ModeOptions, Response, SolverOptions, SteadyMethod, SweepOptions, SynthesisOptions,
-    TimeOptions, VerifyOptions, Waves, Wear,
+    ModeChoice, ModeOptions, Response, SolverOptions, SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions,
+    VerifyOptions, Waves, Wear,
 };
 
 // Results.
 pub use condense::Reduction;
 pub use contact::contact_state::State;
 pub use contact::time_piece::Grazing;
+#[doc(inline)]
 pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
-pub use fourier::Reading;
+#[doc(inline)]
+pub use fourier::{Measure, Reading};
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,

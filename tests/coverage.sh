@@ -33,7 +33,7 @@ objects=
 for object in $executables "$work"/release/libhbvib.so $(find "$work/release/examples" -maxdepth 1 -type f -perm -u+x ! -name '*-*'); do
     objects="$objects --object $object"
 done
-"$tools/llvm-cov" export --format=lcov --instr-profile="$work/all.profdata" $objects --sources "$PWD/src" >"$work/lcov" 2>"$work/export.log"
+"$tools/llvm-cov" export --format=lcov --instr-profile="$work/all.profdata" $objects --sources "$PWD/src" "$PWD/crates/numerics/src" >"$work/lcov" 2>"$work/export.log"
 python3 - "$work/lcov" "$PWD/src/" <<'PYTHON' >"$work/lines"
 import collections, sys
 

@@ -76,7 +76,7 @@ step "compile the library and its tests" \
 step "compile the command and the readers of files" cargo build --release --lib --bins --tests -p hbvib-io -p hbvib-cli
 [ "${1:-}" != build ] || { printf '%s' "$times"; exit 0; }
 step "tests of claims, programs in five languages" cargo test --release --no-fail-fast --test '*'
-step "unit tests of the library" cargo test --release --lib
+step "unit tests of the library and of its numerics" cargo test --release --lib
 # Examples in the documentation of the Rust interface.
 step "examples of the Rust interface" cargo test --release --doc -p hbvib
 step "readers of files" cargo test --release -p hbvib-io --lib --test '*'

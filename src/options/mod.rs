@@ -13,6 +13,7 @@ mod synthesis_options;
 mod time_options;
 mod waves;
 
+pub use crate::fourier::Measure;
 pub use batch_options::{BatchOptions, MOST_THREADS};
 pub use content::Content;
 pub use floquet_options::FloquetOptions;
@@ -21,7 +22,7 @@ pub(crate) use forced_options::check_highest;
 pub use life_options::{Duty, LIFE_MOST_STEPS, LIFE_TOLERANCE, LifeFollow, LifeOptions, MOST_WORN, Wear};
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeGuess, ModeOptions};
 pub(crate) use response::check_responses;
-pub use response::{Component, Measure, Response};
+pub use response::{Component, Response};
 pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
 pub use sweep_options::SweepOptions;
 pub use synthesis_options::SynthesisOptions;

@@ -1,22 +1,7 @@
 //! A response of the motion: a gauge, and the number that is read from it over a period.
 
 use crate::error::{Result, fail};
-
-/// The number that is read from a gauge over a period.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Measure {
-    /// Amplitude of the fundamental: harmonic 1, or the lowest one above zero that the motion has. With its phase.
-    #[default]
-    Fundamental,
-    /// Amplitude of one harmonic; 0 where the motion does not have it. With its phase.
-    Harmonic(usize),
-    /// Largest magnitude over the period.
-    Peak,
-    /// Root of the mean square over the period, the mean included.
-    Rms,
-    /// Largest value minus smallest one over the period.
-    Range,
-}
+use crate::fourier::Measure;
 
 /// The derivative of the motion by time that a gauge sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

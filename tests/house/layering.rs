@@ -1,4 +1,4 @@
-//! The rooms of the library: imports go downwards only, files do not import each other in circles, names say what they
+//! The rooms of the library and of the numerics below, which the compiler keeps apart as crates: imports go downwards only, files do not import each other in circles, names say what they
 //! hold, and nothing but the registry knows the contact laws by name.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -100,9 +100,14 @@ struct Tree {
 
 impl Tree {
     fn read() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let crates = [root.join("src"), root.join("crates/numerics/src")];
         let mut found = Vec::new();
-        sources(&root, &mut found);
+        for folder in &crates {
+            sources(folder, &mut found);
+        }
+        // The library re-exports the rooms of the crate below under their own names.
+        found.retain(|path| *path != crates[1].join("lib.rs"));
         // Unit tests in a file of their own see as much as those that close a file.
         found.retain(|path| {
             !path
@@ -111,7 +116,8 @@ impl Tree {
         });
         assert!(found.len() > 100);
         let files = found.iter().map(|path| {
-            let module = module_of(path.strip_prefix(&root).unwrap());
+            let own = crates.iter().find_map(|folder| path.strip_prefix(folder).ok());
+            let module = module_of(own.unwrap());
             (module, code(&fs::read_to_string(path).unwrap()))
         });
         Self { files: files.collect() }

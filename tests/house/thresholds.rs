@@ -12,7 +12,7 @@ const SHARED_NAMES: usize = 26;
 const INTRODUCTION: &str = "\
 # Thresholds
 
-Named numbers of the library, by the folders of `src/`, without the C interface: tolerances, limits of work, sizes of blocks, and numbers
+Named numbers of the library, by the folders of `src/` and `crates/numerics/src/`, without the C interface: tolerances, limits of work, sizes of blocks, and numbers
 that were tuned. Each row is made from the declaration and its comment. A test fails where the page is out of date; CONTRIBUTING.md has
 the command that writes it.
 ";
@@ -72,15 +72,17 @@ fn declared(text: &str) -> Option<(&str, &str, String)> {
 }
 
 fn thresholds() -> Vec<Threshold> {
-    let source = root().join("src");
+    let crates = [root().join("src"), root().join("crates/numerics/src")];
     let mut paths = Vec::new();
-    sources(&source, &mut paths);
-    paths.sort();
+    for folder in &crates {
+        sources(folder, &mut paths);
+    }
     let mut found = Vec::new();
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
         let text = text.split("\n#[cfg(test)]\nmod ").next().unwrap();
-        let file = path.strip_prefix(&source).unwrap().display().to_string();
+        let own = crates.iter().find_map(|folder| path.strip_prefix(folder).ok());
+        let file = own.unwrap().display().to_string();
         let (mut comment, mut at) = (String::new(), 0);
         for line in text.split_inclusive('\n') {
             let code = line.trim();

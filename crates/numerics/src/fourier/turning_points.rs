@@ -350,11 +350,13 @@ impl Bounds {
     }
 
     /// Width of a cell in which x varies by rounding only between roots of x′ that are not separated.
+    #[inline]
     fn finest(&self) -> f64 {
         (1e-14 * (self.size / self.bend)).cbrt()
     }
 
     /// The most by which x′ departs from its chord within a cell.
+    #[inline]
     fn largest_dip(&self, width: f64) -> f64 {
         0.125 * self.bend * width * width
     }

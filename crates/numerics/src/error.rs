@@ -370,12 +370,15 @@ impl std::error::Error for Error {}
 pub type Result<T> = core::result::Result<T, Error>;
 
 /// Shorthand for `Err(Error::new(Status::$status, format_args!(…)))`.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! fail {
     ($status:ident, $($message:tt)*) => {
         Err($crate::error::Error::new($crate::error::Status::$status, format_args!($($message)*)))
     };
 }
-pub(crate) use fail;
+#[doc(hidden)]
+pub use crate::fail;
 
 /// A vector of `len` copies of `value`, allocated fallibly.
 ///

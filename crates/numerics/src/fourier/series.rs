@@ -20,6 +20,7 @@ pub struct Jet {
 
 /// x to x‴ of a packed signal at τ.
 #[must_use]
+#[inline]
 pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
     at_turn(set, packed, Complex64::cis(tau))
 }
@@ -64,6 +65,7 @@ struct Approach<'a> {
 const SMALL_ANGLE: f64 = 0.1;
 
 /// e^{is} of a small angle, by its series up to s¹⁰.
+#[inline]
 fn small_turn(s: f64) -> Complex64 {
     let q = s * s;
     let cosine = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
@@ -72,6 +74,7 @@ fn small_turn(s: f64) -> Complex64 {
 }
 
 impl<'a> Approach<'a> {
+    #[inline]
     fn new(set: &'a HarmonicSet, packed: &'a [f64]) -> Self {
         Self {
             set,
@@ -81,6 +84,7 @@ impl<'a> Approach<'a> {
         }
     }
 
+    #[inline]
     fn at(&mut self, tau: f64) -> Jet {
         let step = tau - self.tau;
         self.turn = if step.abs() <= SMALL_ANGLE {
@@ -97,6 +101,7 @@ impl<'a> Approach<'a> {
 /// cube of the step.
 const SERIES_LAST_STEP: f64 = 3e-6;
 
+#[inline]
 fn last_step(set: &HarmonicSet) -> f64 {
     SERIES_LAST_STEP / set.highest_reduced().max(1) as f64
 }
@@ -106,6 +111,7 @@ pub const VALUES_OF_A_CROSSING: usize = 8;
 
 /// The time in (a, b) at which a signal, monotone there, passes `level`.
 #[must_use]
+#[inline]
 pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: f64, level: f64) -> f64 {
     // Between two turning points a motion resembles half a wave of a cosine.
     let guess = a + (b - a) * (1.0 - 2.0 * (level - xa) / (xb - xa)).acos() / PI;
@@ -117,6 +123,7 @@ pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: 
 }
 
 /// The time between two at which x′, of opposite signs there, vanishes, and x there; from x′ at the first one and a guess.
+#[inline]
 pub(super) fn turning_point(
     set: &HarmonicSet,
     packed: &[f64],

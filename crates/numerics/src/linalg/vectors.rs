@@ -8,11 +8,13 @@ use pulp::{Arch, Simd, WithSimd};
 
 /// aᴴ b
 #[must_use]
+#[inline]
 pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
 /// v ← v − part q
+#[inline]
 pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
     for (v, q) in v.iter_mut().zip(q) {
         *v -= part * q;
@@ -21,6 +23,7 @@ pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
 
 /// Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
 #[must_use]
+#[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
@@ -38,6 +41,7 @@ pub const SAFE_SQUARES: f64 = 1e-280;
 
 /// Euclidean norm that neither overflows nor underflows.
 #[must_use]
+#[inline]
 pub fn norm(v: &[f64]) -> f64 {
     let squares = v.iter().map(|x| x * x).sum::<f64>();
     // Neither an overflow nor squares lost below the smallest number.
@@ -57,6 +61,7 @@ pub fn norm(v: &[f64]) -> f64 {
 
 /// The power of two nearest below `x`, for scaling without rounding; 1 where `x` is 0 or not finite.
 #[must_use]
+#[inline]
 pub fn power_of_two(x: f64) -> f64 {
     if x > 0.0 && x.is_finite() {
         x.log2().floor().clamp(-1020.0, 1020.0).exp2()
@@ -73,6 +78,7 @@ pub const COPIED_UP_TO: usize = 16 * 16 * 16;
 ///
 /// # Errors
 /// `OutOfMemory` for the matrices.
+#[inline]
 pub fn first_product() -> Result<()> {
     /// Order of the matrices, above which products keep memory.
     const ORDER: usize = 40;
@@ -90,6 +96,7 @@ pub fn first_product() -> Result<()> {
 }
 
 /// x = Φ ξ for a column-major Φ with `x.len()` rows.
+#[inline]
 pub fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
     x.fill(Complex64::ZERO);
     for (shape, xi) in vectors.chunks_exact(x.len().max(1)).zip(xi) {
@@ -100,6 +107,7 @@ pub fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
 }
 
 /// out += factor·A x for a column-major A with `out.len()` rows.
+#[inline]
 pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
     Arch::new().dispatch(Product(factor, a, x, out));
 }
@@ -171,6 +179,7 @@ fn few_rows<const N: usize>(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) 
 
 /// The first `rows` numbers of each column of a column-major matrix += Σⱼ aⱼ bⱼᵀ, over rows aⱼ of `rows` numbers and the first
 /// `columns` numbers of rows bⱼ that are `apart`, as many as the matrix has columns; columns are `stride` apart.
+#[inline]
 pub fn add_outer_products_to(
     (a, rows): (&[f64], usize),
     (b, columns, apart): (&[f64], usize, usize),
@@ -190,6 +199,7 @@ pub fn add_outer_products_to(
 
 /// out += Σⱼ aⱼ bⱼᵀ over `count` rows aⱼ of `rows` numbers and the first `columns` numbers of rows bⱼ that are `stride`
 /// apart; `out` is column-major.
+#[inline]
 pub fn add_outer_products(
     (a, rows): (&[f64], usize),
     (b, columns, stride): (&[f64], usize, usize),
@@ -207,6 +217,7 @@ pub fn add_outer_products(
 }
 
 /// outⱼ = Aᵀ bⱼ for rows bⱼ and outⱼ, with `columns` columns of A that are as long as a row bⱼ.
+#[inline]
 pub fn transposed_products(a: &[f64], columns: usize, b: &[f64], out: &mut [f64]) {
     let (length, count) = (a.len() / columns.max(1), out.len() / columns.max(1));
     if columns * length * count <= COPIED_UP_TO {

@@ -61,6 +61,9 @@ fn conjugate_sum<T: Entry>(u: &[T], w: &[T]) -> T {
 }
 
 /// Orthonormalises columns B that nearly are: with Bᴴ A B = L Lᴴ the columns of B L⁻ᴴ. `false` where they are not independent.
+///
+/// # Errors
+/// Out of memory, or a requested stop.
 pub fn orthonormalise_again<T: Entry>(
     block: &mut Vec<T>,
     weighted: &[T],
@@ -108,6 +111,9 @@ const DOWNDATED: f64 = 1e-4;
 
 /// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns
 /// their number.
+///
+/// # Errors
+/// Out of memory, or a requested stop.
 pub fn orthonormalise<T: Entry>(
     (block, weighted): (&mut [T], &mut [T]),
     n: usize,

@@ -72,6 +72,7 @@ pub struct Interrupt<'a> {
 impl<'a> Interrupt<'a> {
     /// An interrupt with the caller's flag and receiver of phases.
     #[must_use]
+    #[inline]
     pub fn new(cancelled: Option<&'a dyn Fn() -> bool>, sink: Option<&'a PhaseSink<'a>>) -> Self {
         Self {
             cancelled,
@@ -89,6 +90,7 @@ impl<'a> Interrupt<'a> {
 
     /// An interrupt that never stops and reports nothing.
     #[must_use]
+    #[inline]
     pub fn none() -> Self {
         Self::new(None, None)
     }
@@ -126,18 +128,21 @@ impl<'a> Interrupt<'a> {
 
     /// Whether a check has failed: the call is on its way back.
     #[must_use]
+    #[inline]
     pub fn is_stopped(&self) -> bool {
         self.stopped.get()
     }
 
     /// Largest number of operations that no check interrupted.
     #[must_use]
+    #[inline]
     pub fn largest(&self) -> u64 {
         self.largest.get()
     }
 
     /// Number of checks made, a measure of work that does not depend on the machine.
     #[must_use]
+    #[inline]
     pub fn checks(&self) -> u64 {
         self.checks.get()
     }
@@ -147,6 +152,7 @@ impl<'a> Interrupt<'a> {
     ///
     /// # Errors
     /// `StoppedByCaller`.
+    #[inline]
     pub fn phase(&self, phase: Phase, share: f64) -> Result<()> {
         self.check()?;
         let last = self.current.get();
@@ -160,6 +166,7 @@ impl<'a> Interrupt<'a> {
     ///
     /// # Errors
     /// `StoppedByCaller`.
+    #[inline]
     pub fn part(&self, phase: Phase, done: usize, all: usize) -> Result<()> {
         self.phase(phase, done as f64 / all.max(1) as f64)
     }
@@ -168,6 +175,7 @@ impl<'a> Interrupt<'a> {
     ///
     /// # Errors
     /// `StoppedByCaller`.
+    #[inline]
     pub fn announce_factorisation(&self) -> Result<()> {
         self.check()?;
         let before = self.current.get();
@@ -183,6 +191,7 @@ impl<'a> Interrupt<'a> {
     ///
     /// # Errors
     /// `OutOfMemory` naming `what`, `StoppedByCaller`.
+    #[inline]
     pub fn zeros(&self, len: usize, what: &str) -> Result<Vec<f64>> {
         let mut values = try_vec(0, 0.0, what)?;
         reserved(&values.try_reserve_exact(len), what)?;
@@ -194,6 +203,7 @@ impl<'a> Interrupt<'a> {
         Ok(values)
     }
 
+    #[inline]
     fn report(&self, report: PhaseReport) -> Result<()> {
         self.current.set(report);
         self.work.set(0);

@@ -10,7 +10,6 @@
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::{Extremum, HarmonicSet, TurningPoints};
 use crate::interrupt::Interrupt;
-use crate::options::Measure;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -18,6 +17,22 @@ const CONTEXT: &str = "a response";
 
 /// Relative difference of extremes that rounding makes.
 const SAME_SIZE: f64 = 1e-12;
+
+/// The number that is read from a gauge over a period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// Amplitude of the fundamental: harmonic 1, or the lowest one above zero that the motion has. With its phase.
+    #[default]
+    Fundamental,
+    /// Amplitude of one harmonic; 0 where the motion does not have it. With its phase.
+    Harmonic(usize),
+    /// Largest magnitude over the period.
+    Peak,
+    /// Root of the mean square over the period, the mean included.
+    Rms,
+    /// Largest value minus smallest one over the period.
+    Range,
+}
 
 /// The number that was read.
 #[derive(Clone, Copy, Debug)]

@@ -67,6 +67,7 @@ impl HarmonicSet {
     ///
     /// # Errors
     /// `OutOfMemory`.
+    #[inline]
     pub fn all(highest: usize) -> Result<Self> {
         Self::excited(&[], highest, true, false, true)
     }
@@ -75,6 +76,7 @@ impl HarmonicSet {
     ///
     /// # Errors
     /// `OutOfMemory`.
+    #[inline]
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self {
             numbers: try_copy(&self.numbers, "the list of harmonics")?,
@@ -91,11 +93,13 @@ impl HarmonicSet {
 
     /// Position of the fundamental, harmonic 1, among the carried harmonics; 0 if it is not carried.
     #[must_use]
+    #[inline]
     pub fn fundamental(&self) -> usize {
         self.numbers.iter().position(|&h| h == 1).unwrap_or(0)
     }
 
     /// Watches the amplitude of a harmonic, if it is carried; the lowest vibrating one is watched otherwise.
+    #[inline]
     pub fn watch(&mut self, number: usize) {
         if self.numbers.contains(&number) {
             self.watched = number;
@@ -104,12 +108,14 @@ impl HarmonicSet {
 
     /// Position of the harmonic that is watched.
     #[must_use]
+    #[inline]
     pub fn watched(&self) -> usize {
         self.numbers.iter().position(|&h| h == self.watched).unwrap_or(0)
     }
 
     /// Common divisor g of the carried harmonics.
     #[must_use]
+    #[inline]
     pub fn base(&self) -> usize {
         self.base
     }
@@ -208,6 +214,7 @@ impl HarmonicSet {
 
     /// Copies packed signals of the harmonics `from`, times a factor. Harmonics that `from` lacks become zero;
     /// those that this set lacks are dropped.
+    #[inline]
     pub fn transfer(&self, from: &Self, signals: &[f64], factor: f64, into: &mut [f64]) {
         into.fill(0.0);
         let (m, m2) = (from.packed_len().max(1), self.packed_len().max(1));
@@ -222,12 +229,14 @@ impl HarmonicSet {
 
     /// Upper bound of the velocity of a packed signal at an angular frequency.
     #[must_use]
+    #[inline]
     pub fn speed(&self, packed: &[f64], omega: f64) -> f64 {
         let at = |i: usize| self.numbers[i] as f64 * self.get(packed, i).norm();
         omega * (0..self.numbers.len()).map(at).sum::<f64>()
     }
 
     /// Fills `row` with c(τ), the values of the packed basis: x(τ) = c(τ)·packed.
+    #[inline]
     pub fn basis(&self, tau: f64, row: &mut [f64]) {
         let mut at = 0;
         if self.has_mean() {
@@ -246,6 +255,7 @@ impl HarmonicSet {
 
 /// Greatest common divisor, with gcd(0, h) = h.
 #[must_use]
+#[inline]
 pub fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -16,7 +16,7 @@ const TRANSFORM_TABLE_LIMIT: usize = 1 << 12;
 
 /// Relation of the second half of a turn to the first, where only the first is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Half {
+pub enum Half {
     /// It has opposite sign: odd harmonics.
     Opposite,
     /// It repeats: even harmonics.
@@ -25,9 +25,11 @@ pub(crate) enum Half {
 
 /// Positions of the samples of one signal among those of others: `first + j·step`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lane {
-    pub(crate) first: usize,
-    pub(crate) step: usize,
+pub struct Lane {
+    /// Place of the first value.
+    pub first: usize,
+    /// Distance of a value from the next.
+    pub step: usize,
 }
 
 impl Lane {
@@ -37,7 +39,7 @@ impl Lane {
 }
 
 /// Tables and memory for the signals of one harmonic set.
-pub(crate) struct Transform {
+pub struct Transform {
     /// Samples of a turn.
     turn: usize,
     /// Stored samples: all, or the first half.
@@ -63,7 +65,7 @@ impl Transform {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub(crate) fn new(set: &HarmonicSet, requested: usize, half: bool) -> Result<Self> {
+    pub fn new(set: &HarmonicSet, requested: usize, half: bool) -> Result<Self> {
         // Memory for an excessive number of samples is refused before any arithmetic with it.
         check_memory::<Complex64>(requested.saturating_mul(8), "samples")?;
         // Half a turn is a whole number of samples.
@@ -118,12 +120,13 @@ impl Transform {
     }
 
     /// Number of stored samples.
-    pub(crate) fn held(&self) -> usize {
+    #[must_use]
+    pub fn held(&self) -> usize {
         self.held
     }
 
     /// Writes the samples of a packed signal.
-    pub(crate) fn synthesise(&mut self, set: &HarmonicSet, packed: &[f64], values: &mut [f64], lane: Lane) {
+    pub fn synthesise(&mut self, set: &HarmonicSet, packed: &[f64], values: &mut [f64], lane: Lane) {
         let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
         let mean = mean.first().copied().unwrap_or(0.0);
         let targets = values[lane.first..].iter_mut().step_by(lane.step);
@@ -162,7 +165,7 @@ impl Transform {
 
     /// Writes the harmonics n = 0, 1, … of a real signal, as many as `harmonics` holds, at most 2·highest + 1.
     /// Where half a turn is stored, `half` selects the harmonics that exist; the others are 0.
-    pub(crate) fn analyse(&mut self, values: &[f64], lane: Lane, half: Half, harmonics: &mut [Complex64]) {
+    pub fn analyse(&mut self, values: &[f64], lane: Lane, half: Half, harmonics: &mut [Complex64]) {
         let folded = self.held < self.turn;
         let first = usize::from(folded && half == Half::Opposite);
         let stride = if folded { 2 } else { 1 };

@@ -21,6 +21,7 @@ struct Bracket {
 
 impl Bracket {
     /// From two times and the value at the first.
+    #[inline]
     fn new(a: f64, b: f64, fa: f64) -> Self {
         let (low, high) = if fa < 0.0 { (a, b) } else { (b, a) };
         Self {
@@ -31,6 +32,7 @@ impl Bracket {
     }
 
     /// Takes the value at a time within.
+    #[inline]
     fn narrow(&mut self, tau: f64, value: f64) {
         if value < 0.0 {
             self.low = tau;
@@ -40,15 +42,18 @@ impl Bracket {
     }
 
     /// A guess that lies between two times, or else the middle; comparisons with NaN are false.
+    #[inline]
     fn begin(a: f64, b: f64, guess: f64) -> f64 {
         if guess > a && guess < b { guess } else { 0.5 * (a + b) }
     }
 
+    #[inline]
     fn holds(&self, tau: f64) -> bool {
         (tau - self.low) * (tau - self.high) < 0.0
     }
 
     /// The next time: the proposed one where it lies within and halves the step at least, or else the middle.
+    #[inline]
     fn step(&mut self, tau: f64, proposed: f64) -> f64 {
         let next = if self.holds(proposed) && (proposed - tau).abs() <= 0.5 * self.last {
             proposed
@@ -63,6 +68,7 @@ impl Bracket {
     ///
     /// Twice as long at most: bisection towards an end of the bracket that is the root but for rounding stops as far from it
     /// as its last step was long.
+    #[inline]
     fn polished(&self, tau: f64, step: f64) -> f64 {
         if step.abs() <= 2.0 * self.last { tau - step } else { tau }
     }
@@ -71,6 +77,7 @@ impl Bracket {
 /// Newton's method inside a bracket, with bisection where a step leaves it or does not converge.
 /// The last evaluation of `f` is within the tolerance of the returned root.
 #[must_use]
+#[inline]
 pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
     let mut bracket = Bracket::new(a, b, fa);
     // The secant step; equal end values give NaN or infinity.
