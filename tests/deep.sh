@@ -26,6 +26,9 @@ cargo check --target x86_64-pc-windows-gnu -p hbvib -p hbvib-c -p hbvib-io -p hb
 # Damaged input without a guide.
 (cd fuzz && cargo run --release --bin mutate -- "$(date +%j)" 1000000)
 
+# The classes of MATLAB in GNU Octave, and the programs of the book in it.
+sh tests/octave.sh
+
 # The oscillators of docs/coming-from.md in pyHarm, which brings many packages: in a virtual environment of its own.
 if ! .venv-pyharm/bin/python -c 'import pyHarm' >/dev/null 2>&1; then
     python3 -m venv .venv-pyharm
