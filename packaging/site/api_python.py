@@ -29,9 +29,10 @@ def pages() -> list[tuple[str, str, str]]:
             texts["functions"].append(entry(f"hbvib.{name}", item))
         else:
             texts["constants"].append(f"## hbvib.{name}\n\n{item!r}\n")
-    for name, item in inspect.getmembers(hbvib.io, inspect.isfunction):
-        if not name.startswith("_") and item.__module__ == hbvib.io.__name__:
-            texts["functions"].append(entry(f"hbvib.io.{name}", item))
+    for module in (hbvib.io, hbvib.testing):
+        for name, item in inspect.getmembers(module, inspect.isfunction):
+            if not name.startswith("_") and item.__module__ == module.__name__:
+                texts["functions"].append(entry(f"{module.__name__}.{name}", item))
     found = []
     for file, title in GROUPS:
         about = inspect.getdoc(hbvib) if title == "Model" else ""

@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn names_types_and_pointers_are_those_of_c() {
         let header = "typedef int32_t hbvib_status;\n\ntypedef struct hbvib_model hbvib_model;\n\n\
-            /// Views. Of all.\ntypedef struct {\n  uint32_t struct_size;\n  double axis[3];\n  const double *data;\n} hbvib_view;\n\n\
+            /// Views. They are of all.\ntypedef struct {\n  uint32_t struct_size;\n  double axis[3];\n  const double *data;\n} hbvib_view;\n\n\
             /// Does.\n///\n/// v, out  all.\nhbvib_status hbvib_do(const hbvib_model *model, const hbvib_view *v, hbvib_model **out);\n\n\
             /// Name.\nconst char *hbvib_name(hbvib_status status);\n";
         let text = raw(&Declarations::parse(header).unwrap()).unwrap();
