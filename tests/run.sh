@@ -37,6 +37,7 @@ need python3 python3 --version
 need bsdutils script --version
 need valgrind valgrind --version
 need locales test -e /usr/share/i18n/locales/de_DE
+need codespell codespell --version
 need calculix-ccx sh -c 'command -v ccx'
 
 # Python with numpy, what builds the wheel, what tables and figures need, and type checkers: the system's, or one of our own.

@@ -90,10 +90,15 @@ sensitivity = Model.sensitivity
 
 
 def __getattr__(name: str) -> Any:
-    """hbvib.io: the readers of finite-element files, a module and library of their own, loaded on first use."""
-    if name != "io":
+    """hbvib.io, the readers of finite-element files, and hbvib.testing are loaded on first use."""
+    if name not in ("io", "testing"):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return importlib.import_module("hbvib.io")
+    return importlib.import_module(f"hbvib.{name}")
+
+
+def __dir__() -> list[str]:
+    """Names for the completion of a terminal, with the modules that are not loaded yet."""
+    return sorted({*globals(), "io", "testing"})
 
 
 # Classes are named hbvib.Model in messages and pickles, whichever module they are in.

@@ -22,8 +22,9 @@ use std::sync::OnceLock;
 /// Languages of which every block is a complete program.
 const PROGRAMS: [&str; 5] = ["c", "cpp", "fortran", "python", "rust"];
 
-/// Languages of blocks that `book_sessions` runs or compares; tests/peers/pyharm.py runs the program of pyHarm.
-const OTHERS: [&str; 7] = ["sh", "cmake", "toml", "output", "pycon", "inp", "pyharm"];
+/// Languages of blocks that `book_sessions` runs or compares; tests/peers/pyharm.py runs the program of pyHarm, tests/octave.sh
+/// those of MATLAB.
+const OTHERS: [&str; 8] = ["sh", "cmake", "toml", "output", "pycon", "inp", "pyharm", "matlab"];
 
 /// Longest formula or drawing in lines.
 const FORMULA_LINES: usize = 3;
@@ -327,6 +328,8 @@ fn every_name_of_the_interface_exists() {
         "include/hbvib_io.h",
         "include/hbvib/io.py",
         "examples/install/hbvib-config.cmake",
+        "matlab/hbvib_mex.c",
+        "matlab/hbvib_install.m",
     ] {
         interface += &read(Path::new(path));
     }

@@ -100,6 +100,7 @@ fn fortran_feels_native() {
     let names = [
         "aero",
         "batch",
+        "guard",
         "misuse",
         "modes_and_damping",
         "physics",

@@ -19,10 +19,12 @@ mod fortran;
 // build.rs of the library uses this module; its tests run here.
 #[cfg(test)]
 mod header;
+mod julia;
 mod layout;
 #[cfg(unix)]
 mod library;
 mod lists;
+mod mex;
 mod python;
 mod python_examples;
 mod python_types;
@@ -88,6 +90,8 @@ fn write() -> Result<()> {
         ("include/hbvib/_c.py", vec![python::module(&all)?]),
         ("include/hbvib/_types.py", vec![python_types::module(&all, &defaults)?]),
         ("include/hbvib_plain.h", vec![foreign::plain_header(&all)]),
+        ("packaging/julia/src/raw.jl", vec![julia::raw(&all)?]),
+        ("matlab/hbvib_mex.c", vec![mex::gateway(&all)?]),
         ("docs/foreign-calls.md", vec![foreign::tables(&all, &defaults)?]),
         ("tests/programs/layout.rs", vec![lists::layouts(&all)]),
         ("tests/languages/fortran/layout.f90", vec![calls, layouts]),

@@ -37,7 +37,10 @@ def explained(name, value, needs_example):
 
 explained("the module", hbvib, True)
 explained("hbvib.io", hbvib.io, False)
-public = [(name, getattr(hbvib, name)) for name in hbvib.__all__] + [("io." + name, getattr(hbvib.io, name)) for name in hbvib.io.__all__]
+explained("hbvib.testing", hbvib.testing, False)
+check("completion shows modules that are loaded later", {"io", "testing", "Model"} <= set(dir(hbvib)))
+public = [(name, getattr(hbvib, name)) for name in hbvib.__all__] + [
+    (f"{module.__name__[6:]}.{name}", getattr(module, name)) for module in (hbvib.io, hbvib.testing) for name in module.__all__]
 for title, value in public:
     if inspect.isfunction(value) or inspect.isclass(value):
         explained(title, value, True)

@@ -1,0 +1,123 @@
+% The classes of MATLAB and Octave give the numbers of Python, to the bit; errors have identifiers; objects are freed.
+% Usage: check(FILE), FILE as reference.py wrote it.
+function check(file)
+  wanted = jsondecode(fileread(file));
+
+  r = wanted.readme;
+  model = hbvib.Model('mass', 1, 'stiffness', 1, 'rayleigh', [0 0.02]);
+  assert(model.add_contact('jenkins', 1, 'kt', 1, 'mu', 0.3, 'preload', 1) == 1);
+  model.add_force(1, 0.2);
+  branch = model.forced_response([0.8 1.6], 'at', [1.0 1.2]);
+  same(branch.omega, r.omega);
+  same(branch.amplitude, r.amplitude);
+  peak = branch.peaks();
+  same(peak.omega, r.peak);
+  same(peak.point - 1, r.point);
+  motion(branch.harmonics(peak.point), r.motion);
+  same(branch.slip(peak.point), r.slip);
+  same(branch.at(2).amplitude, r.at);
+  same(branch.summary(peak.point, 1).work, r.work);
+  same(branch.energy(peak.point).structural_loss, r.loss);
+  same(model.verify(branch, peak.point).response_error, r.error);
+  motion(model.time_response(1.0), r.time);
+  [way, force] = branch.loop(peak.point, 1, 64);
+  assert(numel(way) == 64 && abs(max(force) - 0.3) < 1e-12);
+  reloaded = hbvib.Model.from_bytes(model.to_bytes());
+  same(reloaded.forced_response([0.8 1.6], 'at', [1.0 1.2]).amplitude, r.amplitude);
+
+  r = wanted.mode;
+  M = diag([1 1 0.5]);
+  K = sparse([2000 -1000 0; -1000 2000 -1000; 0 -1000 1000]);
+  model = hbvib.Model('mass', M, 'stiffness', full(K), 'rayleigh', [0 2e-4]);
+  model.add_contact('jenkins', 2, 'kt', 500, 'mu', 0.3, 'preload', 10);
+  model.add_contact('jenkins', 3, 2, 'kt', 300, 'mu', 0.3, 'preload', 5);
+  model.add_force(1, 2.0);
+  mode = model.nonlinear_mode([-3 0], 'mode_index', 1);
+  same(mode.omega, r.omega);
+  same(mode.damping_ratio, r.damping);
+  same(mode.log10_amplitude, r.log10_amplitude);
+  same(mode.synthesis_peaks(model).omega, r.predicted);
+  same(model.linear_modes(3, 'contacts', 'free'), r.free);
+  model.set_matrix('stiffness', K);  % sparse
+  near(model.linear_modes(3, 'contacts', 'free'), r.free);
+
+  r = wanted.sector;
+  K = [2 -1 0; -1 3 -1; 0 -1 1];
+  sector = hbvib.Model.sector('stiffness', K, 'mass', diag([0.5 1 0.5]), 'sectors', 8, 'engine_order', 2, 'left', 1, ...
+                              'right', 3, 'frame', 'cylindrical');
+  sector.set_rayleigh(0, 0.01);
+  sector.add_contact('jenkins', 2, 'kt', 0.5, 'mu', 0.3, 'preload', 1);
+  sector.add_force(2, 0.1 + 0.05i);
+  assert(sector.engine_order == 2 && sector.sectors == 8);
+  response = sector.forced_response([0.8 2.2], 'response_dof', 2);
+  same(response.omega, r.omega);
+  same(response.amplitude, r.amplitude);
+  same(sector.linear_modes(2, 'diameter', 2), r.modes);
+  motion(response.harmonics(response.peaks().point(1)), r.motion);
+
+  r = wanted.wheel;
+  wheel = hbvib.Model.cyclic('sectors', 6, 'engine_order', 1, 'mass', eye(2), 'stiffness', [3 -1; -1 2], 'coupling', ...
+                             struct('stiffness', [-0.5 0; 0 0]), 'rayleigh', [0 0.01]);
+  wheel.add_contact('friction_2d', [1 2], 'kt', 1, 'kn', 2, 'mu', 0.3, 'preload', 0.2);
+  wheel.add_force(1, 0.1);
+  turned = wheel.forced_response([0.9 2.0], 'harmonics', 5);
+  same(turned.omega, r.omega);
+  same(turned.amplitude, r.amplitude);
+
+  % Errors: identifier and sentence, with indices from 1; an error of a callback comes out as it is.
+  throws(@() model.add_force(4, 1), 'hbvib:E_INDEX', 'dof = 4, needs 1 .. 3');
+  throws(@() model.add_force(0, 1), 'hbvib:E_INDEX', 'dof = 0, needs 1 .. 3');
+  throws(@() model.forced_response([1 NaN]), 'hbvib:E_NOT_FINITE', 'omega_stop');
+  throws(@() model.forced_response([1 2], 'tolerances', 1), 'hbvib:input', 'needs one of');
+  throws(@() hbvib.Model('mass', [1 2; 3 4]), 'hbvib:E_NOT_HERMITIAN', '');
+  throws(@() hbvib_mex('model_new'), 'hbvib:input', 'has 0 inputs, needs 1');
+  throws(@() hbvib_mex('no_such'), 'hbvib:input', 'there is no function');
+  throws(@() hbvib_mex('model_dofs', uint64(77)), 'hbvib:E_HANDLE', '');
+  throws(@() model.forced_response([5 70], 'progress', @(state) error('user:own', 'of the user')), 'user:own', 'of the user');
+
+  % A callback that returns false stops and keeps the points; freed objects are refused.
+  stopped = model.forced_response([5 70], 'progress', @(state) state.point < 5);
+  assert(stopped.status == 1 && numel(stopped.omega) > 2 && numel(stopped.omega) < 10);
+  id = stopped.id;
+  clear stopped
+  throws(@() hbvib_mex('branch_points', id), 'hbvib:E_HANDLE', '');
+  copy = model.clone();
+  model.free();
+  assert(copy.contacts == 2);
+  throws(@() model.linear_modes(1), 'hbvib:E_HANDLE', '');
+  disp('check passed');
+end
+
+% Numbers from the hexadecimal digits of their bits.
+function numbers = of_bits(text)
+  if ~iscell(text), text = {text}; end
+  numbers = hex2num(char(text));
+end
+
+function same(have, want)
+  want = of_bits(want);
+  assert(isequal(size(have(:)), size(want(:))), 'sizes differ');
+  assert(all(have(:) == want(:)), 'numbers differ by %g', max(abs(have(:) - want(:))));
+end
+
+function near(have, want)
+  want = of_bits(want);
+  assert(max(abs(have(:) - want(:))) <= 1e-12 * max(abs(want(:))));
+end
+
+% pairs: real and imaginary parts, harmonic after harmonic.
+function motion(have, pairs)
+  same(real(have), pairs{1});
+  same(imag(have), pairs{2});
+end
+
+function throws(action, id, part)
+  try
+    action();
+  catch failure
+    assert(strcmp(failure.identifier, id), 'identifier %s: %s', failure.identifier, failure.message);
+    assert(isempty(part) || ~isempty(strfind(failure.message, part)), '%s', failure.message);
+    return
+  end
+  error('check:none', 'no error %s', id);
+end

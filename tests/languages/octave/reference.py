@@ -1,0 +1,69 @@
+"""Numbers of the Python module for check.m, as JSON: the same library has to give the same bits to both."""
+import json
+import struct
+import sys
+
+import numpy as np
+
+import hbvib
+
+
+def pairs(x):
+    x = np.asarray(x, complex)
+    return [np.real(x).ravel().tolist(), np.imag(x).ravel().tolist()]
+
+
+out = {}
+# README: a mass on a spring rubs against the ground.
+model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+model.add_force(0, 0.2)
+branch = model.forced_response((0.8, 1.6), at=[1.0, 1.2])
+peak = branch.peaks()
+out["readme"] = dict(
+    omega=branch.omega.tolist(), amplitude=branch.amplitude.tolist(), peak=peak.omega.tolist(), point=peak.point.tolist(),
+    motion=pairs(branch.harmonics(peak.point[0])), slip=branch.slip(peak.point[0]).tolist(), at=branch.at(1).amplitude.tolist(),
+    work=branch.summary(peak.point[0], 0).work, loss=branch.energy(peak.point[0]).structural_loss,
+    error=model.verify(branch, peak.point[0]).info.response_error,
+    time=pairs(model.time_response(1.0).harmonics))
+# A nonlinear mode of three masses with two contacts, and the resonances that it predicts.
+mass, stiffness = np.diag([1.0, 1.0, 0.5]), np.array([[2000.0, -1000, 0], [-1000, 2000, -1000], [0, -1000, 1000]])
+model = hbvib.Model(mass=mass, stiffness=stiffness, rayleigh=(0, 2e-4))
+model.add_contact("jenkins", 1, kt=500, mu=0.3, preload=10)
+model.add_contact("jenkins", 2, 1, kt=300, mu=0.3, preload=5)
+model.add_force(0, 2.0)
+mode = model.nonlinear_mode((-3, 0), mode_index=0)
+predicted = mode.synthesis_peaks(model)
+out["mode"] = dict(
+    omega=mode.omega.tolist(), damping=mode.damping_ratio.tolist(), log10_amplitude=mode.log10_amplitude.tolist(),
+    predicted=predicted.omega.tolist(), free=model.linear_modes(3, contacts="free").omega.tolist())
+# A sector with both faces and friction on its left face.
+chain = np.array([[2.0, -1, 0], [-1, 2, -1], [0, -1, 1]]) + np.diag([0.0, 1, 0])
+sector = hbvib.Model.sector(stiffness=chain, mass=np.diag([0.5, 1, 0.5]), sectors=8, engine_order=2, left=[0], right=[2],
+                            frame="cylindrical")
+sector.set_rayleigh(0, 0.01)
+sector.add_contact("jenkins", 1, kt=0.5, mu=0.3, preload=1)
+sector.add_force(1, 0.1 + 0.05j)
+response = sector.forced_response((0.8, 2.2), response_dof=1)
+out["sector"] = dict(
+    omega=response.omega.tolist(), amplitude=response.amplitude.tolist(),
+    modes=sector.linear_modes(2, diameter=2).omega.tolist(), motion=pairs(response.harmonics(response.peaks().point[0])))
+# A wheel by coupling matrices, with a sparse matrix and friction with varying normal load.
+wheel = hbvib.Model.cyclic(sectors=6, engine_order=1, mass=np.eye(2), stiffness=np.array([[3.0, -1], [-1, 2]]),
+                           coupling=dict(stiffness=np.array([[-0.5, 0], [0, 0]])), rayleigh=(0, 0.01))
+wheel.add_contact("friction_2d", [0, 1], kt=1, kn=2, mu=0.3, preload=0.2)
+wheel.add_force(0, 0.1)
+turned = wheel.forced_response((0.9, 2.0), harmonics=5)
+out["wheel"] = dict(omega=turned.omega.tolist(), amplitude=turned.amplitude.tolist())
+
+
+def bits(value):
+    """Numbers as the hexadecimal digits of their bits, which no reader rounds."""
+    if isinstance(value, dict):
+        return {name: bits(entry) for name, entry in value.items()}
+    if isinstance(value, list):
+        return [bits(entry) for entry in value]
+    return struct.pack(">d", value).hex()
+
+
+json.dump(bits(out), sys.stdout)
