@@ -149,7 +149,7 @@ def campbell_response(resonances: Sequence[tuple[Branch, Model, float]], acceler
     >>> mode = model.nonlinear_mode((-2, 0.8), harmonics=3)
     >>> found = hbvib.campbell_response([(mode, model, 2)], 5e-4)
     >>> found.speed.round(2), found.damping_ratio.round(3), found.factor.round(2)
-    (array([0.51]), array([0.036]), array([0.82]))
+    (array([0.51]), array([0.036]), array([0.8]))
     """
     rows: list[list[float]] = []
     for mode, model, order in resonances:
@@ -232,8 +232,8 @@ class _RunUps(_Owner):
         >>> model.add_force(0, 0.12)
         >>> mode = model.nonlinear_mode((-2, 0.8), harmonics=5)
         >>> flight = mode.mission(model, [0, 1e4], [0.8, 1.3], edges=[0.5, 1.0], stresses=[80], woehler=(100, 2e6, 5))
-        >>> flight.cycles.round(), flight.damage[0] > 0
-        (array([1423.,  171.,   77.]), True)
+        >>> flight.cycles.round(), bool(flight.damage[0] > 0)
+        (array([910., 501., 260.]), True)
         """
         times, speeds = _array("time", time, np.float64, [None]), _array("speed", speed, np.float64, [None])
         if times.size != speeds.size:

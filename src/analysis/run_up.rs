@@ -12,7 +12,7 @@ pub(super) mod slow_flow;
 mod slow_path;
 
 use crate::analysis::run_up::chirp::Chirp;
-use crate::analysis::run_up::mode_table::ModeTable;
+use crate::analysis::run_up::mode_table::{ModeTable, Place};
 use crate::analysis::run_up::other_modes::OtherModes;
 use crate::analysis::run_up::slider_memory::{Defect, SliderMemory};
 pub use crate::analysis::run_up::slow_flow::RunUpTurn;
@@ -112,7 +112,7 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
     let mut defect = Defect::default();
     let (mut path, mut seen) = flow.run(&defect, &SlowPath::default())?;
     let mut change = 0.0;
-    let mut without_memory = seen.largest;
+    let (mut without_memory, mut simple) = (seen.largest, SlowPath::default());
     for repeat in 0..RUN_UP_MOST_REPEATS {
         if repeat > 1 && !memory.is_empty() {
             defect = memory.along(&path, &chirp, interrupt)?;
@@ -120,6 +120,9 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
         let before = seen.largest;
         (path, seen) = flow.run(&defect, &path)?;
         change = (seen.largest - before).abs();
+        if repeat == 1 {
+            simple = path.try_clone()?;
+        }
         if repeat < 2 {
             without_memory = seen.largest;
         } else if change <= RUN_UP_REPEATED * seen.largest {
@@ -129,12 +132,22 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
     let highest = highest(&peaks);
     let steady = highest.map_or(f64::NAN, |peak| peak.at.response.norm());
     let of_steady = highest.map_or(f64::NAN, |peak| peak.validity.error.abs() * steady);
-    let of_memory = (seen.largest - without_memory).abs();
+    // What the memory changes in the last time that the flow remembers, phase and amplitude, and how quickly the amplitude changes in it.
+    let mut place = Place::default();
+    let amplitude = path.at(seen.largest_time).norm();
+    table.find(amplitude, &mut place)?;
+    let decay = table.oscillator(&place).decay().abs();
+    let last = (
+        seen.largest_time - 1.0 / decay.max(f64::MIN_POSITIVE),
+        seen.largest_time,
+    );
+    let growth = path.growth(last, |time| chirp.omega(time));
+    let of_memory = path.distance(&simple, last) / amplitude.max(f64::MIN_POSITIVE) * seen.largest;
     Ok(RunUp {
         largest_omega: chirp.omega(seen.largest_time),
         largest: seen.largest,
         largest_time: seen.largest_time,
-        error: (change + of_steady + seen.beside + of_memory * (AVERAGED * seen.growth).min(1.0)) / seen.largest,
+        error: (change + of_steady + seen.beside + of_memory * (AVERAGED * growth).min(1.0)) / seen.largest,
         without_memory,
         steady,
         turns: seen.turns,

@@ -312,8 +312,8 @@ pub unsafe extern "C" fn hbvib_mission_options_init(o: *mut hbvib_mission_option
 ///               steady one (NaN if unknown), and the cycles with at least 1/sqrt(2) of the largest
 ///               amplitude: six numbers each; or NULL.
 /// count         receives the number of passages, also when `capacity` is too small; or NULL.
-/// error         receives the amplitude of the highest steady resonance of the mode over that of the
-///               computed one, minus 1; NaN if unknown; or NULL.
+/// error         receives the amplitude of the highest steady resonance of the mode over that of
+///               the computed one, minus 1; NaN if unknown; or NULL.
 /// Errors: HBVIB_E_ARGUMENT (options; the amplitude leaves those of the mode), HBVIB_E_INDEX (dof),
 /// HBVIB_E_UNSUPPORTED (an unbalance), HBVIB_E_DIMENSION (lengths, capacity), those of
 /// hbvib_branch_synthesis. HBVIB_STOPPED_BY_CALLER: nothing is written. Threads: any number on one

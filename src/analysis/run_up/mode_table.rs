@@ -25,7 +25,7 @@ const MODE_TABLE_HALVINGS: usize = 6;
 
 /// The mode as an oscillator at one amplitude: q″ + c q′ + (ω₀² + i·loss + ic(W − ω₀)) q = force.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::analysis) struct Oscillator {
+pub(crate) struct Oscillator {
     /// ω₀²
     pub square: f64,
     /// Loss factor times stiffness of what does not follow the frequency: 2Dω₀² − cω₀ of friction.
@@ -49,7 +49,7 @@ impl Oscillator {
 }
 
 /// A mode over the logarithm of its modal amplitude.
-pub(in crate::analysis) struct ModeTable {
+pub(crate) struct ModeTable {
     /// Harmonics with the mean.
     pub harmonics: usize,
     /// Relative motions of contacts that are kept.
@@ -58,7 +58,7 @@ pub(in crate::analysis) struct ModeTable {
     ln: Vec<f64>,
     numbers: Vec<[f64; NUMBERS]>,
     slopes: Vec<[f64; NUMBERS]>,
-    /// Of each node: observed displacement, then the rows, `harmonics` coefficients each; all but the mean over a.
+    /// Motions of each node: observed displacement, then the rows, `harmonics` coefficients each; all but the mean over a.
     motions: Vec<Complex64>,
     /// Whether the first node lies in the linear range.
     is_linear_below: bool,
@@ -66,7 +66,7 @@ pub(in crate::analysis) struct ModeTable {
 
 /// Where an amplitude lies: the node below it, and the share of the next one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::analysis) struct Place {
+pub(crate) struct Place {
     node: usize,
     share: f64,
     /// Modal amplitude.

@@ -26,7 +26,7 @@ struct Other {
 }
 
 /// The other modes: motions of what is observed and of contacts, as in the table of a mode.
-pub(in crate::analysis) struct OtherModes {
+pub(crate) struct OtherModes {
     modes: Vec<Other>,
     motions: usize,
     /// `motions` for each mode.

@@ -55,8 +55,6 @@ pub(super) struct Observed {
     pub largest_time: f64,
     /// Displacement of the other modes then that is of the first order in the rate.
     pub beside: f64,
-    /// |q′|/(W|q|) before it, the largest within the last turn.
-    pub growth: f64,
 }
 
 /// The slow flow of a mode.
@@ -93,7 +91,7 @@ impl SlowFlow<'_> {
         let mut watch = Watch::new(self.table);
         let mut slope = self.slope(0.0, chirp.rate(0.0), q, &mut known)?;
         path.push(0.0, [q, slope])?;
-        watch.add(self, 0.0, &[q, slope], &mut seen)?;
+        watch.add(self, 0.0, q, &mut seen)?;
         let whole = chirp.turns().ceil() as usize + SLOW_FLOW_BEHIND;
         let (mut time, end) = (0.0, chirp.duration());
         for turn in 0..whole {
@@ -120,8 +118,8 @@ impl SlowFlow<'_> {
                     if stop <= end {
                         for look in 1..=SLOW_FLOW_LOOKS {
                             let s = look as f64 / SLOW_FLOW_LOOKS as f64;
-                            let inside = [cubic(s, length, &begin, &[q, slope]), begin[1] * (1.0 - s) + slope * s];
-                            watch.add(self, time + s * length, &inside, &mut seen)?;
+                            let inside = cubic(s, length, &begin, &[q, slope]);
+                            watch.add(self, time + s * length, inside, &mut seen)?;
                         }
                     }
                     time = stop;
@@ -157,7 +155,7 @@ impl SlowFlow<'_> {
 }
 
 /// The root of p² + 2h p + Z = 0 next to zero, from 2h.
-pub(in crate::analysis) fn slow_root(damping: Complex64, stiffness: Complex64) -> Complex64 {
+pub(crate) fn slow_root(damping: Complex64, stiffness: Complex64) -> Complex64 {
     let half = damping * 0.5;
     let mut root = (half * half - stiffness).sqrt();
     if (half.conj() * root).re < 0.0 {
@@ -177,7 +175,7 @@ struct Known<'a> {
 ///
 /// # Errors
 /// `Argument` where the mode has no such amplitude.
-pub(in crate::analysis) fn steady(table: &ModeTable, omega: f64) -> Result<Complex64> {
+pub(crate) fn steady(table: &ModeTable, omega: f64) -> Result<Complex64> {
     let mut place = Place::default();
     let mut excess = |amplitude: f64| -> Result<(f64, Oscillator)> {
         table.find(amplitude, &mut place)?;
@@ -230,7 +228,6 @@ struct Watch<'a> {
     /// Time, displacement of the last two samples.
     last: [(f64, f64); 2],
     samples: usize,
-    growths: [f64; SLOW_FLOW_STEPS * SLOW_FLOW_LOOKS],
 }
 
 impl<'a> Watch<'a> {
@@ -241,11 +238,10 @@ impl<'a> Watch<'a> {
             powers: Vec::new(),
             last: [(0.0, 0.0); 2],
             samples: 0,
-            growths: [0.0; SLOW_FLOW_STEPS * SLOW_FLOW_LOOKS],
         }
     }
 
-    fn add(&mut self, flow: &SlowFlow<'_>, time: f64, [q, speed]: &[Complex64; 2], seen: &mut Observed) -> Result<()> {
+    fn add(&mut self, flow: &SlowFlow<'_>, time: f64, q: Complex64, seen: &mut Observed) -> Result<()> {
         let amplitude = q.norm();
         self.table.find(amplitude.max(f64::MIN_POSITIVE), &mut self.place)?;
         if self.powers.is_empty() {
@@ -271,8 +267,6 @@ impl<'a> Watch<'a> {
             };
             try_push(&mut seen.turns, turn, CONTEXT)?;
         }
-        let slot = self.samples % self.growths.len();
-        self.growths[slot] = speed.norm() / (omega * amplitude).max(f64::MIN_POSITIVE);
         // The vertex of the parabola through three samples, where the middle one is the largest.
         let [(t0, x0), (t1, x1)] = self.last;
         let mut largest = (time, x.abs());
@@ -293,7 +287,6 @@ impl<'a> Watch<'a> {
         if largest.1 > seen.largest {
             (seen.largest_time, seen.largest) = largest;
             seen.beside = beside.1.norm();
-            seen.growth = self.growths.iter().fold(0.0, |most, g| most.max(*g));
         }
         self.last = [(t1, x1), (time, x)];
         self.samples += 1;

@@ -1,6 +1,6 @@
 //! The complex modal amplitude over the time of a run-up.
 
-use crate::error::{Result, try_push};
+use crate::error::{Result, try_copy, try_push};
 use num_complex::Complex64;
 
 /// Values and rates at times that rise, cubic between them, steady before the first one.
@@ -18,6 +18,33 @@ impl SlowPath {
     pub fn push(&mut self, time: f64, state: [Complex64; 2]) -> Result<()> {
         try_push(&mut self.times, time, "the slow flow")?;
         try_push(&mut self.states, state, "the slow flow")
+    }
+
+    /// A copy.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            times: try_copy(&self.times, "the slow flow")?,
+            states: try_copy(&self.states, "the slow flow")?,
+        })
+    }
+
+    /// Largest |q′|/(W|q|) between two times, with W over the time.
+    pub fn growth(&self, (from, to): (f64, f64), omega: impl Fn(f64) -> f64) -> f64 {
+        let inside = |(t, _): &(&f64, &[Complex64; 2])| (from..=to).contains(*t);
+        let points = self.times.iter().zip(&self.states).filter(inside);
+        points.fold(0.0, |most: f64, (&t, [q, rate])| {
+            most.max(rate.norm() / (omega(t) * q.norm()).max(f64::MIN_POSITIVE))
+        })
+    }
+
+    /// Largest distance of another path from this one between two times.
+    pub fn distance(&self, other: &Self, (from, to): (f64, f64)) -> f64 {
+        let inside = |(t, _): &(&f64, &[Complex64; 2])| (from..=to).contains(*t);
+        let points = self.times.iter().zip(&self.states).filter(inside);
+        points.fold(0.0, |most: f64, (&t, [q, _])| most.max((q - other.at(t)).norm()))
     }
 
     /// The amplitude at a time.

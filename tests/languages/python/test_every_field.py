@@ -351,7 +351,7 @@ def run_through(**o):
 
 def flown(**o):
     given = dict(times=np.array([0.0, 1e3, 2e3]), speeds=np.array([0.8, 1.3, 1.1]), points_len=3, edges=np.array([0.5, 0.8]), edges_len=2,
-                 stresses=np.array([80.0, 40.0]), stresses_len=2, woehler_stress=50.0, woehler_cycles=1e6, woehler_slope=5.0)
+                 stresses=np.array([80.0, 70.0]), stresses_len=2, woehler_stress=50.0, woehler_cycles=1e6, woehler_slope=5.0)
     options, amplitude, cycles, damage = new("hbvib_mission_options", **{**given, **o}), np.zeros(3), np.zeros(3), np.zeros(2)
     call("hbvib_branch_mission", mode_of_moded.handle, moded.handle, options, None, amplitude, cycles, damage, 0, None, None, None)
     return bits(*amplitude, *cycles, *damage)
