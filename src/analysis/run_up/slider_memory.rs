@@ -171,7 +171,7 @@ impl<'a> SliderMemory<'a> {
         for (s, &(law, motion, count)) in self.sliders.iter().enumerate() {
             let start = law.slider().map_or(0.0, |slider| slider.start());
             let mut stretch = [0.0; PASSED];
-            let mut before = [0.0; PASSED];
+            let mut before = [REST; PASSED];
             let mut other = [Complex64::ZERO; 2];
             for (k, other) in other.iter_mut().enumerate().take(count) {
                 *other = self.others.motion(motion + k, omega, rate).0;
@@ -197,8 +197,20 @@ impl<'a> SliderMemory<'a> {
                             at.rate[k] -= omega * turned.im;
                         }
                     }
-                    stretch[which] += at.motion[0] - if j == 0 { start } else { before[which] };
-                    before[which] = at.motion[0];
+                    if j == 0 {
+                        stretch[which] = at.motion[0] - start;
+                    } else {
+                        let last = before[which];
+                        // A turning point between two times is passed, too.
+                        if let Some(turn) = turning_point(&last, &at, TAU / (n as f64 * omega)) {
+                            stretch[which] += turn.motion[0] - last.motion[0];
+                            law.begin(&turn, &mut stretch[which]);
+                            stretch[which] += at.motion[0] - turn.motion[0];
+                        } else {
+                            stretch[which] += at.motion[0] - last.motion[0];
+                        }
+                    }
+                    before[which] = at;
                     let (mode, _) = law.begin(&at, &mut stretch[which]);
                     forces[which] = law.piece(mode, at.motion, stretch[which]).force;
                 }
@@ -220,4 +232,28 @@ impl<'a> SliderMemory<'a> {
             }
         }
     }
+}
+
+/// No motion.
+const REST: Instant = Instant {
+    motion: [0.0; 2],
+    rate: [0.0; 2],
+};
+
+/// Where the first motion turns between two times, by the cubics through motions and rates.
+fn turning_point(a: &Instant, b: &Instant, length: f64) -> Option<Instant> {
+    if (a.rate[0] < 0.0) == (b.rate[0] < 0.0) {
+        return None;
+    }
+    let s = a.rate[0] / (a.rate[0] - b.rate[0]);
+    let r = 1.0 - s;
+    let cubic = |k: usize| {
+        a.motion[k] * (r * r * (1.0 + 2.0 * s))
+            + b.motion[k] * (s * s * (3.0 - 2.0 * s))
+            + length * (a.rate[k] * (s * r * r) - b.rate[k] * (s * s * r))
+    };
+    Some(Instant {
+        motion: [cubic(0), cubic(1)],
+        rate: [0.0, a.rate[1] * r + b.rate[1] * s],
+    })
 }

@@ -164,7 +164,7 @@ pub(crate) fn slow_root(damping: Complex64, stiffness: Complex64) -> Complex64 {
     -stiffness / (half + root)
 }
 
-/// What a solution takes from the one before.
+/// Defect and path of the solution before.
 struct Known<'a> {
     defect: &'a Defect,
     before: &'a SlowPath,
