@@ -1,4 +1,4 @@
-//! What sliders remember of amplitudes before: the force of contacts in a vibration whose amplitude changes, minus that of a steady one of
+//! Memory of sliders for amplitudes before: the force of contacts in a vibration whose amplitude changes, minus that of a steady one of
 //! the same amplitude.
 //!
 //! The motion of a slow flow is passed through the sliders for a turn, which lets them forget how they began, and a further one around the
