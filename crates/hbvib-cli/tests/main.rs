@@ -19,7 +19,6 @@ mod model_reports;
 mod motion_outputs;
 mod mutations;
 mod node_lists;
-mod passages;
 mod plots;
 mod prestressed_models;
 mod projected_faces;
