@@ -421,6 +421,35 @@ module hbvib
       integer(c_int64_t) :: events = 0
    end type hbvib_sweep_info
 
+   !> Options of hbvib_branch_run_up.
+   type, bind(c) :: hbvib_run_up_options
+      integer(c_int32_t) :: struct_size = 56, model_damping = 0
+      real(c_double) :: omega_start = 0, omega_stop = 0, rate = 0
+      integer(c_int64_t) :: dof = -1
+      real(c_double) :: force_factor = 1, damping_ratio = 0
+   end type hbvib_run_up_options
+
+   !> Numbers of a run-up.
+   type, bind(c) :: hbvib_run_up_info
+      integer(c_int32_t) :: struct_size = 56, reserved = 0
+      real(c_double) :: largest = 0, largest_omega = 0, largest_time = 0, error = 0, without_memory = 0, steady = 0
+   end type hbvib_run_up_info
+
+   !> A mission of hbvib_branch_mission.
+   type, bind(c) :: hbvib_mission_options
+      integer(c_int32_t) :: struct_size = 128, model_damping = 0
+      type(c_ptr) :: times = c_null_ptr, speeds = c_null_ptr
+      integer(c_int64_t) :: points_len = 0
+      real(c_double) :: engine_order = 1
+      integer(c_int64_t) :: dof = -1
+      type(c_ptr) :: edges = c_null_ptr
+      integer(c_int64_t) :: edges_len = 0
+      type(c_ptr) :: stresses = c_null_ptr
+      integer(c_int64_t) :: stresses_len = 0
+      real(c_double) :: woehler_stress = 0, woehler_cycles = 0, woehler_slope = 0, woehler_slope_below = 0, force_factor = 1, &
+         damping_ratio = 0
+   end type hbvib_mission_options
+
    !> Options of hbvib_verify.
    type, bind(c) :: hbvib_verify_options
       integer(c_int32_t) :: struct_size = 32, method = 0
@@ -1737,6 +1766,54 @@ module hbvib
          type(hbvib_sweep_info), intent(inout), optional :: info
          integer(c_int32_t) :: status
       end function hbvib_time_sweep
+
+      function hbvib_run_up_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_run_up_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_run_up_options_init
+
+      function hbvib_run_up_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_run_up_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_run_up_info_init
+
+      function hbvib_branch_run_up(branch, model, options, hooks, capacity, time, omega, amplitude, modal_amplitude, count, &
+         info) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch, model
+         type(hbvib_run_up_options), intent(in) :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: time(*), omega(*), amplitude(*), modal_amplitude(*)
+         integer(c_int64_t), intent(inout), optional :: count
+         type(hbvib_run_up_info), intent(inout), optional :: info
+         integer(c_int32_t) :: status
+      end function hbvib_branch_run_up
+
+      function hbvib_mission_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_mission_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_mission_options_init
+
+      function hbvib_branch_mission(branch, model, options, hooks, amplitude, cycles, damage, capacity, crossing, count, &
+         error) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch, model
+         type(hbvib_mission_options), intent(in) :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         real(c_double), intent(inout), optional :: amplitude(*), cycles(*), damage(*)
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: crossing(*)
+         integer(c_int64_t), intent(inout), optional :: count
+         real(c_double), intent(inout), optional :: error(*)
+         integer(c_int32_t) :: status
+      end function hbvib_branch_mission
 
       function hbvib_verify_options_init(o, size_of_o) bind(c) result(status)
          import

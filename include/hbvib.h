@@ -3525,6 +3525,183 @@ hbvib_status hbvib_time_sweep(const hbvib_model *model,
                               int64_t *count,
                               hbvib_sweep_info *info);
 
+/// Options of hbvib_branch_run_up. Fill it by hbvib_run_up_options_init, then set frequencies and
+/// rate.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// As of hbvib_synthesis_options; default 0.
+  int32_t model_damping;
+  /// First angular frequency of the forces, > 0, rad per time unit.
+  double omega_start;
+  /// Last one, > 0; below the first for a run-down.
+  double omega_stop;
+  /// Change of the angular frequency per time, > 0 in both senses.
+  double rate;
+  /// Degree of freedom whose displacement is observed; default -1: that of the mode.
+  int64_t dof;
+  /// Factor on all forces of the model, > 0; default 1.
+  double force_factor;
+  /// Damping ratio that is added to the mode's; default 0.
+  double damping_ratio;
+} hbvib_run_up_options;
+
+/// Fills the options of a run-up: the degree of freedom of the mode, forces and damping as they
+/// are.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_run_up_options_init(hbvib_run_up_options *o, size_t size_of_o);
+
+/// Numbers of a run-up. Fill it by hbvib_run_up_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Largest displacement.
+  double largest;
+  /// Angular frequency of the forces then.
+  double largest_omega;
+  /// That time, from the begin of the run-up.
+  double largest_time;
+  /// Estimated relative error of the largest displacement; NaN where no steady resonance of the
+  /// mode under these forces was found to compare with.
+  double error;
+  /// The largest displacement without the memory of sliders.
+  double without_memory;
+  /// Amplitude of the highest steady resonance at the degree of freedom, in the fundamental; NaN
+  /// without one.
+  double steady;
+} hbvib_run_up_info;
+
+/// Fills the numbers of a run-up with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_run_up_info_init(hbvib_run_up_info *i, size_t size_of_i);
+
+/// The amplitude while the frequency of the forces changes at a constant rate, from the steady
+/// motion at the first frequency on, by the slow flow of a nonlinear mode with the memory of
+/// sliders. hbvib_time_sweep integrates the same motion in time.
+///
+/// branch           a nonlinear mode.
+/// model            a plain model as for hbvib_branch_synthesis; forces in other harmonics have no
+///                  effect.
+/// options          frequencies and rate.
+/// hooks            phase and cancellation; NULL: none.
+/// capacity         numbers that fit into each array.
+/// time             receives the time at the begin of each turn of the forces, or NULL.
+/// omega            receives the angular frequency there, or NULL.
+/// amplitude        receives the largest displacement in each turn, or NULL.
+/// modal_amplitude  receives the modal amplitude at its begin, or NULL.
+/// count            receives the number of turns, also when `capacity` is too small; or NULL.
+/// info             receives the numbers; fill it by hbvib_run_up_info_init before; or NULL.
+/// Errors: HBVIB_E_ARGUMENT (options; the amplitude leaves those of the mode), HBVIB_E_INDEX (dof),
+/// HBVIB_E_UNSUPPORTED (a cyclic model, an unbalance, a law that is not integrated in time),
+/// HBVIB_E_DIMENSION (capacity), those of hbvib_branch_synthesis. HBVIB_STOPPED_BY_CALLER: nothing
+/// is written. Threads: any number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_run_up(const hbvib_branch *branch,
+                                 const hbvib_model *model,
+                                 const hbvib_run_up_options *options,
+                                 const hbvib_hooks *hooks,
+                                 int64_t capacity,
+                                 double *time,
+                                 double *omega,
+                                 double *amplitude,
+                                 double *modal_amplitude,
+                                 int64_t *count,
+                                 hbvib_run_up_info *info);
+
+/// A mission of hbvib_branch_mission. Fill it by hbvib_mission_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// As of hbvib_synthesis_options; default 0.
+  int32_t model_damping;
+  /// Rising times, points_len numbers.
+  const double *times;
+  /// Speeds of rotation at the times, > 0, points_len numbers; straight between them.
+  const double *speeds;
+  /// Number of times, >= 2.
+  int64_t points_len;
+  /// Angular frequency of the forces over the speed, > 0; default 1.
+  double engine_order;
+  /// Degree of freedom whose amplitude is read; default -1: that of the mode.
+  int64_t dof;
+  /// Rising amplitudes between which cycles are counted, edges_len numbers; or NULL.
+  const double *edges;
+  /// Number of edges.
+  int64_t edges_len;
+  /// Stress amplitude per modal amplitude of each place, >= 0, stresses_len numbers; or NULL.
+  const double *stresses;
+  /// Number of stresses.
+  int64_t stresses_len;
+  /// Stress amplitude of the knee of the Woehler line, > 0; needed with stresses.
+  double woehler_stress;
+  /// Cycles to failure at the knee, > 0.
+  double woehler_cycles;
+  /// Slope k above the knee, N ~ stress^-k, > 0.
+  double woehler_slope;
+  /// Slope below the knee; default 0: stresses below do no damage.
+  double woehler_slope_below;
+  /// Factor on all forces of the model, > 0; default 1.
+  double force_factor;
+  /// Damping ratio that is added to the mode's; default 0.
+  double damping_ratio;
+} hbvib_mission_options;
+
+/// Fills the options of a mission: no point, engine order 1.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_mission_options_init(hbvib_mission_options *o, size_t size_of_o);
+
+/// One resonance over a mission, speed against time, by the slow flow of its nonlinear mode without
+/// the memory of sliders: amplitudes, cycles of each amplitude, and the sum of Miner. Several
+/// resonances are as many calls, whose sums add.
+///
+/// branch        a nonlinear mode.
+/// model         as for hbvib_branch_synthesis; its own speed has no effect.
+/// options       the mission.
+/// hooks         phase and cancellation; NULL: none.
+/// amplitude     receives the amplitude at each time, in the fundamental, points_len numbers; or
+///               NULL.
+/// cycles        receives the cycles below the first edge, between edges, and above the last one,
+///               edges_len + 1 numbers; or NULL.
+/// damage        receives the sum of Miner of each stress, stresses_len numbers; or NULL.
+/// capacity      passages that fit into the arrays that follow.
+/// crossing      receives for each passage through the resonance the time of its largest amplitude,
+///               the angular frequency, its change per time, and the largest amplitude, then the
+///               steady one (NaN if unknown), and the cycles with at least 1/sqrt(2) of the largest
+///               amplitude: six numbers each; or NULL.
+/// count         receives the number of passages, also when `capacity` is too small; or NULL.
+/// error         receives the amplitude of the highest steady resonance of the mode over that of
+///               the computed one, minus 1; NaN if unknown; or NULL.
+/// Errors: HBVIB_E_ARGUMENT (options; the amplitude leaves those of the mode), HBVIB_E_INDEX (dof),
+/// HBVIB_E_UNSUPPORTED (an unbalance), HBVIB_E_DIMENSION (lengths, capacity), those of
+/// hbvib_branch_synthesis. HBVIB_STOPPED_BY_CALLER: nothing is written. Threads: any number on one
+/// model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_mission(const hbvib_branch *branch,
+                                  const hbvib_model *model,
+                                  const hbvib_mission_options *options,
+                                  const hbvib_hooks *hooks,
+                                  double *amplitude,
+                                  double *cycles,
+                                  double *damage,
+                                  int64_t capacity,
+                                  double *crossing,
+                                  int64_t *count,
+                                  double *error);
+
 /// Options of hbvib_verify. Fill it by hbvib_verify_options_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.

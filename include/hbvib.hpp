@@ -397,6 +397,8 @@ struct Filled : Struct {
 
 using SolverOptions = Filled<hbvib_solver_options, hbvib_solver_options_init>;
 using SynthesisOptions = Filled<hbvib_synthesis_options, hbvib_synthesis_options_init>;
+using RunUpOptions = Filled<hbvib_run_up_options, hbvib_run_up_options_init>;
+using MissionOptions = Filled<hbvib_mission_options, hbvib_mission_options_init>;
 using Reduction = Filled<hbvib_reduction, hbvib_reduction_init>;
 using Energy = Filled<hbvib_energy, hbvib_energy_init>;
 using ContactSummary = Filled<hbvib_contact_summary, hbvib_contact_summary_init>;
@@ -848,6 +850,25 @@ struct SynthesisPeak {
   double omega, amplitude, log10_amplitude, damping_ratio, other_mode, error;
   std::int32_t flags;
 };
+/// A run-up by the slow flow of a mode, turn by turn; the numbers are those of the largest displacement.
+struct RunUp {
+  std::vector<double> time, omega, amplitude, modal_amplitude;
+  double largest, largest_omega, largest_time;
+  double error;           ///< Estimated relative error of the largest displacement, NaN if unknown.
+  double without_memory;  ///< The largest displacement without the memory of sliders.
+  double steady;          ///< Amplitude of the highest steady resonance, NaN without one.
+  double factor() const { return largest / steady; }
+};
+/// A passage of a mission through a resonance: its largest amplitude and the steady one, the cycles with at least 1/sqrt(2) of it.
+struct Passage {
+  double time, omega, rate, amplitude, steady, cycles;
+};
+/// A resonance over a mission.
+struct Mission {
+  std::vector<double> amplitude, cycles, damage;
+  std::vector<Passage> passages;
+  double error;
+};
 /// Damped natural modes.
 struct DampedModes {
   std::vector<Complex> eigenvalue;  ///< In the upper half plane, by rising imaginary part.
@@ -1153,6 +1174,10 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   /// Its resonances.
   std::vector<SynthesisPeak> synthesis_peaks(const Model& model, const SynthesisOptions& options = SynthesisOptions(),
                       const Hooks& hooks = {}) const;
+  /// A run-up through the resonance of this nonlinear mode.
+  RunUp run_up(const Model& model, const RunUpOptions& options, const Hooks& hooks = {}) const;
+  /// This nonlinear mode over a mission.
+  Mission mission(const Model& model, const MissionOptions& options, const Hooks& hooks = {}) const;
 
  private:
   friend class Model;
@@ -1751,6 +1776,46 @@ inline std::vector<SynthesisPeak> Branch::synthesis_peaks(const Model& model, co
   for (std::size_t i = 0; i < n; i++)
     all.push_back({omega[i], amplitude[i], log10_amplitude[i], damping_ratio[i], other_mode[i], error[i], flags[i]});
   return all;
+}
+
+inline RunUp Branch::run_up(const Model& model, const RunUpOptions& options, const Hooks& hooks) const {
+  const auto keep = model.core_;
+  const double square = options.omega_stop * options.omega_stop - options.omega_start * options.omega_start;
+  // Turns of the phase; rates that are refused have none.
+  const double turns = options.rate > 0 ? std::abs(square) / (12.566370614359172 * options.rate) : 0;
+  Index count = turns < 2e5 ? static_cast<Index>(turns) + 2 : 2;
+  const std::size_t n = detail::extent(count);
+  RunUp up{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), 0, 0, 0, 0, 0, 0};
+  Filled<hbvib_run_up_info, hbvib_run_up_info_init> info;
+  const detail::BoundHooks bound(hooks);
+  detail::Call call;
+  call.done_whole(hbvib_branch_run_up(get(), model.get(), &options, &bound, count, up.time.data(), up.omega.data(), up.amplitude.data(),
+                                      up.modal_amplitude.data(), &count, &info));
+  for (auto* list : {&up.time, &up.omega, &up.amplitude, &up.modal_amplitude}) list->resize(detail::extent(count));
+  up.largest = info.largest;
+  up.largest_omega = info.largest_omega;
+  up.largest_time = info.largest_time;
+  up.error = info.error;
+  up.without_memory = info.without_memory;
+  up.steady = info.steady;
+  return up;
+}
+
+inline Mission Branch::mission(const Model& model, const MissionOptions& options, const Hooks& hooks) const {
+  const auto keep = model.core_;
+  const auto room = [](Index n) { return std::vector<double>(n > 0 ? static_cast<std::size_t>(n) : 0); };
+  Mission found{room(options.points_len), room(options.edges_len + 1), room(options.stresses_len), {}, 0};
+  Index count = 2 * options.points_len + 16;
+  std::vector<double> rows = room(6 * count);
+  const detail::BoundHooks bound(hooks);
+  detail::Call call;
+  call.done_whole(hbvib_branch_mission(get(), model.get(), &options, &bound, found.amplitude.data(), found.cycles.data(), found.damage.data(),
+                                       count, rows.data(), &count, &found.error));
+  for (std::size_t i = 0; i < detail::extent(count); i++) {
+    const double* row = rows.data() + 6 * i;
+    found.passages.push_back({row[0], row[1], row[2], row[3], row[4], row[5]});
+  }
+  return found;
 }
 
 /// Force of one contact law on d prescribed motions of harmonics 0 .. H, one motion after the other.

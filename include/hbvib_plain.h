@@ -353,6 +353,9 @@ typedef struct hbvib_time_options hbvib_time_options;
 typedef struct hbvib_time_info hbvib_time_info;
 typedef struct hbvib_sweep_options hbvib_sweep_options;
 typedef struct hbvib_sweep_info hbvib_sweep_info;
+typedef struct hbvib_run_up_options hbvib_run_up_options;
+typedef struct hbvib_run_up_info hbvib_run_up_info;
+typedef struct hbvib_mission_options hbvib_mission_options;
 typedef struct hbvib_verify_options hbvib_verify_options;
 typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
@@ -748,6 +751,45 @@ struct hbvib_sweep_info {
   double largest_time;
   int64_t events;
 };
+struct hbvib_run_up_options {
+  uint32_t struct_size;
+  int32_t model_damping;
+  double omega_start;
+  double omega_stop;
+  double rate;
+  int64_t dof;
+  double force_factor;
+  double damping_ratio;
+};
+struct hbvib_run_up_info {
+  uint32_t struct_size;
+  int32_t reserved;
+  double largest;
+  double largest_omega;
+  double largest_time;
+  double error;
+  double without_memory;
+  double steady;
+};
+struct hbvib_mission_options {
+  uint32_t struct_size;
+  int32_t model_damping;
+  const double *times;
+  const double *speeds;
+  int64_t points_len;
+  double engine_order;
+  int64_t dof;
+  const double *edges;
+  int64_t edges_len;
+  const double *stresses;
+  int64_t stresses_len;
+  double woehler_stress;
+  double woehler_cycles;
+  double woehler_slope;
+  double woehler_slope_below;
+  double force_factor;
+  double damping_ratio;
+};
 struct hbvib_verify_options {
   uint32_t struct_size;
   int32_t method;
@@ -1094,6 +1136,11 @@ hbvib_status hbvib_time_response(const hbvib_model *model, const hbvib_time_opti
 hbvib_status hbvib_sweep_options_init(hbvib_sweep_options *o, size_t size_of_o);
 hbvib_status hbvib_sweep_info_init(hbvib_sweep_info *i, size_t size_of_i);
 hbvib_status hbvib_time_sweep(const hbvib_model *model, const hbvib_sweep_options *options, const hbvib_hooks *hooks, int64_t capacity, double *time, double *omega, double *amplitude, int64_t *count, hbvib_sweep_info *info);
+hbvib_status hbvib_run_up_options_init(hbvib_run_up_options *o, size_t size_of_o);
+hbvib_status hbvib_run_up_info_init(hbvib_run_up_info *i, size_t size_of_i);
+hbvib_status hbvib_branch_run_up(const hbvib_branch *branch, const hbvib_model *model, const hbvib_run_up_options *options, const hbvib_hooks *hooks, int64_t capacity, double *time, double *omega, double *amplitude, double *modal_amplitude, int64_t *count, hbvib_run_up_info *info);
+hbvib_status hbvib_mission_options_init(hbvib_mission_options *o, size_t size_of_o);
+hbvib_status hbvib_branch_mission(const hbvib_branch *branch, const hbvib_model *model, const hbvib_mission_options *options, const hbvib_hooks *hooks, double *amplitude, double *cycles, double *damage, int64_t capacity, double *crossing, int64_t *count, double *error);
 hbvib_status hbvib_verify_options_init(hbvib_verify_options *o, size_t size_of_o);
 hbvib_status hbvib_verification_init(hbvib_verification *v, size_t size_of_v);
 hbvib_status hbvib_verify(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_verify_options *options, const hbvib_hooks *hooks, double *harmonics, int64_t harmonics_len, double *errors, int64_t errors_len, hbvib_verification *out);

@@ -134,6 +134,7 @@ pub use analysis::interference::{Interference, interference};
 pub use analysis::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
 pub use analysis::life_load::{BestLoad, best_load_for_life};
 pub use analysis::linear_contacts::LinearContacts;
+pub use analysis::mission::{Mission, MissionCrossing, mission};
 pub use analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::parameter_range::{Follow, ParameterRange};
@@ -141,6 +142,7 @@ pub use analysis::parameter_response::parameter_response;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::response_of_motion::response_of;
 pub use analysis::run_through::sweep;
+pub use analysis::run_up::{RunUp, RunUpTurn, run_up};
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::smallest_kick::{Kick, smallest_kick};
 pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
@@ -153,8 +155,8 @@ pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
     Amplitude, BatchOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions, LifeFollow, LifeOptions,
-    ModeChoice, ModeOptions, Response, SolverOptions, SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions,
-    VerifyOptions, Waves, Wear,
+    MissionOptions, ModeChoice, ModeOptions, Response, RunUpOptions, SolverOptions, SteadyMethod, SweepOptions,
+    SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
 };
 
 // Results.

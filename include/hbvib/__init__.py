@@ -54,6 +54,7 @@ from ._mode_band import ModeBand, ModeBandEnd
 from ._model import Model
 from ._results import *
 from ._responses import Response, WatchedResponse
+from ._run_up import CampbellResponse, Mission, RunUp, campbell_response
 from ._sensitivity import ComplexSensitivities, Parameter, Sensitivities
 from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
@@ -69,10 +70,10 @@ __all__ = [
     # objects
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
     "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
-    "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep",
+    "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep", "RunUp", "Mission", "CampbellResponse",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     # functions
-    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "decay_backbone",
+    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "decay_backbone", "campbell_response",
     "get_include",
     # the C interface
     "lib", "structs",

@@ -979,6 +979,12 @@ time_info: uint32 struct_size; int32 reserved; double period residual; int64 per
 sweep_options: uint32 struct_size; int32 reserved; double omega_start omega_stop rate; int64 dof; double tolerance;
     int64 max_periods; pointer start; int64 start_len
 sweep_info: uint32 struct_size; int32 reserved; double largest largest_omega largest_time; int64 events
+run_up_options: uint32 struct_size; int32 model_damping; double omega_start omega_stop rate; int64 dof; double
+    force_factor damping_ratio
+run_up_info: uint32 struct_size; int32 reserved; double largest largest_omega largest_time error without_memory steady
+mission_options: uint32 struct_size; int32 model_damping; pointer times speeds; int64 points_len; double engine_order;
+    int64 dof; pointer edges; int64 edges_len; pointer stresses; int64 stresses_len; double woehler_stress
+    woehler_cycles woehler_slope woehler_slope_below force_factor damping_ratio
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
     response_error motion_error above distance peak peak_error residual; int64 periods events worst_response; double
@@ -1152,6 +1158,11 @@ time_response: h time_options hooks p l p l time_info
 sweep_options_init: sweep_options z
 sweep_info_init: sweep_info z
 time_sweep: h sweep_options hooks l p p p p sweep_info
+run_up_options_init: run_up_options z
+run_up_info_init: run_up_info z
+branch_run_up: h h run_up_options hooks l p p p p p run_up_info
+mission_options_init: mission_options z
+branch_mission: h h mission_options hooks p p p l p p p
 verify_options_init: verify_options z
 verification_init: verification z
 verify: h h l verify_options hooks p l p l verification
@@ -1384,6 +1395,13 @@ if TYPE_CHECKING:
         def hbvib_sweep_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_time_sweep(self, model: Any, options: Any, hooks: Any, capacity: int, time: Any, omega: Any,
             amplitude: Any, count: Any, info: Any) -> int: ...
+        def hbvib_run_up_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_run_up_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_branch_run_up(self, branch: Any, model: Any, options: Any, hooks: Any, capacity: int, time: Any,
+            omega: Any, amplitude: Any, modal_amplitude: Any, count: Any, info: Any) -> int: ...
+        def hbvib_mission_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_branch_mission(self, branch: Any, model: Any, options: Any, hooks: Any, amplitude: Any, cycles: Any,
+            damage: Any, capacity: int, crossing: Any, count: Any, error: Any) -> int: ...
         def hbvib_verify_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_verification_init(self, v: Any, size_of_v: int) -> int: ...
         def hbvib_verify(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, harmonics: Any,

@@ -10,6 +10,7 @@ from ._results import Campbell, Interference
 
 if TYPE_CHECKING:
     from ._branch import Branch
+    from ._run_up import CampbellResponse
 
 
 def axes(count: int = 1) -> Any:
@@ -105,6 +106,27 @@ def campbell(diagram: Campbell, opposite: Optional[Campbell], orders: Sequence[i
     ax.plot(diagram.crossings.speed / unit, diagram.crossings.omega / unit, "o", color="0.2", markersize=4)
     ax.set(xlabel=name.replace("angular frequency omega", "speed Omega").replace("frequency", "speed"), ylabel=name,
            ylim=(0, top))
+    return ax
+
+
+def campbell_response(found: CampbellResponse, diagram: Optional[Campbell], ax: Any, hertz: bool) -> Any:
+    """See CampbellResponse.plot."""
+    unit = 2 * np.pi if hertz else 1.0
+    if diagram is not None:
+        ax = campbell(diagram, None, (), ax, hertz, {"color": "0.5", "linewidth": 1})
+    ax = axes() if ax is None else ax
+    fastest = 1.2 * np.nanmax(found.speed, initial=0.0) / unit
+    for order in np.unique(found.engine_order):
+        ax.plot([0, fastest], [0, order * fastest], "--", color="0.6", linewidth=1)
+        ax.annotate(f"EO {order:g}", (fastest, order * fastest), ha="right")
+    size = 30 + 3000 * np.nan_to_num(found.damping_ratio)
+    points = ax.scatter(found.speed / unit, found.omega / unit, c=found.amplitude, s=size, cmap="viridis", zorder=3)
+    ax.figure.colorbar(points, ax=ax, label="peak amplitude")
+    for speed, omega, damping, factor in zip(found.speed / unit, found.omega / unit, found.damping_ratio, found.factor):
+        if np.isfinite(omega):
+            text = f"D {100 * damping:.2g} %" + (f", run-up {factor:.2f}" if np.isfinite(factor) else "")
+            ax.annotate(text, (speed, omega), textcoords="offset points", xytext=(8, -10), fontsize=8)
+    ax.set(xlabel="speed / Hz" if hertz else "speed Omega", ylabel="frequency / Hz" if hertz else "angular frequency omega")
     return ax
 
 

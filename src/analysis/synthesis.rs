@@ -17,8 +17,8 @@ mod resonance;
 
 pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, ModeMotion, Motions};
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
-use crate::analysis::synthesis::oscillator::{Load, State};
-use crate::analysis::synthesis::resonance::Refinement;
+pub(super) use crate::analysis::synthesis::oscillator::{Load, State, form};
+pub(super) use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse::Csc;
@@ -135,41 +135,15 @@ pub(super) fn with_motions(
     mut motions: Option<&mut Motions>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Synthesis> {
-    options.check()?;
-    let Some(data) = branch.mode_data() else {
-        return fail!(
-            Unsupported,
-            "the branch is a forced response; responses are synthesised from a nonlinear mode"
-        );
-    };
-    branch.check_one_model()?;
-    check_model(branch, data, model)?;
     let ndof = model.structure().ndof();
-    let mut force = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
-    model.add_forces_to(1, options.force_factor, &mut force);
-    let mut unbalance = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
-    model.add_unbalance_to(1, options.force_factor, &mut unbalance);
-    if force.iter().chain(&unbalance).all(|f| *f == Complex64::ZERO) {
-        return fail!(Argument, "the model has no force in the fundamental");
-    }
-    if branch.points() == 0 {
+    let Some(load) = load_of(branch, model, options)? else {
         return Ok(Synthesis {
             points: Vec::new(),
             peaks: Vec::new(),
         });
-    }
-    let of_model = |kind| {
-        let matrix = || model.structure().wave_matrix(kind, 1);
-        options.model_damping.then(matrix).transpose()
     };
-    let fundamental = branch.condensed_at(0);
-    let load = Load {
-        force,
-        unbalance,
-        damping: of_model(MatrixKind::Damping)?,
-        structural: of_model(MatrixKind::Structural)?,
-        ratio: options.damping_ratio,
-        response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof())?,
+    let Some(data) = branch.mode_data() else {
+        return fail!(Internal, "a mode without its data");
     };
     let mut states = Vec::new();
     let mut recovery = Recovery::at(branch, 0, interrupt)?;
@@ -233,6 +207,46 @@ pub(super) fn with_motions(
             .sort_by(|a, b| a.log10_amplitude.total_cmp(&b.log10_amplitude));
     }
     Ok(synthesis)
+}
+
+/// Forces and damping of `model` on the mode, after checks; `None` for a mode without points.
+///
+/// # Errors
+/// As [`synthesise`].
+pub(super) fn load_of(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Option<Load>> {
+    options.check()?;
+    let Some(data) = branch.mode_data() else {
+        return fail!(
+            Unsupported,
+            "the branch is a forced response; responses are synthesised from a nonlinear mode"
+        );
+    };
+    branch.check_one_model()?;
+    check_model(branch, data, model)?;
+    let ndof = model.structure().ndof();
+    let mut force = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    model.add_forces_to(1, options.force_factor, &mut force);
+    let mut unbalance = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    model.add_unbalance_to(1, options.force_factor, &mut unbalance);
+    if force.iter().chain(&unbalance).all(|f| *f == Complex64::ZERO) {
+        return fail!(Argument, "the model has no force in the fundamental");
+    }
+    if branch.points() == 0 {
+        return Ok(None);
+    }
+    let of_model = |kind| {
+        let matrix = || model.structure().wave_matrix(kind, 1);
+        options.model_damping.then(matrix).transpose()
+    };
+    let fundamental = branch.condensed_at(0);
+    Ok(Some(Load {
+        force,
+        unbalance,
+        damping: of_model(MatrixKind::Damping)?,
+        structural: of_model(MatrixKind::Structural)?,
+        ratio: options.damping_ratio,
+        response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof())?,
+    }))
 }
 
 fn check_model(branch: &Branch, data: &ModeData, model: &Model) -> Result<()> {

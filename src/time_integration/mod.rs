@@ -24,6 +24,7 @@ pub use frequency_sweep::{FrequencySweep, SweepTurn, run_through};
 pub use periodic_response::{TimeResponse, solve};
 
 // The variational equations of the room `stability`.
+pub(crate) use event_law::Element;
 pub(crate) use event_loop::{EventLoop, Observers, State};
 pub(crate) use harmonic_analysis::HarmonicAnalysis;
 pub(crate) use initial_state::{state_of, state_of_sector};

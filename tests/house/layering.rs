@@ -10,11 +10,11 @@ const LAYERS: [(&str, u8); 23] = [
     ("shortage", 0),
     ("error", 0),
     ("byte_stream", 0),
-    ("options", 0),
     ("interrupt", 0),
     ("hooks", 0),
     ("linalg", 1),
     ("fourier", 1),
+    ("options", 1),
     ("model", 2),
     ("contact", 2),
     ("aft", 3),
@@ -32,13 +32,13 @@ const LAYERS: [(&str, u8); 23] = [
     ("lib", 10),
 ];
 
-/// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, options, interrupts and streams of
-/// bytes report errors, hooks hold an interrupt, transforms are products of vectors, and a model has contacts.
+/// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, interrupts and streams of bytes
+/// report errors, options name a measure of Fourier series, hooks hold an interrupt, transforms are products of vectors, and a model has contacts.
 const SAME_LAYER: [(&str, &str); 9] = [
     ("error", "shortage"),
     ("interrupt", "shortage"),
     ("byte_stream", "error"),
-    ("options", "error"),
+    ("options", "fourier"),
     ("interrupt", "error"),
     ("hooks", "error"),
     ("hooks", "interrupt"),

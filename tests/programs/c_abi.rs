@@ -187,6 +187,7 @@ fn residual_forces_have_their_freedom_and_band() {
     silent("band", |_| vec![]);
     silent("life", |_| vec![]);
     silent("run_up", |_| vec![]);
+    silent("slow_flow", |_| vec![]);
 }
 
 #[test]

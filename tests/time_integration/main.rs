@@ -3,7 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod missions;
 mod run_up;
+mod slow_flow;
 mod time_response;
 mod time_response_balance;
 mod time_response_friction;

@@ -27,7 +27,7 @@ const COMPUTED_PEAK_MOST_POINTS: usize = 100;
 const COMPUTED_PEAK_STEP: f64 = 0.05;
 
 /// A synthesised resonance with the motion of the mode there.
-pub(super) struct AtPeak<'a> {
+pub(crate) struct AtPeak<'a> {
     pub state: &'a State,
     /// Angular frequency of the force.
     pub omega: f64,

@@ -22,7 +22,7 @@ pub struct SynthesisPoint {
 }
 
 /// Force and additional damping that act on the mode.
-pub(super) struct Load {
+pub(crate) struct Load {
     pub force: Vec<Complex64>,
     /// Forces over ω² of unbalances, taken at the natural frequency of each amplitude.
     pub unbalance: Vec<Complex64>,
@@ -35,7 +35,7 @@ pub(super) struct Load {
 
 /// The mode at one amplitude, reduced to an oscillator.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct State {
+pub(crate) struct State {
     pub omega: f64,
     pub damping: f64,
     /// Square of the modal amplitude.
@@ -71,7 +71,7 @@ impl Load {
 }
 
 /// Re xᴴ A x
-fn form(a: &Csc, x: &[Complex64]) -> f64 {
+pub(crate) fn form(a: &Csc, x: &[Complex64]) -> f64 {
     let mut form = 0.0;
     for (j, xj) in x.iter().enumerate() {
         for (i, v) in a.column(j) {

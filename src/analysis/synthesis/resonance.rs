@@ -27,7 +27,7 @@ const RESONANCE_WIDTH: f64 = 1e-12;
 const RESONANCE_MAX_EVALUATIONS: usize = 60;
 
 /// Solves the mode between two points of its branch.
-pub(super) struct Refinement<'a> {
+pub(crate) struct Refinement<'a> {
     branch: &'a Branch,
     data: &'a ModeData,
     load: &'a Load,

@@ -302,6 +302,32 @@ void nonlinear_mode() {
   claim(largest <= foretold.at(0).amplitude * (1 + 1e-9) && largest > 0.5 * foretold.at(0).amplitude, "stays below its resonance");
 }
 
+/// A run-up of a rubbing oscillator stays below its resonance, and a mission there and back passes it twice.
+void run_ups() {
+  auto model = oscillator(1, 0.02, 1, 0.12);
+  model.add_contact(Contact::jenkins(0, HBVIB_GROUND, 0.2, 0.1, 1));
+  hbvib::SolverOptions solver;
+  solver.harmonics = 3;
+  solver.tolerance = 0;
+  const auto mode = model.nonlinear_mode(solver, {-2, 0.8});
+  hbvib::RunUpOptions options;
+  options.omega_start = 0.8;
+  options.omega_stop = 1.3;
+  options.rate = 5e-3;
+  const auto up = mode.run_up(model, options);
+  claim(up.time.size() == up.amplitude.size() && up.time.size() == 17, "a number for each turn");
+  claim(up.factor() > 0.5 && up.factor() < 1 && up.error > 0 && up.error < 0.1, "a run-up stays below the resonance");
+  const double times[3] = {0, 1e3, 2e3}, speeds[3] = {0.8, 1.3, 0.8}, edges[1] = {0.5};
+  hbvib::MissionOptions mission;
+  mission.times = times;
+  mission.speeds = speeds;
+  mission.points_len = 3;
+  mission.edges = edges;
+  mission.edges_len = 1;
+  const auto flight = mode.mission(model, mission);
+  claim(flight.passages.size() == 2 && flight.amplitude.size() == 3 && flight.cycles[1] > 0, "a mission passes twice");
+}
+
 /// Stodola's rotor, a loss factor, modal damping, a load of the speed.
 void rotation() {
   const double mass[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0.3, 0}, {0, 0, 0, 0.3}};
@@ -404,6 +430,7 @@ int main() {
     forces();
     alike();
     nonlinear_mode();
+    run_ups();
     rotation();
     residual_forces();
     damper_under_platforms();

@@ -34,6 +34,9 @@ program layout
    call time_info()
    call sweep_options()
    call sweep_info()
+   call run_up_options()
+   call run_up_info()
+   call mission_options()
    call verify_options()
    call verification()
    call floquet_options()
@@ -527,6 +530,54 @@ contains
       call field('largest_time', c_loc(s), c_loc(s%largest_time), c_sizeof(s%largest_time))
       call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
    end subroutine sweep_info
+
+   subroutine run_up_options()
+      type(hbvib_run_up_options), target :: s
+      call whole('hbvib_run_up_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('model_damping', c_loc(s), c_loc(s%model_damping), c_sizeof(s%model_damping))
+      call field('omega_start', c_loc(s), c_loc(s%omega_start), c_sizeof(s%omega_start))
+      call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
+      call field('rate', c_loc(s), c_loc(s%rate), c_sizeof(s%rate))
+      call field('dof', c_loc(s), c_loc(s%dof), c_sizeof(s%dof))
+      call field('force_factor', c_loc(s), c_loc(s%force_factor), c_sizeof(s%force_factor))
+      call field('damping_ratio', c_loc(s), c_loc(s%damping_ratio), c_sizeof(s%damping_ratio))
+   end subroutine run_up_options
+
+   subroutine run_up_info()
+      type(hbvib_run_up_info), target :: s
+      call whole('hbvib_run_up_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('largest', c_loc(s), c_loc(s%largest), c_sizeof(s%largest))
+      call field('largest_omega', c_loc(s), c_loc(s%largest_omega), c_sizeof(s%largest_omega))
+      call field('largest_time', c_loc(s), c_loc(s%largest_time), c_sizeof(s%largest_time))
+      call field('error', c_loc(s), c_loc(s%error), c_sizeof(s%error))
+      call field('without_memory', c_loc(s), c_loc(s%without_memory), c_sizeof(s%without_memory))
+      call field('steady', c_loc(s), c_loc(s%steady), c_sizeof(s%steady))
+   end subroutine run_up_info
+
+   subroutine mission_options()
+      type(hbvib_mission_options), target :: s
+      call whole('hbvib_mission_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('model_damping', c_loc(s), c_loc(s%model_damping), c_sizeof(s%model_damping))
+      call field('times', c_loc(s), c_loc(s%times), c_sizeof(s%times))
+      call field('speeds', c_loc(s), c_loc(s%speeds), c_sizeof(s%speeds))
+      call field('points_len', c_loc(s), c_loc(s%points_len), c_sizeof(s%points_len))
+      call field('engine_order', c_loc(s), c_loc(s%engine_order), c_sizeof(s%engine_order))
+      call field('dof', c_loc(s), c_loc(s%dof), c_sizeof(s%dof))
+      call field('edges', c_loc(s), c_loc(s%edges), c_sizeof(s%edges))
+      call field('edges_len', c_loc(s), c_loc(s%edges_len), c_sizeof(s%edges_len))
+      call field('stresses', c_loc(s), c_loc(s%stresses), c_sizeof(s%stresses))
+      call field('stresses_len', c_loc(s), c_loc(s%stresses_len), c_sizeof(s%stresses_len))
+      call field('woehler_stress', c_loc(s), c_loc(s%woehler_stress), c_sizeof(s%woehler_stress))
+      call field('woehler_cycles', c_loc(s), c_loc(s%woehler_cycles), c_sizeof(s%woehler_cycles))
+      call field('woehler_slope', c_loc(s), c_loc(s%woehler_slope), c_sizeof(s%woehler_slope))
+      call field('woehler_slope_below', c_loc(s), c_loc(s%woehler_slope_below), c_sizeof(s%woehler_slope_below))
+      call field('force_factor', c_loc(s), c_loc(s%force_factor), c_sizeof(s%force_factor))
+      call field('damping_ratio', c_loc(s), c_loc(s%damping_ratio), c_sizeof(s%damping_ratio))
+   end subroutine mission_options
 
    subroutine verify_options()
       type(hbvib_verify_options), target :: s

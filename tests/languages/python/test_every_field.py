@@ -337,6 +337,26 @@ def peaked(**o):
     return lived(**{"follow": 1, **o})
 
 
+moded = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+moded.add_contact("jenkins", 0, kt=0.2, mu=0.1, preload=1)
+moded.add_force(0, 0.1)
+mode_of_moded = moded.nonlinear_mode((-2, 0.8), harmonics=3, tolerance=0)
+
+
+def run_through(**o):
+    options, info = new("hbvib_run_up_options", **{**dict(omega_start=0.8, omega_stop=1.3, rate=5e-3), **o}), new("hbvib_run_up_info")
+    call("hbvib_branch_run_up", mode_of_moded.handle, moded.handle, options, None, 0, None, None, None, None, None, info)
+    return bits(info.largest, info.largest_omega, info.error)
+
+
+def flown(**o):
+    given = dict(times=np.array([0.0, 1e3, 2e3]), speeds=np.array([0.8, 1.3, 1.1]), points_len=3, edges=np.array([0.5, 0.8]), edges_len=2,
+                 stresses=np.array([80.0, 70.0]), stresses_len=2, woehler_stress=50.0, woehler_cycles=1e6, woehler_slope=5.0)
+    options, amplitude, cycles, damage = new("hbvib_mission_options", **{**given, **o}), np.zeros(3), np.zeros(3), np.zeros(2)
+    call("hbvib_branch_mission", mode_of_moded.handle, moded.handle, options, None, amplitude, cycles, damage, 0, None, None, None)
+    return bits(*amplitude, *cycles, *damage)
+
+
 def swept(**o):
     options, info = new("hbvib_sweep_options", **{**dict(omega_start=0.8, omega_stop=1.1, rate=1e-2), **o}), new("hbvib_sweep_info")
     call("hbvib_time_sweep", worn.handle, options, None, 0, None, None, None, None, info)
@@ -647,6 +667,35 @@ TABLE = {
         "start": [(CHANGES, kicked_off, NONE), (refused("start"), kicked_off, np.array([NAN] * 8))],
         "start_len": [(refused("start_len"), kicked_off, -1), (refused("start"), kicked_off, 3)],
     },
+    "hbvib_run_up_options": {
+        "struct_size": [(refused("struct_size"), run_through, 8)],
+        "model_damping": [(CHANGES, run_through, 1), (refused("model_damping"), run_through, 2)],
+        "omega_start": [(CHANGES, run_through, 0.9), (refused("omega_start"), run_through, 0.0)],
+        "omega_stop": [(CHANGES, run_through, 0.9), (refused("omega_stop"), run_through, NAN)],
+        "rate": [(CHANGES, run_through, 2e-2), (refused("rate"), run_through, 0.0)],
+        "dof": [(same("one degree of freedom"), run_through, 0), (refused("dof"), run_through, 9)],
+        "force_factor": [(CHANGES, run_through, 1.1), (refused("force_factor"), run_through, 0.0)],
+        "damping_ratio": [(CHANGES, run_through, 0.01), (refused("damping_ratio"), run_through, 1.0)],
+    },
+    "hbvib_mission_options": {
+        "struct_size": [(refused("struct_size"), flown, 8)],
+        "model_damping": [(CHANGES, flown, 1), (refused("model_damping"), flown, 2)],
+        "times": [(CHANGES, flown, np.array([0.0, 5e2, 2e3])), (refused("times"), flown, np.array([0.0, 0.0, 1.0]))],
+        "speeds": [(CHANGES, flown, np.array([0.8, 1.2, 1.1])), (refused("speeds"), flown, np.array([0.8, 0.0, 1.1]))],
+        "points_len": [(CHANGES, flown, 2), (refused("points_len"), flown, -1)],
+        "engine_order": [(CHANGES, flown, 1.1), (refused("engine_order"), flown, 0.0)],
+        "dof": [(same("one degree of freedom"), flown, 0), (refused("dof"), flown, 9)],
+        "edges": [(CHANGES, flown, np.array([0.1, 0.8])), (refused("edges"), flown, np.array([0.5, 0.5]))],
+        "edges_len": [(CHANGES, flown, 1), (refused("edges_len"), flown, -1)],
+        "stresses": [(CHANGES, flown, np.array([90.0, 40.0])), (refused("stresses"), flown, np.array([-1.0, 40.0]))],
+        "stresses_len": [(CHANGES, flown, 1), (refused("stresses_len"), flown, -1)],
+        "woehler_stress": [(CHANGES, flown, 60.0), (refused("woehler_stress"), flown, 0.0)],
+        "woehler_cycles": [(CHANGES, flown, 2e6), (refused("woehler_cycles"), flown, -1.0)],
+        "woehler_slope": [(CHANGES, flown, 6.0), (refused("woehler_slope"), flown, NAN)],
+        "woehler_slope_below": [(CHANGES, flown, 9.0), (refused("woehler_slope_below"), flown, -1.0)],
+        "force_factor": [(CHANGES, flown, 1.1), (refused("force_factor"), flown, 0.0)],
+        "damping_ratio": [(CHANGES, flown, 0.01), (refused("damping_ratio"), flown, 1.0)],
+    },
     "hbvib_damper_face": {
         "struct_size": [(refused("struct_size"), on_platform, 8)],
         "reserved": [(refused("reserved"), on_platform, 1)],
@@ -719,7 +768,7 @@ FILLED = {
     "hbvib_force_call", "hbvib_jacobian_gap", "hbvib_progress", "hbvib_phase_report", "hbvib_view", "hbvib_reduction", "hbvib_energy",
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
     "hbvib_band_info", "hbvib_wheel_info",
-    "hbvib_descent", "hbvib_searched", "hbvib_kick", "hbvib_life_info", "hbvib_best_load", "hbvib_sweep_info",
+    "hbvib_descent", "hbvib_searched", "hbvib_kick", "hbvib_life_info", "hbvib_best_load", "hbvib_sweep_info", "hbvib_run_up_info",
     "hbvib_band_info", "hbvib_fit_info", "hbvib_wheel_info",
     "hbvib_descent", "hbvib_searched", "hbvib_kick",
 }

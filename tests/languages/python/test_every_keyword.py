@@ -307,7 +307,8 @@ OF_STRUCTS = {
     "parameter_response": ("parameter_options solver_options", "values log10_amplitude"),
     "batch": ("batch_options solver_options", "omega parameters values"), "time_response": ("time_options", ""),
     "verify": ("verify_options", "branch point"), "floquet": ("floquet_options", "branch point"),
-    "synthesis": ("synthesis_options", "model"),
+    "synthesis": ("synthesis_options", "model"), "run_up": ("run_up_options", "model omega"),
+    "mission": ("mission_options", "model time speed woehler"),
     "synthesis_peaks": ("synthesis_options", "model"), "add_user_force": ("user_force", "function"),
     "sector": ("sector", "stiffness mass damping coordinates"),
 }

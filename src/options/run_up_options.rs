@@ -1,0 +1,74 @@
+//! Options of a run-up by the slow flow of a nonlinear mode.
+
+use crate::error::{Result, fail};
+use crate::options::SynthesisOptions;
+use std::f64::consts::TAU;
+
+/// Most turns of the forces in a run-up by the slow flow; slower ones are steady.
+pub const RUN_UP_MOST_TURNS: f64 = 2e5;
+
+/// Options of a run-up by the slow flow of a nonlinear mode.
+#[derive(Clone, Copy, Debug)]
+pub struct RunUpOptions {
+    /// First angular frequency of the forces, rad per time unit, above zero.
+    pub omega_start: f64,
+    /// Last one; below the first for a run-down.
+    pub omega_stop: f64,
+    /// |dω/dt|, above zero.
+    pub rate: f64,
+    /// Degree of freedom whose displacement is observed; `None`: the response degree of freedom of the mode.
+    pub dof: Option<usize>,
+    /// Forces and damping, as for a synthesised response; `compare` has no effect.
+    pub synthesis: SynthesisOptions,
+}
+
+impl Default for RunUpOptions {
+    fn default() -> Self {
+        Self {
+            omega_start: 0.0,
+            omega_stop: 0.0,
+            rate: 0.0,
+            dof: None,
+            synthesis: SynthesisOptions::default(),
+        }
+    }
+}
+
+impl RunUpOptions {
+    /// Turns of the forces within the run-up.
+    #[must_use]
+    pub fn turns(&self) -> f64 {
+        (self.omega_stop.powi(2) - self.omega_start.powi(2)).abs() / (2.0 * TAU * self.rate)
+    }
+
+    /// Checks every field, for a model of `ndof` degrees of freedom.
+    ///
+    /// # Errors
+    /// `Argument`, `NotFinite` or `Index`, naming the field, its value and its range.
+    pub fn check(&self, ndof: usize) -> Result<()> {
+        for (name, value) in [
+            ("omega_start", self.omega_start),
+            ("omega_stop", self.omega_stop),
+            ("rate", self.rate),
+        ] {
+            if !value.is_finite() {
+                return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");
+            }
+            if value <= 0.0 {
+                return fail!(Argument, "{name} = {value}, needs a number > 0");
+            }
+        }
+        if let Some(dof) = self.dof.filter(|&dof| dof >= ndof) {
+            return fail!(Index, "dof = {dof}, needs 0 .. {}", ndof.saturating_sub(1));
+        }
+        let turns = self.turns();
+        if turns > RUN_UP_MOST_TURNS {
+            return fail!(
+                Argument,
+                "rate = {}: the run-up has {turns:.3e} turns, needs at most {RUN_UP_MOST_TURNS:e}; a slower one is steady",
+                self.rate
+            );
+        }
+        self.synthesis.check()
+    }
+}
