@@ -4687,9 +4687,10 @@ typedef struct {
   /// 1 if one slider was followed to both of its limits, or each search of several ended at an
   /// extremum; else 0.
   int32_t complete;
-  /// Number of free sliders; 0: the response has no band, and both ends are the point itself.
+  /// Number of free sliders, those of the point and then those that stick at an end; 0: the
+  /// response has no band, and both ends are the point itself.
   int64_t sliders;
-  /// Number of states that were followed with one free slider; else 0.
+  /// Number of states that were followed with one free slider at the point; else 0.
   int64_t states;
   /// Number of solutions that were computed.
   int64_t solved;

@@ -79,8 +79,9 @@ class Band:
     """The least and the largest result over the residual forces of contacts that stick; made by Model.band.
 
     lower, upper   the ends, each a BandEnd.
-    sliders        (contact, direction) of each free slider; empty where there is no band.
-    states         with one free slider the states from one limit to the other, a BandStates.
+    sliders        (contact, direction) of each free slider, those of the point and then those that stick at an end; empty
+                   where there is no band.
+    states         with one free slider at the point the states from one limit to the other, a BandStates.
     complete       whether one slider was followed to both limits, or each search of several ended at an extremum.
     solved         number of solutions that were computed.
 

@@ -1,5 +1,6 @@
 //! The band of a forced response: the least and the largest result over the forces that contacts keep which stick through the period.
 
+use crate::analysis::band_growth::{Grown, grown};
 use crate::analysis::band_line::line;
 use crate::analysis::band_search::Search;
 use crate::analysis::forced_response::forced_response;
@@ -23,6 +24,12 @@ const BAND_AT_LIMIT: f64 = 1e-6;
 
 /// Most starts of a search.
 const BAND_MOST_STARTS: usize = 1000;
+
+/// Gain that the linear model foretells at an extremum, relative to the result.
+const BAND_FORETOLD: f64 = 1e-4;
+
+/// Times that contacts which stick at an end, but not at the state before, are set free.
+const BAND_GROWTHS: usize = 8;
 
 /// Options of a band.
 #[derive(Clone, Copy, Debug)]
@@ -81,13 +88,13 @@ pub struct BandState {
 /// A band.
 #[derive(Debug)]
 pub struct Band {
-    /// Free sliders as (contact, direction); none: the response has no band.
+    /// Free sliders as (contact, direction); none: the response has no band. Those of the point, then those that stick at an end.
     pub sliders: Vec<(usize, usize)>,
     /// The least result found.
     pub lower: BandEnd,
     /// The largest result found.
     pub upper: BandEnd,
-    /// With one free slider the states from one limit to the other.
+    /// With one free slider at the point the states from one of its limits to the other.
     pub states: Vec<BandState>,
     /// Whether one slider was followed to both of its limits, or every search of several ended at an extremum.
     pub is_complete: bool,
@@ -96,7 +103,8 @@ pub struct Band {
 }
 
 /// The band of a stored point of a forced response: the least and the largest result over all places of the sliders that stick through
-/// the period, with the states that attain them. The harmonics are those of the point.
+/// the period, with the states that attain them. The harmonics are those of the point. Contacts that stick at an end, but not at the
+/// point, are free there, too: the search goes on from that end.
 ///
 /// With one free slider all states from one limit of its friction to the other are followed, with every extremum between them. With
 /// several, a search from each start goes to an extremum: the bounds are attained ones, beyond which others may lie.
@@ -152,16 +160,64 @@ pub fn band(
         *u *= condensed.length();
     }
     let first = held.first(condensed.set(), &motion, omega)?;
-    let mut band = if held.sliders.len() == 1 {
+    let found = if held.sliders.len() == 1 {
         along(&held, first)?
     } else {
         searched(&held, first, options.starts)?
     };
-    let (lower, upper) = (band.1, band.2);
-    for (end, state) in [(&mut band.0.lower, lower), (&mut band.0.upper, upper)] {
-        *end = attained(&held, &state, end.gain, &interrupt)?;
+    with_ends(&held, found, options, &interrupt)
+}
+
+/// The ends as solutions of the model, each with the contacts free that stick there.
+fn with_ends<'a>(
+    held: &HeldSliders<'a>,
+    (mut band, lower, upper): (Band, HeldState, HeldState),
+    options: &BandOptions<'_>,
+    interrupt: &'a Interrupt<'a>,
+) -> Result<Band> {
+    for (sign, state) in [(-1.0, lower), (1.0, upper)] {
+        let foretold = if sign < 0.0 { band.lower.gain } else { band.upper.gain };
+        let mut end = attained(held, &state, foretold, interrupt)?;
+        let mut grew = true;
+        let mut last: Option<Grown<'a>> = None;
+        for _ in 0..BAND_GROWTHS {
+            let (own, at) = last.as_ref().map_or((held, &state), |last| (&last.held, &last.state));
+            let more = match &end.branch {
+                Some(branch) => grown(own, (at, branch), (options.contacts, sign), interrupt)?,
+                None => None,
+            };
+            grew = more.is_some();
+            let Some(more) = more else { break };
+            band.solved += more.solved;
+            end = attained(&more.held, &more.state, more.gain, interrupt)?;
+            last = Some(more);
+        }
+        band.is_complete &= !grew && (last.is_none() || end.gain < BAND_FORETOLD);
+        let own = last.as_ref().map_or(&held.sliders, |last| &last.held.sliders);
+        for slider in own {
+            let pair = (slider.contact, slider.direction);
+            if !band.sliders.contains(&pair) {
+                try_push(&mut band.sliders, pair, CONTEXT)?;
+            }
+        }
+        // A slider that slips at an end forgets its place, which is that of the model.
+        let mut places = Vec::new();
+        for &(contact, direction) in &band.sliders {
+            let found = own
+                .iter()
+                .position(|s| (s.contact, s.direction) == (contact, direction));
+            let place = found.map_or(held.model.contacts()[contact].slider[direction], |j| end.places[j]);
+            try_push(&mut places, place, CONTEXT)?;
+        }
+        end.places = places;
+        *if sign < 0.0 { &mut band.lower } else { &mut band.upper } = end;
     }
-    Ok(band.0)
+    // The upper end may have more sliders than the lower one.
+    for &(contact, direction) in &band.sliders[band.lower.places.len()..] {
+        let place = held.model.contacts()[contact].slider[direction];
+        try_push(&mut band.lower.places, place, CONTEXT)?;
+    }
+    Ok(band)
 }
 
 fn check(model: &Model, branch: &Branch, point: usize, options: &BandOptions<'_>) -> Result<()> {
@@ -237,19 +293,8 @@ fn along(held: &HeldSliders<'_>, first: HeldState) -> Result<(Band, HeldState, H
     Ok((band, low, high))
 }
 
-/// The distances over which sliders can be dragged: μN/kt.
-fn distances(held: &HeldSliders<'_>, first: &HeldState) -> Result<Vec<f64>> {
-    let mut units = try_vec(held.sliders.len(), 0.0, CONTEXT)?;
-    for (unit, slider) in units.iter_mut().zip(&held.sliders) {
-        let own = first.margins.iter().filter(|m| m.contact == slider.contact);
-        let limit = own.fold(0.0_f64, |most, m| most.max(m.limit.abs()));
-        *unit = limit / slider.stiffness;
-    }
-    Ok(units)
-}
-
 fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<(Band, HeldState, HeldState)> {
-    let units = distances(held, &first)?;
+    let units = held.distances(&first)?;
     let mut search = Search { held, units, solved: 0 };
     let (mut low, mut high): (HeldState, HeldState) = (first.clone(), first.clone());
     let mut gains = [f64::INFINITY; 2];
@@ -283,7 +328,7 @@ fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<(
             }
         }
     }
-    is_complete &= gains.iter().all(|gain| *gain < 1e-4);
+    is_complete &= gains.iter().all(|gain| *gain < BAND_FORETOLD);
     let mut band = begun(held, is_complete, search.solved)?;
     (band.lower.gain, band.upper.gain) = (gains[0], gains[1]);
     Ok((band, low, high))

@@ -2,6 +2,7 @@
 
 use crate::analysis::all_solutions;
 use crate::analysis::forced_curve::alone;
+use crate::analysis::told_freedom::tell_freedom;
 use crate::error::Result;
 use crate::hooks::Hooks;
 use crate::model::Model;
@@ -11,7 +12,8 @@ use crate::results::Branch;
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to `range.omega_stop` by harmonic
 /// balance and arc-length continuation.
 ///
-/// A branch that ends early is returned with a positive [`Branch::status`] and every point found.
+/// A branch that ends early is returned with a positive [`Branch::status`] and every point found. A caller with a log is told where
+/// contacts that stick make the response one of a band (see [`crate::band()`]).
 ///
 /// # Errors
 /// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`], [`crate::condense::Condensed::new`]),
@@ -23,8 +25,11 @@ pub fn forced_response(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
-    if range.branches == 0 {
-        return alone(model, solver, range, hooks);
-    }
-    all_solutions::forced_response(model, solver, range, hooks)
+    let branch = if range.branches == 0 {
+        alone(model, solver, range, hooks)?
+    } else {
+        all_solutions::forced_response(model, solver, range, hooks)?
+    };
+    tell_freedom(model, &branch, hooks);
+    Ok(branch)
 }

@@ -138,6 +138,20 @@ impl<'a> HeldSliders<'a> {
         Ok(copy)
     }
 
+    /// The distances over which sliders can be dragged: μN/kt.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn distances(&self, state: &HeldState) -> Result<Vec<f64>> {
+        let mut units = try_vec(self.sliders.len(), 0.0, CONTEXT)?;
+        for (unit, slider) in units.iter_mut().zip(&self.sliders) {
+            let own = state.margins.iter().filter(|m| m.contact == slider.contact);
+            let limit = own.fold(0.0_f64, |most, m| most.max(m.limit.abs()));
+            *unit = limit / slider.stiffness;
+        }
+        Ok(units)
+    }
+
     /// The solution at the present places, from a packed motion over `set` in the caller's unit.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 mod all_solutions;
 pub mod band;
 pub mod band_curve;
+mod band_growth;
 mod band_line;
 mod band_search;
 pub mod batch;
@@ -69,6 +70,7 @@ mod stuck_contacts;
 mod subharmonic_net;
 pub mod synthesis;
 pub mod time_response;
+mod told_freedom;
 mod tracked_damping;
 mod unbounded_response;
 mod verified_responses;

@@ -142,9 +142,10 @@ pub struct hbvib_band_info {
     /// 1 if one slider was followed to both of its limits, or each search of several ended at an
     /// extremum; else 0.
     pub complete: i32,
-    /// Number of free sliders; 0: the response has no band, and both ends are the point itself.
+    /// Number of free sliders, those of the point and then those that stick at an end; 0: the
+    /// response has no band, and both ends are the point itself.
     pub sliders: i64,
-    /// Number of states that were followed with one free slider; else 0.
+    /// Number of states that were followed with one free slider at the point; else 0.
     pub states: i64,
     /// Number of solutions that were computed.
     pub solved: i64,

@@ -87,12 +87,15 @@ fn eight_sliders_a_sector_have_the_band_of_one() {
     assert!((one.upper.value / many.upper.value - 1.0).abs() < 1e-6);
 }
 
-/// Eight nodes that move in three directions on friction in a plane, every other one with a large limit.
-fn nodes(count: usize) -> Model {
+/// Damping of each motion of [`nodes`].
+pub const NODE_DAMPING: f64 = 0.03;
+
+/// Stiffnesses of the contacts of [`nodes`] along the face and across it.
+pub const NODE_CONTACT: (f64, f64) = (0.3, 0.5);
+
+/// Stiffness matrix of [`nodes`].
+pub fn node_stiffness(count: usize) -> Vec<f64> {
     let n = 3 * count;
-    let mut model = Model::new(n).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &vec![1.0; n]);
-    diagonal(&mut model, MatrixKind::Damping, &vec![0.03; n]);
     let mut stiffness = vec![0.0; n * n];
     for i in 0..n {
         stiffness[i * n + i] = 1.5 + 0.05 * (i % 24) as f64;
@@ -101,21 +104,46 @@ fn nodes(count: usize) -> Model {
             (stiffness[i * n + j], stiffness[j * n + i]) = (coupled, coupled);
         }
     }
+    stiffness
+}
+
+/// Friction coefficient and normal load of the contact of a node.
+pub const fn node_friction(node: usize) -> (f64, f64) {
+    if node.is_multiple_of(2) {
+        (0.15, 0.1)
+    } else {
+        (0.5, 0.3)
+    }
+}
+
+/// Harmonic forces of [`nodes`].
+pub fn node_forces(count: usize) -> Vec<(usize, Complex64)> {
+    let mut forces = vec![(0, Complex64::new(0.06, 0.0)), (4, Complex64::new(0.0, 0.03))];
+    // Far nodes with a small limit slip as well.
+    for node in (8..count).step_by(2) {
+        forces.push((3 * node, Complex64::new(0.06, 0.0)));
+    }
+    forces
+}
+
+/// Nodes of unit mass that move in three directions on friction in a plane, every other one with a large limit.
+pub fn nodes(count: usize) -> Model {
+    let n = 3 * count;
+    let mut model = Model::new(n).unwrap();
+    diagonal(&mut model, MatrixKind::Mass, &vec![1.0; n]);
+    diagonal(&mut model, MatrixKind::Damping, &vec![NODE_DAMPING; n]);
     model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &node_stiffness(count)))
         .unwrap();
     for node in 0..count {
         let dofs = [3 * node, 3 * node + 1, 3 * node + 2].map(Some);
-        let (mu, load) = if node % 2 == 0 { (0.15, 0.1) } else { (0.5, 0.3) };
+        let (mu, load) = node_friction(node);
         model
-            .add_contact(&Contact::friction_3d(dofs, [None; 3], (0.3, 0.5), mu, load))
+            .add_contact(&Contact::friction_3d(dofs, [None; 3], NODE_CONTACT, mu, load))
             .unwrap();
     }
-    model.add_force(0, 1, Complex64::new(0.06, 0.0)).unwrap();
-    model.add_force(4, 1, Complex64::new(0.0, 0.03)).unwrap();
-    // Far nodes with a small limit slip as well.
-    for node in (8..count).step_by(2) {
-        model.add_force(3 * node, 1, Complex64::new(0.06, 0.0)).unwrap();
+    for (dof, force) in node_forces(count) {
+        model.add_force(dof, 1, force).unwrap();
     }
     model
 }
@@ -176,4 +204,88 @@ fn outside_of(count: usize, (least, trials): (usize, usize), spread: f64) {
     }
     println!("random states {most:?}");
     assert!(most[1] - most[0] > spread * (upper.value - lower.value));
+}
+
+/// A blade with two wedge dampers: one whose contact with the platform sticks at any force, and one on a second platform that slips at
+/// the largest amplitudes and sticks at the smaller ones, where its residual force is free as well.
+fn blade_with_two_dampers(second: f64) -> Model {
+    let mut model = Model::new(5).unwrap();
+    diagonal(&mut model, MatrixKind::Mass, &[1.0, 0.01, 0.01, 0.01, 0.01]);
+    diagonal(&mut model, MatrixKind::Damping, &[0.04, 0.004, 0.004, 0.004, 0.004]);
+    diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3, 1e-3, 1e-3]);
+    let r = FRAC_1_SQRT_2;
+    for (u, platform, blade) in [(1, 0.6, 0.2), (3, second, 0.2)] {
+        let damper = [Some(u), Some(u + 1), None];
+        for (normal, tangent, other, mu) in [
+            ([r, -r, 0.0], [r, r, 0.0], None, platform),
+            ([-r, -r, 0.0], [-r, r, 0.0], Some(0), blade),
+        ] {
+            let contact = Contact {
+                kind: ContactKind::Friction2d,
+                dof_a: damper,
+                dof_b: [other, None, None],
+                frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
+                kn: 1.5,
+                ..Contact::jenkins(0, None, 1.0, mu, 0.0)
+            };
+            model.add_contact(&contact).unwrap();
+        }
+        model.add_force(u + 1, 0, Complex64::new(1.0, 0.0)).unwrap();
+    }
+    model.add_force(0, 1, Complex64::new(0.1, 0.0)).unwrap();
+    model
+}
+
+#[test]
+fn contacts_that_stick_at_an_end_alone_are_free_there() {
+    let solver = harmonics(7);
+    let mut grew = 0;
+    for (second, omega) in [(0.2, 1.4), (0.25, 1.4), (0.3, 1.4), (0.2, 1.5)] {
+        let model = blade_with_two_dampers(second);
+        let branch = solve_at(&model, &solver, omega);
+        let at_point = freedom(&model, &branch, 0).unwrap();
+        let found = band(
+            &model,
+            &branch,
+            0,
+            &solver,
+            &BandOptions::default(),
+            &mut Hooks::default(),
+        )
+        .unwrap();
+        let (lower, upper) = (&found.lower, &found.upper);
+        println!(
+            "{second} {omega}: {} {:?} {} .. {} {}",
+            at_point.len(),
+            found.sliders,
+            lower.value,
+            upper.value,
+            found.is_complete
+        );
+        assert_eq!(lower.places.len(), found.sliders.len());
+        assert_eq!(upper.places.len(), found.sliders.len());
+        grew += usize::from(found.sliders.len() > at_point.len());
+        assert!(found.is_complete);
+        let mut least = [f64::INFINITY, 0.0];
+        for trial in 0..40 {
+            let mut other = model.try_clone().unwrap();
+            for contact in 0..4 {
+                let turn = 0.618_033_988_75 * (1 + 4 * trial + contact) as f64;
+                other.set_slider(contact, 0, 2.5 * turn.fract() - 0.5).unwrap();
+            }
+            let amplitude = solve_at(&other, &solver, omega).amplitude()[0];
+            least = [least[0].min(amplitude), least[1].max(amplitude)];
+        }
+        println!("   random states {least:?}");
+        assert!(least[0] > lower.value * (1.0 - 1e-6) && least[1] < upper.value * (1.0 + 1e-6));
+        for end in [lower, upper] {
+            let mut placed = model.try_clone().unwrap();
+            for ((contact, k), place) in found.sliders.iter().zip(&end.places) {
+                placed.set_slider(*contact, *k, *place).unwrap();
+            }
+            let amplitude = end.branch.as_ref().unwrap().amplitude()[0];
+            assert!((amplitude / end.value - 1.0).abs() < 1e-7);
+        }
+    }
+    assert_eq!(grew, 4);
 }

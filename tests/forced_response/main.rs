@@ -17,6 +17,7 @@ mod folds;
 mod full_wheel;
 mod load_history;
 mod many_contacts;
+mod many_sliders_in_time;
 mod mean_friction;
 mod preload;
 mod reduced_structures;

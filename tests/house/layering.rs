@@ -33,7 +33,8 @@ const LAYERS: [(&str, u8); 23] = [
 ];
 
 /// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, interrupts and streams of bytes
-/// report errors, options name a measure of Fourier series, hooks hold an interrupt, transforms are products of vectors, and a model has contacts.
+/// report errors, options name a measure of Fourier series, hooks hold an interrupt, transforms are products of vectors, and a
+/// model has contacts.
 const SAME_LAYER: [(&str, &str); 9] = [
     ("error", "shortage"),
     ("interrupt", "shortage"),

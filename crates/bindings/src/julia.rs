@@ -44,13 +44,17 @@ pub fn raw(all: &Declarations) -> Result<String> {
         } else {
             format!("({})", kinds.join(", "))
         };
-        let given = names.iter().map(|name| format!(", {name}")).collect::<String>();
+        let passed: Vec<&str> = [kinds.as_str()]
+            .into_iter()
+            .chain(names.iter().map(String::as_str))
+            .collect();
         writeln!(text, "\"{}\"", escaped(sentence(&f.doc))).unwrap();
         writeln!(
             text,
-            "{0}({1}) = ccall(dlsym_(:{0}), {result}, {kinds}{given})",
+            "{0}({1}) = ccall(dlsym_(:{0}), {result}, {2})",
             f.name,
-            names.join(", ")
+            names.join(", "),
+            passed.join(", ")
         )
         .unwrap();
     }
