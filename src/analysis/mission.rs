@@ -161,15 +161,16 @@ impl Walk<'_> {
                 let omega = first + rate * time;
                 let at = self.oscillator(q.norm())?;
                 let rest = length - time;
-                let mut step = self.length((omega, rate), &at, q).min(rest);
+                let mut step = longest_step((omega, rate), &at, q).min(rest);
                 // No sliver is left.
-                if rest - step < 1e-9 * length {
+                let ends = rest - step < 1e-9 * length;
+                if ends {
                     step = rest;
                 }
                 let before = q;
                 q = self.step((omega, rate, step), q)?;
                 self.count((begin + time + step, omega + rate * step, rate, step), (before, q))?;
-                time = if step == rest { length } else { time + step };
+                time = if ends { length } else { time + step };
                 if self.found.steps > MISSION_MOST_STEPS {
                     return fail!(
                         Argument,
@@ -192,24 +193,6 @@ impl Walk<'_> {
         self.table.find(q.norm().max(f64::MIN_POSITIVE), &mut self.place)?;
         let amplitude = self.table.coefficient(&self.place, 0, 1).norm();
         try_push(&mut self.found.amplitude, amplitude, CONTEXT)
-    }
-
-    /// The longest step that the flow allows.
-    fn length(&self, (omega, rate): (f64, f64), at: &Oscillator, q: Complex64) -> f64 {
-        let natural = at.square.max(0.0).sqrt();
-        let width = at.decay().abs();
-        let distance = (omega - natural).abs();
-        let quick = rate.abs().sqrt();
-        let mut step = MISSION_STEP * distance.max(width) / rate.abs();
-        if quick * quick > MISSION_SLOW * width * width && distance < MISSION_NEAR * (quick + width) {
-            step = step.min(MISSION_PHASE / quick.max(width));
-        }
-        let target = at.force / at.stiffness(omega);
-        if (q - target).norm() > MISSION_SETTLED * target.norm() {
-            // An amplitude that has not settled changes frequency and damping.
-            step = step.min(MISSION_PHASE.max(MISSION_STEP * distance / width.max(f64::MIN_POSITIVE)) / width);
-        }
-        step
     }
 
     /// One step of a length, with the oscillator of its begin, then of its middle.
@@ -297,4 +280,22 @@ impl Walk<'_> {
         }
         Ok(())
     }
+}
+
+/// The longest step that the flow allows.
+fn longest_step((omega, rate): (f64, f64), at: &Oscillator, q: Complex64) -> f64 {
+    let natural = at.square.max(0.0).sqrt();
+    let width = at.decay().abs();
+    let distance = (omega - natural).abs();
+    let quick = rate.abs().sqrt();
+    let mut step = MISSION_STEP * distance.max(width) / rate.abs();
+    if quick * quick > MISSION_SLOW * width * width && distance < MISSION_NEAR * (quick + width) {
+        step = step.min(MISSION_PHASE / quick.max(width));
+    }
+    let target = at.force / at.stiffness(omega);
+    if (q - target).norm() > MISSION_SETTLED * target.norm() {
+        // An amplitude that has not settled changes frequency and damping.
+        step = step.min(MISSION_PHASE.max(MISSION_STEP * distance / width.max(f64::MIN_POSITIVE)) / width);
+    }
+    step
 }

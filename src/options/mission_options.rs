@@ -62,7 +62,7 @@ impl MissionOptions<'_> {
     /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
         let count = self.times.len();
-        if count < 2 || count > MISSION_MOST || self.speeds.len() != count {
+        if !(2..=MISSION_MOST).contains(&count) || self.speeds.len() != count {
             return fail!(
                 Dimension,
                 "{count} times and {} speeds, needs as many of both, 2 .. {MISSION_MOST}",

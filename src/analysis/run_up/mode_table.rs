@@ -11,6 +11,7 @@ use crate::model::structure::MatrixKind;
 use crate::results::Branch;
 use crate::time_integration::Element;
 use num_complex::Complex64;
+use std::cmp::Ordering;
 
 const CONTEXT: &str = "the table of a mode";
 
@@ -142,7 +143,8 @@ impl ModeTable {
             interrupt.part(Phase::Results, k, points)?;
             let at = |i: usize| data.point(i).map_or(f64::NAN, |p| p.log10_amplitude);
             let (low, high) = (at(k), at(k + 1));
-            if !(high > low) {
+            // A NaN ends the table too.
+            if high.partial_cmp(&low) != Some(Ordering::Greater) {
                 break;
             }
             if nodes.is_empty() {
@@ -187,20 +189,19 @@ impl ModeTable {
             0.0,
             try_vec(mass.col_ptr.len().saturating_sub(1), Complex64::ZERO, CONTEXT)?,
         );
-        for k in 0..nodes.len() {
+        for (k, node) in nodes.iter_mut().enumerate() {
             if k > 0 {
-                let s = inner(&nodes[k].fundamental, &weighted);
+                let s = inner(&node.fundamental, &weighted);
                 if s.norm() > 0.0 {
                     angle += s.arg();
                 }
             }
             weighted.fill(Complex64::ZERO);
-            for (j, x) in nodes[k].fundamental.iter().enumerate() {
+            for (j, x) in node.fundamental.iter().enumerate() {
                 for (i, v) in mass.column(j) {
                     weighted[i] += v * x;
                 }
             }
-            let node = &mut nodes[k];
             // Each node is turned against its own phase alone, so that products stay those of stored vectors.
             let turn = Complex64::cis(angle);
             for motion in node.motions.chunks_exact_mut(harmonics) {
@@ -253,7 +254,7 @@ impl ModeTable {
             };
             return Ok(());
         }
-        if !(ln <= self.ln[top] + 1e-12) {
+        if ln.is_nan() || ln > self.ln[top] + 1e-12 {
             return fail!(
                 Argument,
                 "the modal amplitude reaches {amplitude:.3e}, the mode ends at {:.3e}; compute it to a larger amplitude",

@@ -10,7 +10,7 @@ use crate::analysis::run_up::chirp::Chirp;
 use crate::analysis::run_up::mode_table::{ModeTable, Place};
 use crate::analysis::run_up::other_modes::OtherModes;
 use crate::analysis::run_up::slow_path::SlowPath;
-use crate::contact::law::EventLaw;
+use crate::contact::law::{EventLaw, SliderLaw};
 use crate::contact::time_piece::{Instant, Mode};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -169,7 +169,7 @@ impl<'a> SliderMemory<'a> {
         let (table, n) = (self.table, SLIDER_MEMORY_SAMPLES);
         self.forces.fill(Complex64::ZERO);
         for (s, &(law, motion, count)) in self.sliders.iter().enumerate() {
-            let start = law.slider().map_or(0.0, |slider| slider.start());
+            let start = law.slider().map_or(0.0, SliderLaw::start);
             let mut stretch = [0.0; PASSED];
             let mut before = [REST; PASSED];
             let mut other = [Complex64::ZERO; 2];
