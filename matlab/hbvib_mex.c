@@ -738,6 +738,9 @@ static const Struct TIME_OPTIONS_STRUCT;
 static const Struct TIME_INFO_STRUCT;
 static const Struct SWEEP_OPTIONS_STRUCT;
 static const Struct SWEEP_INFO_STRUCT;
+static const Struct RUN_UP_OPTIONS_STRUCT;
+static const Struct RUN_UP_INFO_STRUCT;
+static const Struct MISSION_OPTIONS_STRUCT;
 static const Struct VERIFY_OPTIONS_STRUCT;
 static const Struct VERIFICATION_STRUCT;
 static const Struct FLOQUET_OPTIONS_STRUCT;
@@ -1093,6 +1096,50 @@ static const Field sweep_info_fields[] = {
 };
 static hbvib_status sweep_info_fill(void *s) { return hbvib_sweep_info_init(s, sizeof(hbvib_sweep_info)); }
 static const Struct SWEEP_INFO_STRUCT = {"sweep_info", sizeof(hbvib_sweep_info), sweep_info_fields, sizeof sweep_info_fields / sizeof *sweep_info_fields, sweep_info_fill};
+
+static const Field run_up_options_fields[] = {
+  {"model_damping", INT32, offsetof(hbvib_run_up_options, model_damping), 1, NULL},
+  {"omega_start", DOUBLE, offsetof(hbvib_run_up_options, omega_start), 1, NULL},
+  {"omega_stop", DOUBLE, offsetof(hbvib_run_up_options, omega_stop), 1, NULL},
+  {"rate", DOUBLE, offsetof(hbvib_run_up_options, rate), 1, NULL},
+  {"dof", INT64, offsetof(hbvib_run_up_options, dof), 1, NULL},
+  {"force_factor", DOUBLE, offsetof(hbvib_run_up_options, force_factor), 1, NULL},
+  {"damping_ratio", DOUBLE, offsetof(hbvib_run_up_options, damping_ratio), 1, NULL},
+};
+static hbvib_status run_up_options_fill(void *s) { return hbvib_run_up_options_init(s, sizeof(hbvib_run_up_options)); }
+static const Struct RUN_UP_OPTIONS_STRUCT = {"run_up_options", sizeof(hbvib_run_up_options), run_up_options_fields, sizeof run_up_options_fields / sizeof *run_up_options_fields, run_up_options_fill};
+
+static const Field run_up_info_fields[] = {
+  {"largest", DOUBLE, offsetof(hbvib_run_up_info, largest), 1, NULL},
+  {"largest_omega", DOUBLE, offsetof(hbvib_run_up_info, largest_omega), 1, NULL},
+  {"largest_time", DOUBLE, offsetof(hbvib_run_up_info, largest_time), 1, NULL},
+  {"error", DOUBLE, offsetof(hbvib_run_up_info, error), 1, NULL},
+  {"without_memory", DOUBLE, offsetof(hbvib_run_up_info, without_memory), 1, NULL},
+  {"steady", DOUBLE, offsetof(hbvib_run_up_info, steady), 1, NULL},
+};
+static hbvib_status run_up_info_fill(void *s) { return hbvib_run_up_info_init(s, sizeof(hbvib_run_up_info)); }
+static const Struct RUN_UP_INFO_STRUCT = {"run_up_info", sizeof(hbvib_run_up_info), run_up_info_fields, sizeof run_up_info_fields / sizeof *run_up_info_fields, run_up_info_fill};
+
+static const Field mission_options_fields[] = {
+  {"model_damping", INT32, offsetof(hbvib_mission_options, model_damping), 1, NULL},
+  {"times", DOUBLES, offsetof(hbvib_mission_options, times), 1, NULL},
+  {"speeds", DOUBLES, offsetof(hbvib_mission_options, speeds), 1, NULL},
+  {"points_len", INT64, offsetof(hbvib_mission_options, points_len), 1, NULL},
+  {"engine_order", DOUBLE, offsetof(hbvib_mission_options, engine_order), 1, NULL},
+  {"dof", INT64, offsetof(hbvib_mission_options, dof), 1, NULL},
+  {"edges", DOUBLES, offsetof(hbvib_mission_options, edges), 1, NULL},
+  {"edges_len", INT64, offsetof(hbvib_mission_options, edges_len), 1, NULL},
+  {"stresses", DOUBLES, offsetof(hbvib_mission_options, stresses), 1, NULL},
+  {"stresses_len", INT64, offsetof(hbvib_mission_options, stresses_len), 1, NULL},
+  {"woehler_stress", DOUBLE, offsetof(hbvib_mission_options, woehler_stress), 1, NULL},
+  {"woehler_cycles", DOUBLE, offsetof(hbvib_mission_options, woehler_cycles), 1, NULL},
+  {"woehler_slope", DOUBLE, offsetof(hbvib_mission_options, woehler_slope), 1, NULL},
+  {"woehler_slope_below", DOUBLE, offsetof(hbvib_mission_options, woehler_slope_below), 1, NULL},
+  {"force_factor", DOUBLE, offsetof(hbvib_mission_options, force_factor), 1, NULL},
+  {"damping_ratio", DOUBLE, offsetof(hbvib_mission_options, damping_ratio), 1, NULL},
+};
+static hbvib_status mission_options_fill(void *s) { return hbvib_mission_options_init(s, sizeof(hbvib_mission_options)); }
+static const Struct MISSION_OPTIONS_STRUCT = {"mission_options", sizeof(hbvib_mission_options), mission_options_fields, sizeof mission_options_fields / sizeof *mission_options_fields, mission_options_fill};
 
 static const Field verify_options_fields[] = {
   {"method", INT32, offsetof(hbvib_verify_options, method), 1, NULL},
@@ -2587,6 +2634,60 @@ static void call_time_sweep(Call *a) {
   finish(a, status_);
 }
 
+static void call_branch_run_up(Call *a) {
+  const hbvib_branch *branch_ = handle(a, "branch");
+  const hbvib_model *model_ = handle(a, "model");
+  const hbvib_run_up_options *options_ = structs(a, "options", &RUN_UP_OPTIONS_STRUCT);
+  const hbvib_hooks *hooks_ = hooks(a, "hooks");
+  int64_t capacity_ = whole(a, "capacity");
+  int64_t time_n = room(a, "time");
+  double *time_ = array(time_n, 1 * sizeof(double));
+  int64_t omega_n = room(a, "omega");
+  double *omega_ = array(omega_n, 1 * sizeof(double));
+  int64_t amplitude_n = room(a, "amplitude");
+  double *amplitude_ = array(amplitude_n, 1 * sizeof(double));
+  int64_t modal_amplitude_n = room(a, "modal_amplitude");
+  double *modal_amplitude_ = array(modal_amplitude_n, 1 * sizeof(double));
+  int64_t count_ = 0;
+  hbvib_run_up_info info_;
+  hbvib_run_up_info_init(&info_, sizeof info_);
+  hbvib_status status_ = hbvib_branch_run_up(branch_, model_, options_, hooks_, capacity_, time_, omega_, amplitude_, modal_amplitude_, &count_, &info_);
+  give_reals(a, time_, time_n);
+  give_reals(a, omega_, omega_n);
+  give_reals(a, amplitude_, amplitude_n);
+  give_reals(a, modal_amplitude_, modal_amplitude_n);
+  give_number(a, (double)count_);
+  give_struct(a, &info_, &RUN_UP_INFO_STRUCT);
+  finish(a, status_);
+}
+
+static void call_branch_mission(Call *a) {
+  const hbvib_branch *branch_ = handle(a, "branch");
+  const hbvib_model *model_ = handle(a, "model");
+  const hbvib_mission_options *options_ = structs(a, "options", &MISSION_OPTIONS_STRUCT);
+  const hbvib_hooks *hooks_ = hooks(a, "hooks");
+  int64_t amplitude_n = room(a, "amplitude");
+  double *amplitude_ = array(amplitude_n, 1 * sizeof(double));
+  int64_t cycles_n = room(a, "cycles");
+  double *cycles_ = array(cycles_n, 1 * sizeof(double));
+  int64_t damage_n = room(a, "damage");
+  double *damage_ = array(damage_n, 1 * sizeof(double));
+  int64_t capacity_ = whole(a, "capacity");
+  int64_t crossing_n = room(a, "crossing");
+  double *crossing_ = array(crossing_n, 1 * sizeof(double));
+  int64_t count_ = 0;
+  int64_t error_n = room(a, "error");
+  double *error_ = array(error_n, 1 * sizeof(double));
+  hbvib_status status_ = hbvib_branch_mission(branch_, model_, options_, hooks_, amplitude_, cycles_, damage_, capacity_, crossing_, &count_, error_);
+  give_reals(a, amplitude_, amplitude_n);
+  give_reals(a, cycles_, cycles_n);
+  give_reals(a, damage_, damage_n);
+  give_reals(a, crossing_, crossing_n);
+  give_number(a, (double)count_);
+  give_reals(a, error_, error_n);
+  finish(a, status_);
+}
+
 static void call_verify(Call *a) {
   const hbvib_model *model_ = handle(a, "model");
   const hbvib_branch *branch_ = handle(a, "branch");
@@ -3375,6 +3476,8 @@ static const Function FUNCTIONS[] = {
   {"branch_synthesis_peaks_with_hooks", call_branch_synthesis_peaks_with_hooks, 12},
   {"time_response", call_time_response, 7},
   {"time_sweep", call_time_sweep, 7},
+  {"branch_run_up", call_branch_run_up, 9},
+  {"branch_mission", call_branch_mission, 10},
   {"verify", call_verify, 9},
   {"floquet", call_floquet, 9},
   {"smallest_kick", call_smallest_kick, 8},

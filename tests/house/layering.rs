@@ -65,6 +65,7 @@ const ONLY: [(&str, &[&str]); 2] = [
             "error",
             "shortage",
             "linalg",
+            "fourier",
         ],
     ),
 ];

@@ -684,6 +684,54 @@ struct hbvib_sweep_info
 end
 hbvib_sweep_info() = initialised(hbvib_sweep_info, dlsym_(:hbvib_sweep_info_init))
 
+"Options of hbvib_branch_run_up."
+struct hbvib_run_up_options
+    struct_size::UInt32
+    model_damping::Int32
+    omega_start::Float64
+    omega_stop::Float64
+    rate::Float64
+    dof::Int64
+    force_factor::Float64
+    damping_ratio::Float64
+end
+hbvib_run_up_options() = initialised(hbvib_run_up_options, dlsym_(:hbvib_run_up_options_init))
+
+"Numbers of a run-up."
+struct hbvib_run_up_info
+    struct_size::UInt32
+    reserved::Int32
+    largest::Float64
+    largest_omega::Float64
+    largest_time::Float64
+    error::Float64
+    without_memory::Float64
+    steady::Float64
+end
+hbvib_run_up_info() = initialised(hbvib_run_up_info, dlsym_(:hbvib_run_up_info_init))
+
+"A mission of hbvib_branch_mission."
+struct hbvib_mission_options
+    struct_size::UInt32
+    model_damping::Int32
+    times::Ptr{Float64}
+    speeds::Ptr{Float64}
+    points_len::Int64
+    engine_order::Float64
+    dof::Int64
+    edges::Ptr{Float64}
+    edges_len::Int64
+    stresses::Ptr{Float64}
+    stresses_len::Int64
+    woehler_stress::Float64
+    woehler_cycles::Float64
+    woehler_slope::Float64
+    woehler_slope_below::Float64
+    force_factor::Float64
+    damping_ratio::Float64
+end
+hbvib_mission_options() = initialised(hbvib_mission_options, dlsym_(:hbvib_mission_options_init))
+
 "Options of hbvib_verify."
 struct hbvib_verify_options
     struct_size::UInt32
@@ -1215,6 +1263,16 @@ hbvib_sweep_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_sweep_options_init)
 hbvib_sweep_info_init(i, size_of_i) = ccall(dlsym_(:hbvib_sweep_info_init), Int32, (Ptr{hbvib_sweep_info}, Csize_t), i, size_of_i)
 "Integrates the motion in time while the frequency of the forces changes at a constant rate, as in a run-up: the phase of harmonic 1 is omega_start t +- rate t^2 / 2, from the periodic motion at omega_start on, at phase 0."
 hbvib_time_sweep(model, options, hooks, capacity, time, omega, amplitude, count, info) = ccall(dlsym_(:hbvib_time_sweep), Int32, (Ptr{Cvoid}, Ptr{hbvib_sweep_options}, Ptr{hbvib_hooks}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}, Ptr{hbvib_sweep_info}), model, options, hooks, capacity, time, omega, amplitude, count, info)
+"Fills the options of a run-up: the degree of freedom of the mode, forces and damping as they are."
+hbvib_run_up_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_run_up_options_init), Int32, (Ptr{hbvib_run_up_options}, Csize_t), o, size_of_o)
+"Fills the numbers of a run-up with zeros."
+hbvib_run_up_info_init(i, size_of_i) = ccall(dlsym_(:hbvib_run_up_info_init), Int32, (Ptr{hbvib_run_up_info}, Csize_t), i, size_of_i)
+"The amplitude while the frequency of the forces changes at a constant rate, from the steady motion at the first frequency on, by the slow flow of a nonlinear mode with the memory of sliders."
+hbvib_branch_run_up(branch, model, options, hooks, capacity, time, omega, amplitude, modal_amplitude, count, info) = ccall(dlsym_(:hbvib_branch_run_up), Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Ptr{hbvib_run_up_options}, Ptr{hbvib_hooks}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}, Ptr{hbvib_run_up_info}), branch, model, options, hooks, capacity, time, omega, amplitude, modal_amplitude, count, info)
+"Fills the options of a mission: no point, engine order 1."
+hbvib_mission_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_mission_options_init), Int32, (Ptr{hbvib_mission_options}, Csize_t), o, size_of_o)
+"One resonance over a mission, speed against time, by the slow flow of its nonlinear mode without the memory of sliders: amplitudes, cycles of each amplitude, and the sum of Miner."
+hbvib_branch_mission(branch, model, options, hooks, amplitude, cycles, damage, capacity, crossing, count, error) = ccall(dlsym_(:hbvib_branch_mission), Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Ptr{hbvib_mission_options}, Ptr{hbvib_hooks}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Int64, Ptr{Float64}, Ptr{Int64}, Ptr{Float64}), branch, model, options, hooks, amplitude, cycles, damage, capacity, crossing, count, error)
 "Fills the options of a check in time with their defaults: shooting, tolerance = 1e-11, same_within = 0.1."
 hbvib_verify_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_verify_options_init), Int32, (Ptr{hbvib_verify_options}, Csize_t), o, size_of_o)
 "Fills the result of a check in time with zeros."
