@@ -4,7 +4,7 @@ use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
 use crate::model_report::ModelReport;
-use crate::{band_curve, campbell, fit_run, map, motion_files, print, study, tornado, wheel_response};
+use crate::{band_curve, campbell, fit_run, life, map, motion_files, passages, print, study, tornado, wheel_response};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -96,6 +96,15 @@ pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     }
     if let Some(part) = &job.wheel {
         wheel_response::check(part, built)?;
+    }
+    if let Some(part) = &job.life {
+        life::check(part, built)?;
+    }
+    if let Some(part) = &job.run_up {
+        passages::check_run_up(part, built)?;
+    }
+    if let Some(part) = &job.mission {
+        passages::check_mission(part, built)?;
     }
     Ok(())
 }

@@ -3,7 +3,9 @@
 use crate::job_damper::DamperPart;
 use crate::job_faces::FacesPart;
 use crate::job_fit::{DataPart, FitPart};
+use crate::job_life::LifePart;
 use crate::job_motion::{MotionPart, UnitsPart};
+use crate::job_passages::{MissionPart, RunUpPart};
 use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
 use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart, WheelPart};
@@ -41,6 +43,9 @@ pub struct Job {
     pub tornado: Option<TornadoPart>,
     pub band: Option<BandPart>,
     pub wheel: Option<WheelPart>,
+    pub life: Option<LifePart>,
+    pub run_up: Option<RunUpPart>,
+    pub mission: Option<MissionPart>,
     pub fit: Option<FitPart>,
     /// Data of tests, which [fit] explains.
     #[serde(default)]
@@ -498,11 +503,15 @@ impl Job {
             self.tornado.is_some(),
             self.band.is_some(),
             self.wheel.is_some(),
+            self.life.is_some(),
+            self.run_up.is_some(),
+            self.mission.is_some(),
             self.fit.is_some(),
         ];
         if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band], [wheel] or [fit]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band], [wheel], [life], [run_up], \
+                 [mission] or [fit]",
                 path.display()
             ));
         }

@@ -12,8 +12,8 @@ use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
-    band_curve, campbell, check, contact_tables, fit_run, html_report, map, motion_files, output, solutions, study,
-    tornado, verification, wheel_response,
+    band_curve, campbell, check, contact_tables, fit_run, html_report, life, map, motion_files, output, passages,
+    solutions, study, tornado, verification, wheel_response,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -128,6 +128,18 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut File
     if let Some(part) = job.wheel.as_ref().filter(|_| end.goes_on(stop)) {
         let outcome = watched(stop, |hooks| wheel_response::write(part, built, hooks, files));
         ended(outcome, "wheel", stop, files, end);
+    }
+    if let Some(part) = job.life.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| life::write(part, built, hooks, files));
+        ended(outcome, "life", stop, files, end);
+    }
+    if let Some(part) = job.run_up.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| passages::write_run_up(part, built, hooks, files));
+        ended(outcome, "run_up", stop, files, end);
+    }
+    if let Some(part) = job.mission.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| passages::write_mission(part, built, hooks, files));
+        ended(outcome, "mission", stop, files, end);
     }
     fitted(job, built, stop, files, end);
 }

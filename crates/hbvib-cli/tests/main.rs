@@ -19,6 +19,7 @@ mod model_reports;
 mod motion_outputs;
 mod mutations;
 mod node_lists;
+mod passages;
 mod plots;
 mod prestressed_models;
 mod projected_faces;
