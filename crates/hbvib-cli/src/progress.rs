@@ -124,21 +124,33 @@ pub fn watched<R>(stop: &AtomicBool, call: impl FnOnce(&mut Hooks<'_>) -> R) -> 
         bar.stage(report);
         false
     };
+    let mut warnings: Vec<String> = Vec::new();
     let mut log = |level: LogLevel, message: &str| {
         let level = match level {
-            LogLevel::Warn => "warning",
+            LogLevel::Warn => {
+                // As text they follow the bar.
+                if !events::are_json() && !warnings.iter().any(|told| told == message) {
+                    warnings.push(message.to_owned());
+                }
+                "warning"
+            }
             LogLevel::Info => "info",
             LogLevel::Debug => "debug",
         };
         events::line("log", json!({ "level": level, "message": message }));
     };
     let cancelled = || stop.load(Ordering::Relaxed);
-    call(&mut Hooks {
+    let result = call(&mut Hooks {
         progress: Some(&mut progress),
         cancelled: Some(&cancelled),
         phase: Some(&phase),
         log: Some(&mut log),
-    })
+    });
+    drop(bar);
+    for warning in &warnings {
+        events::warning(warning);
+    }
+    result
 }
 
 impl Drop for Bar {
