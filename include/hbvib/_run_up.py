@@ -51,7 +51,16 @@ class RunUp(NamedTuple):
 
     @property
     def factor(self) -> float:
-        """Largest displacement over the amplitude of the steady resonance."""
+        """Largest displacement over the amplitude of the steady resonance.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.02)
+        >>> contact = model.add_contact("jenkins", 0, kt=0.2, mu=0.1, preload=1)
+        >>> model.add_force(0, 0.12)
+        >>> up = model.nonlinear_mode((-2, 0.8), harmonics=5).run_up(model, (0.8, 1.3), rate=1e-3)
+        >>> up.factor == up.largest / up.steady
+        True
+        """
         return self.largest / self.steady
 
 
@@ -112,7 +121,17 @@ class CampbellResponse(NamedTuple):
 
     @property
     def factor(self) -> FloatArray:
-        """Amplitude of the passage over the steady one."""
+        """Amplitude of the passage over the steady one, of each resonance.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.02)
+        >>> contact = model.add_contact("jenkins", 0, kt=0.2, mu=0.1, preload=1)
+        >>> model.add_force(0, 0.12)
+        >>> mode = model.nonlinear_mode((-2, 0.8), harmonics=5)
+        >>> picture = hbvib.campbell_response([(mode, model, 2)], 5e-4)
+        >>> bool(picture.factor[0] < 1)
+        True
+        """
         ratio: FloatArray = self.passed / self.amplitude
         return ratio
 
@@ -256,5 +275,5 @@ class _RunUps(_Owner):
                            count, error, guard=guard)
         if status == Status.STOPPED_BY_CALLER:
             raise Stopped(_sentence(status), Status(status), 0)
-        columns: Any = passages[:count.value].T.copy()
-        return Mission(amplitude, cycles, damage, *columns, error.value)
+        time, omega, rate, largest, steady, near = passages[:count.value].T.copy()
+        return Mission(amplitude, cycles, damage, time, omega, rate, largest, steady, near, error.value)

@@ -123,6 +123,12 @@ fn with_detail(
     let outcome = with_samples(&with_exchange, |solver| {
         follow(model, solver, (range, detail, inside), hooks, &interrupt, trace)
     });
+    completed(outcome, model, solver)
+}
+
+/// The branch of a call that ended or was stopped. A function of its own: its copies of a branch do not lie on the stack under the call.
+#[inline(never)]
+fn completed(outcome: Result<Box<Branch>>, model: &Model, solver: &SolverOptions) -> Result<Branch> {
     let mut branch = match outcome {
         Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver)?,
         outcome => *outcome?,

@@ -25,11 +25,14 @@ pub fn forced_response(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
-    let branch = if range.branches == 0 {
-        alone(model, solver, range, hooks)?
+    // One result, made where the caller wants it: copies would lie on the stack under every response.
+    let found = if range.branches == 0 {
+        alone(model, solver, range, hooks)
     } else {
-        all_solutions::forced_response(model, solver, range, hooks)?
+        all_solutions::forced_response(model, solver, range, hooks)
     };
-    tell_freedom(model, &branch, hooks);
-    Ok(branch)
+    if let Ok(branch) = &found {
+        tell_freedom(model, branch, hooks);
+    }
+    found
 }

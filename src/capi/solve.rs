@@ -215,7 +215,17 @@ pub(super) unsafe fn follow(
 ) -> Result<Outcome> {
     let hooks = unsafe { load_hooks(hooks, 4) }?;
     check_pointer(out, 5, "out")?;
-    let branch = unsafe { with_hooks(&hooks, analysis) }?;
+    let found = unsafe { with_hooks(&hooks, analysis) };
+    unsafe { hand_over(found, out, requested) }
+}
+
+/// Hands a branch to the caller. A function of its own: its copies do not lie on the stack under the analysis.
+///
+/// # Safety
+/// `out` points to a writable pointer.
+#[inline(never)]
+unsafe fn hand_over(found: Result<Branch>, out: *mut *mut hbvib_branch, requested: usize) -> Result<Outcome> {
+    let branch = found?;
     let outcome = Outcome::from(&branch);
     unsafe { out.write(insert_tree(branch, requested, false)?) };
     Ok(outcome)
