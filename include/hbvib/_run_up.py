@@ -275,5 +275,5 @@ class _RunUps(_Owner):
                            count, error, guard=guard)
         if status == Status.STOPPED_BY_CALLER:
             raise Stopped(_sentence(status), Status(status), 0)
-        time, omega, rate, largest, steady, near = passages[:count.value].T.copy()
-        return Mission(amplitude, cycles, damage, time, omega, rate, largest, steady, near, error.value)
+        rows: FloatArray = passages[:count.value].T.copy()
+        return Mission(amplitude, cycles, damage, rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], error.value)
