@@ -13,8 +13,8 @@ const INTRODUCTION: &str = "\
 # Thresholds
 
 Named numbers of the library, by the folders of `src/` and `crates/numerics/src/`, without the C interface: tolerances, limits of work,
-sizes of blocks, and numbers that were tuned. Each row is made from the declaration and its comment. A test fails where the page is out of date; CONTRIBUTING.md has
-the command that writes it.
+sizes of blocks, and numbers that were tuned. Each row is made from the declaration and its comment. A test fails where the page
+is out of date; CONTRIBUTING.md has the command that writes it.
 ";
 
 /// A named number, or several in a tuple or a list.
