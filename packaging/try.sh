@@ -57,7 +57,8 @@ cpack_packages() {
 conan_create() {
     export CONAN_HOME=$PWD/home
     conan profile detect
-    conan create "$root/packaging/conan"
+    # What the test package builds stays out of the checkout.
+    conan create "$root/packaging/conan" -c tools.cmake.cmake_layout:test_folder="$PWD/test" -c tools.cmake.cmaketoolchain:user_presets=
 }
 debian_packages() {
     # A source tree as a packager has it.

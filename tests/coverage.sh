@@ -34,7 +34,7 @@ for object in $executables "$work"/release/libhbvib.so $(find "$work/release/exa
     objects="$objects --object $object"
 done
 "$tools/llvm-cov" export --format=lcov --instr-profile="$work/all.profdata" $objects --sources "$PWD/src" "$PWD/crates/numerics/src" >"$work/lcov" 2>"$work/export.log"
-python3 - "$work/lcov" "$PWD/src/" <<'PYTHON' >"$work/lines"
+python3 - "$work/lcov" "$PWD/" <<'PYTHON' >"$work/lines"
 import collections, sys
 
 lines = collections.defaultdict(dict)
@@ -47,7 +47,10 @@ for row in open(sys.argv[1]):
         lines[name][line] = max(count, lines[name].get(line, 0))
 folders = collections.defaultdict(lambda: [0, 0])
 for name, counts in lines.items():
-    for folder in ("src", "src/" + name.rpartition("/")[0].split("/")[0] if "/" in name else "src/*.rs"):
+    source, _, inner = name.partition("src/")
+    source += "src"
+    room = inner.split("/")[0] if "/" in inner else "*.rs"
+    for folder in ("all", source, f"{source}/{room}"):
         folders[folder][0] += sum(count > 0 for count in counts.values())
         folders[folder][1] += len(counts)
 for folder, (covered, all) in sorted(folders.items()):
@@ -61,6 +64,6 @@ for name, counts in sorted(lines.items()):
             if following != line + 1:
                 ranges.append(f"{start}" if start == line else f"{start}-{line}")
                 start = following
-        print(f"src/{name}: {', '.join(ranges)}")
+        print(f"{name}: {', '.join(ranges)}")
 PYTHON
 sed '/^$/q' "$work/lines"

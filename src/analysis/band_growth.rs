@@ -21,7 +21,8 @@ pub(super) struct Grown<'a> {
     pub solved: usize,
 }
 
-/// The end that a search reaches which begins at another one, a state with the branch of its solution, with those sliders free that stick there; `None` where no more do.
+/// The end that a search reaches from another one, given as a state with the branch of its solution, where the sliders that stick there
+/// are free, too; `None` where no more do.
 /// `contacts` are those whose force is free, none: all that are.
 ///
 /// # Errors

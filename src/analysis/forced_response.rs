@@ -2,7 +2,7 @@
 
 use crate::analysis::all_solutions;
 use crate::analysis::forced_curve::alone;
-use crate::analysis::told_freedom::tell_freedom;
+use crate::analysis::freedom_warning::warn_of_freedom;
 use crate::error::Result;
 use crate::hooks::Hooks;
 use crate::model::Model;
@@ -32,7 +32,7 @@ pub fn forced_response(
         all_solutions::forced_response(model, solver, range, hooks)
     };
     if let Ok(branch) = &found {
-        tell_freedom(model, branch, hooks);
+        warn_of_freedom(model, branch, hooks);
     }
     found
 }

@@ -5,14 +5,14 @@
 //! its distance to the resonance, or the bandwidth, or the time in which the phase of a quick crossing turns. Dwells and slow changes cost
 //! one step each. The memory of sliders is left out; see [`run_up`](crate::run_up).
 
+use crate::analysis::run_up::loaded;
 use crate::analysis::run_up::mode_table::{ModeTable, Oscillator, Place};
 use crate::analysis::run_up::other_modes::OtherModes;
 use crate::analysis::run_up::slow_flow::{slow_root, steady};
-use crate::analysis::synthesis::{load_of, synthesise_with};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::options::{MissionOptions, SynthesisOptions};
+use crate::options::MissionOptions;
 use crate::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -86,21 +86,11 @@ pub fn mission(
     if model.excitation().has_unbalance() {
         return fail!(Unsupported, "an unbalance follows the frequency, which changes");
     }
-    let compared = SynthesisOptions {
-        compare: true,
-        ..options.synthesis
-    };
-    let Some(load) = load_of(branch, model, &options.synthesis)? else {
-        return fail!(Argument, "the mode has no points");
-    };
-    let peaks = synthesise_with(branch, model, &compared, interrupt)?.peaks;
-    let highest = peaks
-        .iter()
-        .max_by(|a, b| a.at.modal_amplitude.total_cmp(&b.at.modal_amplitude));
+    let (load, highest) = loaded(branch, model, &options.synthesis, interrupt)?;
     let dof = options.dof.unwrap_or_else(|| branch.response_dof());
     let table = ModeTable::new(branch, model, (&load, &OtherModes::none()), (dof, &[]), interrupt)?;
     let mut steady_place = Place::default();
-    let steady_amplitude = match highest {
+    let steady_amplitude = match &highest {
         Some(peak) => {
             table.find(peak.at.modal_amplitude, &mut steady_place)?;
             table.coefficient(&steady_place, 0, 1).norm()
@@ -118,7 +108,7 @@ pub fn mission(
             damage: try_vec(options.stresses.len(), 0.0, CONTEXT)?,
             crossings: Vec::new(),
             steps: 0,
-            error: highest.map_or(f64::NAN, |peak| peak.validity.error),
+            error: highest.as_ref().map_or(f64::NAN, |peak| peak.validity.error),
         },
     };
     walk.run(interrupt)?;

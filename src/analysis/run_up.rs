@@ -18,7 +18,7 @@ use crate::analysis::run_up::slider_memory::{Defect, SliderMemory};
 pub use crate::analysis::run_up::slow_flow::RunUpTurn;
 use crate::analysis::run_up::slow_flow::SlowFlow;
 use crate::analysis::run_up::slow_path::SlowPath;
-use crate::analysis::synthesis::{SynthesisPeak, load_of, synthesise_with};
+use crate::analysis::synthesis::{Load, SynthesisPeak, load_of, synthesise_with};
 use crate::error::{Result, fail};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -35,7 +35,7 @@ const RUN_UP_MOST_REPEATS: usize = 8;
 const RUN_UP_REPEATED: f64 = 1e-5;
 
 /// Phase over which the memory is averaged, two turns: the change of the amplitude in it is the share of the second order.
-const AVERAGED: f64 = 2.0 * TAU;
+const RUN_UP_AVERAGED: f64 = 2.0 * TAU;
 
 /// A run-up by the slow flow.
 #[derive(Clone, Debug)]
@@ -86,14 +86,7 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
             "an unbalance or a speed follows the frequency, which changes"
         );
     }
-    let compared = SynthesisOptions {
-        compare: true,
-        ..options.synthesis
-    };
-    let Some(load) = load_of(branch, model, &options.synthesis)? else {
-        return fail!(Argument, "the mode has no points");
-    };
-    let peaks = synthesise_with(branch, model, &compared, interrupt)?.peaks;
+    let (load, highest) = loaded(branch, model, &options.synthesis, interrupt)?;
     let system = System::unforced(model, options.omega_start, interrupt)?;
     let dof = options.dof.unwrap_or_else(|| branch.response_dof());
     let number = branch.mode_data().map_or(0, |data| data.info.index);
@@ -129,10 +122,11 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
             break;
         }
     }
-    let highest = highest(&peaks);
-    let steady = highest.map_or(f64::NAN, |peak| peak.at.response.norm());
-    let of_steady = highest.map_or(f64::NAN, |peak| peak.validity.error.abs() * steady);
-    // What the memory changes in the last time that the flow remembers, phase and amplitude, and how quickly the amplitude changes in it.
+    let steady = highest.as_ref().map_or(f64::NAN, |peak| peak.at.response.norm());
+    let of_steady = highest
+        .as_ref()
+        .map_or(f64::NAN, |peak| peak.validity.error.abs() * steady);
+    // The change by the memory in the last time that the flow remembers, phase and amplitude, and how quickly the amplitude changes in it.
     let mut place = Place::default();
     let amplitude = path.at(seen.largest_time).norm();
     table.find(amplitude, &mut place)?;
@@ -147,15 +141,33 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
         largest_omega: chirp.omega(seen.largest_time),
         largest: seen.largest,
         largest_time: seen.largest_time,
-        error: (change + of_steady + seen.beside + of_memory * (AVERAGED * growth).min(1.0)) / seen.largest,
+        error: (change + of_steady + seen.beside + of_memory * (RUN_UP_AVERAGED * growth).min(1.0)) / seen.largest,
         without_memory,
         steady,
         turns: seen.turns,
     })
 }
 
-fn highest(peaks: &[SynthesisPeak]) -> Option<&SynthesisPeak> {
-    peaks
-        .iter()
-        .max_by(|a, b| a.at.response.norm().total_cmp(&b.at.response.norm()))
+/// Forces and damping on a mode, and its highest steady resonance under them, compared with the computed one; none without a resonance.
+///
+/// # Errors
+/// Those of [`synthesise`](crate::synthesise); `Argument` for a mode without points.
+pub(super) fn loaded(
+    branch: &Branch,
+    model: &Model,
+    options: &SynthesisOptions,
+    interrupt: &Interrupt<'_>,
+) -> Result<(Load, Option<SynthesisPeak>)> {
+    let Some(load) = load_of(branch, model, options)? else {
+        return fail!(Argument, "the mode has no points");
+    };
+    let compared = SynthesisOptions {
+        compare: true,
+        ..*options
+    };
+    let peaks = synthesise_with(branch, model, &compared, interrupt)?.peaks;
+    let highest = peaks
+        .into_iter()
+        .max_by(|a, b| a.at.response.norm().total_cmp(&b.at.response.norm()));
+    Ok((load, highest))
 }

@@ -7,11 +7,11 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::results::Branch;
 
-/// Tells a caller who has a log that the response depends on residual forces. Without a log nothing is computed, and the branch is
+/// Warns a caller who has a log that the response depends on residual forces. Without a log nothing is computed, and the branch is
 /// complete whether or not the line can be written.
 // Inlined, its variables would lie on the stack under every response.
 #[inline(never)]
-pub(super) fn tell_freedom(model: &Model, branch: &Branch, hooks: &mut Hooks<'_>) {
+pub(super) fn warn_of_freedom(model: &Model, branch: &Branch, hooks: &mut Hooks<'_>) {
     if hooks.log.is_none() || branch.status() != Status::Ok {
         return;
     }
