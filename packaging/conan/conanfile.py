@@ -24,7 +24,7 @@ class Hbvib(ConanFile):
 
     def export_sources(self):
         for pattern in ("src/*", "crates/*", "include/*", "examples/install*", "build.rs", "cbindgen.toml", "Cargo.*", "LICENSE-*",
-                        "benches/*", "docs/statuses.md", "docs/theory.md", "README.md"):
+                        "benches/*", "tests/Cargo.toml", "tests/units/*", "docs/statuses.md", "docs/theory.md", "README.md"):
             copy(self, pattern, self._root, self.export_sources_folder)
 
     def validate(self):
