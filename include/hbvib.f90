@@ -423,16 +423,19 @@ module hbvib
 
    !> Options of hbvib_branch_run_up.
    type, bind(c) :: hbvib_run_up_options
-      integer(c_int32_t) :: struct_size = 56, model_damping = 0
+      integer(c_int32_t) :: struct_size = 64, model_damping = 0
       real(c_double) :: omega_start = 0, omega_stop = 0, rate = 0
       integer(c_int64_t) :: dof = -1
       real(c_double) :: force_factor = 1, damping_ratio = 0
+      integer(c_int64_t) :: integrated_turns = 10000
    end type hbvib_run_up_options
 
    !> Numbers of a run-up.
    type, bind(c) :: hbvib_run_up_info
-      integer(c_int32_t) :: struct_size = 56, reserved = 0
-      real(c_double) :: largest = 0, largest_omega = 0, largest_time = 0, error = 0, without_memory = 0, steady = 0
+      integer(c_int32_t) :: struct_size = 72, reserved = 0
+      real(c_double) :: largest = 0, largest_omega = 0, largest_time = 0, error = 0, without_memory = 0, steady = 0, &
+         slow_flow = 0
+      integer(c_int64_t) :: integrated = 0
    end type hbvib_run_up_info
 
    !> A mission of hbvib_branch_mission.
@@ -449,6 +452,12 @@ module hbvib
       real(c_double) :: woehler_stress = 0, woehler_cycles = 0, woehler_slope = 0, woehler_slope_below = 0, force_factor = 1, &
          damping_ratio = 0
    end type hbvib_mission_options
+
+   !> Options of hbvib_campbell_response.
+   type, bind(c) :: hbvib_campbell_options
+      integer(c_int32_t) :: struct_size = 32, model_damping = 0
+      real(c_double) :: engine_order = 1, acceleration = 0, damping_ratio = 0
+   end type hbvib_campbell_options
 
    !> Options of hbvib_verify.
    type, bind(c) :: hbvib_verify_options
@@ -1815,6 +1824,25 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_mission
 
+      function hbvib_campbell_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_campbell_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_campbell_options_init
+
+      function hbvib_campbell_response(branch, model, options, hooks, n, force_factors, speed, omega, amplitude, damping_ratio, &
+         passed, error) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch, model
+         type(hbvib_campbell_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: n
+         real(c_double), intent(in) :: force_factors(*)
+         real(c_double), intent(inout), optional :: speed(*), omega(*), amplitude(*), damping_ratio(*), passed(*), error(*)
+         integer(c_int32_t) :: status
+      end function hbvib_campbell_response
+
       function hbvib_verify_options_init(o, size_of_o) bind(c) result(status)
          import
          type(hbvib_verify_options), intent(inout) :: o
@@ -2207,7 +2235,7 @@ module hbvib
          real(c_double), intent(inout), optional :: depths(*), loads(*), works(*), amplitude(*), omega(*)
          integer(c_int64_t), value :: capacity
          real(c_double), intent(inout), optional :: event_cycles(*)
-         integer(c_int64_t), intent(inout), optional :: event_kind, event_contact(*), events
+         integer(c_int64_t), intent(inout), optional :: event_kind(*), event_contact(*), events
          type(hbvib_life_info), intent(inout), optional :: info
          integer(c_int32_t) :: status
       end function hbvib_life
@@ -2435,6 +2463,9 @@ module hbvib
       procedure :: sensitivity => model_sensitivity
       procedure :: batch => model_batch
       procedure :: parameter_response => model_parameter_response
+      procedure :: time_sweep => model_time_sweep
+      procedure :: life => model_life
+      procedure :: best_load_for_life => model_best_load_for_life
       procedure :: forced_residual => model_forced_residual
    end type hbvib_model
 
@@ -2468,6 +2499,9 @@ module hbvib
       procedure :: mode_info => branch_mode_info
       procedure :: synthesis => branch_synthesis
       procedure :: synthesis_peaks => branch_synthesis_peaks
+      procedure :: run_up => branch_run_up
+      procedure :: mission => branch_mission
+      procedure :: campbell_response => branch_campbell_response
    end type hbvib_branch
 
    !> hbvib_hooks(progress=..., log=..., log_level=..., user=c_loc(...), cancel=c_loc(flag), phase=...) from procedures.
@@ -2518,6 +2552,8 @@ module hbvib
    private :: branch_synthesis_peaks, model_verify, model_floquet, model_smallest_kick, &
       model_sensitivity, model_batch, branch_limit_cycles
    private :: branch_bifurcations
+   private :: turns_between, model_time_sweep, life_options, model_life, model_best_load_for_life, branch_run_up, branch_mission, &
+      branch_campbell_response
    private :: model_parameter_response, branch_optima, branch_turns, branch_higher_peaks
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
@@ -4298,6 +4334,177 @@ contains
       if (present(points)) points = int(counts)
    end function model_batch
 
+   !> Turns of forces whose angular frequency changes from one value to another at a rate; -1 where they are refused.
+   pure function turns_between(omega_start, omega_stop, rate) result(turns)
+      real(dp), intent(in) :: omega_start, omega_stop, rate
+      integer(i64) :: turns
+      real(dp) :: phase
+      turns = -1
+      if (.not. rate > 0) return
+      phase = abs(omega_stop**2 - omega_start**2)/(4*acos(-1._dp)*rate)
+      if (phase < 1e8_dp) turns = int(phase, i64)
+   end function turns_between
+
+   !> The motion of dof, from 1, in time while the angular frequency of the forces changes at a rate, from the periodic motion at the
+   !> first one on: info, and turn by turn the begin, the angular frequency there and the largest displacement.
+   function model_time_sweep(self, omega_start, omega_stop, rate, info, dof, time, omega, amplitude, tolerance, hooks) &
+      result(status)
+      class(hbvib_model), intent(in) :: self
+      real(dp), intent(in) :: omega_start, omega_stop, rate
+      type(hbvib_sweep_info), intent(out) :: info
+      integer, intent(in), optional :: dof
+      real(dp), allocatable, intent(out), optional :: time(:), omega(:), amplitude(:)
+      real(dp), intent(in), optional :: tolerance
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_sweep_options) :: options
+      real(dp), allocatable :: times(:), frequencies(:), largest(:)
+      integer(i64) :: room, n
+      status = HBVIB_OK
+      options%omega_start = omega_start
+      options%omega_stop = omega_stop
+      options%rate = rate
+      if (present(tolerance)) options%tolerance = tolerance
+      if (present(dof)) call to_zero(status, 'dof', int(dof, i64), hbvib_model_dofs(self%handle), options%dof)
+      if (status /= HBVIB_OK) return
+      room = turns_between(omega_start, omega_stop, rate) + 2
+      allocate (times(room), frequencies(room), largest(room))
+      n = 0
+      status = hbvib_time_sweep(self%handle, options, hooks, room, times, frequencies, largest, n, info)
+      if (status < HBVIB_OK) return
+      if (present(time)) time = times(:n)
+      if (present(omega)) omega = frequencies(:n)
+      if (present(amplitude)) amplitude = largest(:n)
+   end function model_time_sweep
+
+   !> Options of a life from arrays, whose contacts are numbered from 1; contacts receives them from 0.
+   subroutine life_options(status, self, contact, rate, options, contacts, area, stiffness, worn, omega, force, share, peak, &
+      accuracy, limit)
+      integer(i32), intent(inout) :: status
+      class(hbvib_model), intent(in) :: self
+      integer, intent(in) :: contact(:)
+      real(dp), intent(in), contiguous, target :: rate(:)
+      type(hbvib_life_options), intent(out) :: options
+      integer(i64), allocatable, target, intent(inout) :: contacts(:)
+      real(dp), intent(in), contiguous, target, optional :: area(:), stiffness(:, :), worn(:), omega(:), force(:), share(:)
+      real(dp), intent(in), optional :: peak(2), accuracy, limit
+      integer(i64) :: n, known
+      ! Calls that succeed clear the sentence of an error: the count first.
+      known = hbvib_model_contacts(self%handle)
+      n = size(contact)
+      call same_length(status, 'rate', size(rate, kind=i64), n)
+      if (present(area)) call same_length(status, 'area', size(area, kind=i64), n)
+      if (present(stiffness)) call same_length(status, 'stiffness', size(stiffness, kind=i64), n*n)
+      if (present(worn)) call same_length(status, 'worn', size(worn, kind=i64), n)
+      if (present(force) .and. present(omega)) call same_length(status, 'force', size(force, kind=i64), size(omega, kind=i64))
+      if (present(share) .and. present(omega)) call same_length(status, 'share', size(share, kind=i64), size(omega, kind=i64))
+      call to_zero_all(status, 'contact', contact, known, contacts)
+      if (status /= HBVIB_OK) return
+      options%contacts = c_loc(contacts)
+      options%contacts_len = n
+      options%rates = c_loc(rate)
+      if (present(area)) options%areas = c_loc(area)
+      if (present(stiffness)) options%stiffness = c_loc(stiffness)
+      if (present(worn)) options%worn = c_loc(worn)
+      if (present(omega)) then
+         options%duty_omega = c_loc(omega)
+         options%duties_len = size(omega, kind=i64)
+         if (present(force)) options%duty_force = c_loc(force)
+         if (present(share)) options%duty_share = c_loc(share)
+      end if
+      if (present(peak)) then
+         options%follow = HBVIB_LIFE_PEAK
+         options%omega_start = peak(1)
+         options%omega_stop = peak(2)
+      end if
+      if (present(accuracy)) options%tolerance = accuracy
+      if (present(limit)) options%limit = limit
+   end subroutine life_options
+
+   !> Wear of contacts, from 1, by the work of friction: rate is the worn volume per work of each. loads(:, k) are those at cycles(k),
+   !> which rise; depths and works likewise, amplitude(k) and its omega_at(k). Vibrations at omega(:), with force factors and shares of
+   !> the time, or in the peak within peak(2). stiffness: between the normals; that of each contact by default. Events have their
+   !> cycles, kind (HBVIB_LIFE_SLIPS ...) and contact, 0 for the amplitude. NaN where a life that ends early, with a positive status,
+   !> did not come.
+   function model_life(self, contact, rate, cycles, loads, info, omega, peak, depths, works, amplitude, omega_at, event_cycles, &
+      event_kind, event_contact, area, stiffness, worn, force, share, accuracy, limit, solver, tolerance, harmonics, hooks) &
+      result(status)
+      class(hbvib_model), intent(in) :: self
+      integer, intent(in) :: contact(:)
+      real(dp), intent(in), contiguous, target :: rate(:)
+      real(dp), intent(in), contiguous :: cycles(:)
+      real(dp), allocatable, intent(out) :: loads(:, :)
+      type(hbvib_life_info), intent(out), optional :: info
+      real(dp), intent(in), contiguous, target, optional :: omega(:)
+      real(dp), intent(in), optional :: peak(2)
+      real(dp), allocatable, intent(out), optional :: depths(:, :), works(:, :), amplitude(:), omega_at(:), event_cycles(:)
+      integer, allocatable, intent(out), optional :: event_kind(:), event_contact(:)
+      real(dp), intent(in), contiguous, target, optional :: area(:), stiffness(:, :), worn(:), force(:), share(:)
+      real(dp), intent(in), optional :: accuracy, limit, tolerance
+      type(hbvib_solver_options), intent(in), optional :: solver
+      integer, intent(in), optional :: harmonics
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      integer(i64), parameter :: room = 1024
+      type(hbvib_life_options) :: options
+      type(hbvib_life_info) :: numbers
+      type(hbvib_solver_options), allocatable :: chosen
+      integer(i64), allocatable, target :: contacts(:)
+      integer(i64) :: kinds(room), whose(room), n, m, events
+      real(dp) :: at(room)
+      real(dp), allocatable :: worn_depths(:, :), left(:, :), work(:, :), largest(:), frequency(:)
+      status = HBVIB_OK
+      call life_options(status, self, contact, rate, options, contacts, area, stiffness, worn, omega, force, share, peak, &
+                        accuracy, limit)
+      if (status == HBVIB_OK) call solver_from_one(status, solver, hbvib_model_dofs(self%handle), chosen, tolerance, harmonics)
+      if (status /= HBVIB_OK) return
+      n = size(contact)
+      m = size(cycles)
+      events = 0
+      allocate (worn_depths(n, m), left(n, m), work(n, m), largest(m), frequency(m))
+      status = hbvib_life(self%handle, chosen, options, hooks, m, cycles, worn_depths, left, work, largest, frequency, room, at, &
+                          kinds, whose, events, numbers)
+      if (status < HBVIB_OK) return
+      loads = left
+      events = min(events, room)
+      if (present(info)) info = numbers
+      if (present(depths)) depths = worn_depths
+      if (present(works)) works = work
+      if (present(amplitude)) amplitude = largest
+      if (present(omega_at)) omega_at = frequency
+      if (present(event_cycles)) event_cycles = at(:events)
+      if (present(event_kind)) event_kind = int(kinds(:events))
+      if (present(event_contact)) event_contact = int(whose(:events)) + 1
+   end function model_life
+
+   !> The factor on the loads of the contacts that wear, between factor_low and factor_high, with which the largest amplitude over a
+   !> life is least; as for life otherwise.
+   function model_best_load_for_life(self, contact, rate, cycles, factor_low, factor_high, best, omega, peak, area, &
+      stiffness, worn, force, share, accuracy, solver, tolerance, harmonics, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      integer, intent(in) :: contact(:)
+      real(dp), intent(in), contiguous, target :: rate(:)
+      real(dp), intent(in) :: cycles, factor_low, factor_high
+      type(hbvib_best_load), intent(out) :: best
+      real(dp), intent(in), contiguous, target, optional :: omega(:)
+      real(dp), intent(in), optional :: peak(2)
+      real(dp), intent(in), contiguous, target, optional :: area(:), stiffness(:, :), worn(:), force(:), share(:)
+      real(dp), intent(in), optional :: accuracy, tolerance
+      type(hbvib_solver_options), intent(in), optional :: solver
+      integer, intent(in), optional :: harmonics
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_life_options) :: options
+      type(hbvib_solver_options), allocatable :: chosen
+      integer(i64), allocatable, target :: contacts(:)
+      status = HBVIB_OK
+      call life_options(status, self, contact, rate, options, contacts, area, stiffness, worn, omega, force, share, peak, &
+                        accuracy)
+      if (status == HBVIB_OK) call solver_from_one(status, solver, hbvib_model_dofs(self%handle), chosen, tolerance, harmonics)
+      if (status /= HBVIB_OK) return
+      status = hbvib_best_load_for_life(self%handle, chosen, options, cycles, factor_low, factor_high, hooks, best)
+   end function model_best_load_for_life
+
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
    function model_forced_residual(self, omega, x, r, jac, d_omega, solver, hooks) result(status)
       class(hbvib_model), intent(in) :: self
@@ -4829,5 +5036,138 @@ contains
       if (present(error)) error = x(:n, 6)
       if (present(flags)) flags = bits(:n)
    end function branch_synthesis_peaks
+
+   !> The amplitude of dof, from 1, while the angular frequency of the forces of a model changes at a rate, by the slow flow of this
+   !> nonlinear mode, with the turns around the largest displacement integrated in time: info, and turn by turn the begin, the angular
+   !> frequency there, the largest displacement and the modal amplitude at the begin.
+   function branch_run_up(self, model, omega_start, omega_stop, rate, info, dof, time, omega, amplitude, modal_amplitude, &
+      force_factor, damping_ratio, model_damping, integrated_turns, hooks) result(status)
+      class(hbvib_branch), intent(in) :: self
+      class(hbvib_model), intent(in) :: model
+      real(dp), intent(in) :: omega_start, omega_stop, rate
+      type(hbvib_run_up_info), intent(out) :: info
+      integer, intent(in), optional :: dof, integrated_turns
+      real(dp), allocatable, intent(out), optional :: time(:), omega(:), amplitude(:), modal_amplitude(:)
+      real(dp), intent(in), optional :: force_factor, damping_ratio
+      logical, intent(in), optional :: model_damping
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_run_up_options) :: options
+      real(dp), allocatable :: times(:), frequencies(:), largest(:), modal(:)
+      integer(i64) :: room, n
+      status = HBVIB_OK
+      options%omega_start = omega_start
+      options%omega_stop = omega_stop
+      options%rate = rate
+      if (present(force_factor)) options%force_factor = force_factor
+      if (present(damping_ratio)) options%damping_ratio = damping_ratio
+      if (present(model_damping)) options%model_damping = merge(1_i32, 0_i32, model_damping)
+      if (present(integrated_turns)) options%integrated_turns = integrated_turns
+      if (present(dof)) call to_zero(status, 'dof', int(dof, i64), hbvib_model_dofs(model%handle), options%dof)
+      if (status /= HBVIB_OK) return
+      room = turns_between(omega_start, omega_stop, rate) + 2
+      allocate (times(room), frequencies(room), largest(room), modal(room))
+      n = 0
+      status = hbvib_branch_run_up(self%handle, model%handle, options, hooks, room, times, frequencies, largest, modal, n, info)
+      if (status /= HBVIB_OK) return
+      if (present(time)) time = times(:n)
+      if (present(omega)) omega = frequencies(:n)
+      if (present(amplitude)) amplitude = largest(:n)
+      if (present(modal_amplitude)) modal_amplitude = modal(:n)
+   end function branch_run_up
+
+   !> This nonlinear mode over speeds of rotation at times: amplitude at each time, cycles below the first of edges, between them and
+   !> above the last one, Miner's damage of each of stresses (per modal amplitude) by the line woehler: stress, cycles, slope, slope
+   !> below. passages(:, k): time, angular frequency, its change per time, largest and steady amplitude, cycles near it.
+   function branch_mission(self, model, times, speeds, amplitude, engine_order, dof, edges, cycles, stresses, woehler, damage, &
+      passages, error, force_factor, damping_ratio, model_damping, hooks) result(status)
+      class(hbvib_branch), intent(in) :: self
+      class(hbvib_model), intent(in) :: model
+      real(dp), intent(in), contiguous, target :: times(:), speeds(:)
+      real(dp), allocatable, intent(out) :: amplitude(:)
+      real(dp), intent(in), optional :: engine_order, woehler(4), force_factor, damping_ratio
+      integer, intent(in), optional :: dof
+      real(dp), intent(in), contiguous, target, optional :: edges(:), stresses(:)
+      real(dp), allocatable, intent(out), optional :: cycles(:), damage(:), passages(:, :)
+      real(dp), intent(out), optional :: error
+      logical, intent(in), optional :: model_damping
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_mission_options) :: options
+      real(dp), allocatable :: at(:), classes(:), sums(:), rows(:, :)
+      real(dp) :: relative(1)
+      integer(i64) :: room, n
+      status = HBVIB_OK
+      call same_length(status, 'speeds', size(speeds, kind=i64), size(times, kind=i64))
+      options%times = c_loc(times)
+      options%speeds = c_loc(speeds)
+      options%points_len = size(times, kind=i64)
+      if (present(engine_order)) options%engine_order = engine_order
+      if (present(edges)) then
+         options%edges = c_loc(edges)
+         options%edges_len = size(edges, kind=i64)
+      end if
+      if (present(stresses)) then
+         options%stresses = c_loc(stresses)
+         options%stresses_len = size(stresses, kind=i64)
+      end if
+      if (present(woehler)) then
+         options%woehler_stress = woehler(1)
+         options%woehler_cycles = woehler(2)
+         options%woehler_slope = woehler(3)
+         options%woehler_slope_below = woehler(4)
+      end if
+      if (present(force_factor)) options%force_factor = force_factor
+      if (present(damping_ratio)) options%damping_ratio = damping_ratio
+      if (present(model_damping)) options%model_damping = merge(1_i32, 0_i32, model_damping)
+      if (present(dof)) call to_zero(status, 'dof', int(dof, i64), hbvib_model_dofs(model%handle), options%dof)
+      if (status /= HBVIB_OK) return
+      room = 2*size(times, kind=i64) + 16
+      n = 0
+      allocate (at(size(times)), classes(options%edges_len + 1), sums(options%stresses_len), rows(6, room))
+      status = hbvib_branch_mission(self%handle, model%handle, options, hooks, at, classes, sums, room, rows, n, relative)
+      if (status /= HBVIB_OK) return
+      amplitude = at
+      if (present(cycles)) cycles = classes
+      if (present(damage)) damage = sums
+      if (present(passages)) passages = rows(:, :n)
+      if (present(error)) error = relative(1)
+   end function branch_mission
+
+   !> The highest resonance of this nonlinear mode where an engine order meets it, under each of force_factors, 1 by default: speed
+   !> of rotation, angular frequency, steady amplitude, damping ratio, the largest amplitude of a passage at the acceleration, and the
+   !> steady amplitude over the computed one, minus 1. added_damping: a damping ratio that is added to the mode's.
+   function branch_campbell_response(self, model, speed, omega, amplitude, damping_ratio, passed, error, engine_order, &
+      acceleration, force_factors, added_damping, model_damping, hooks) result(status)
+      class(hbvib_branch), intent(in) :: self
+      class(hbvib_model), intent(in) :: model
+      real(dp), allocatable, intent(out) :: speed(:)
+      real(dp), allocatable, intent(out), optional :: omega(:), amplitude(:), damping_ratio(:), passed(:), error(:)
+      real(dp), intent(in), optional :: engine_order, acceleration, added_damping
+      real(dp), intent(in), contiguous, optional :: force_factors(:)
+      logical, intent(in), optional :: model_damping
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_campbell_options) :: options
+      real(dp), allocatable :: factors(:), rows(:, :)
+      integer(i64) :: n
+      if (present(engine_order)) options%engine_order = engine_order
+      if (present(acceleration)) options%acceleration = acceleration
+      if (present(added_damping)) options%damping_ratio = added_damping
+      if (present(model_damping)) options%model_damping = merge(1_i32, 0_i32, model_damping)
+      factors = [1._dp]
+      if (present(force_factors)) factors = force_factors
+      n = size(factors, kind=i64)
+      allocate (rows(n, 6))
+      status = hbvib_campbell_response(self%handle, model%handle, options, hooks, n, factors, rows(:, 1), rows(:, 2), rows(:, 3), &
+                                       rows(:, 4), rows(:, 5), rows(:, 6))
+      if (status /= HBVIB_OK) return
+      speed = rows(:, 1)
+      if (present(omega)) omega = rows(:, 2)
+      if (present(amplitude)) amplitude = rows(:, 3)
+      if (present(damping_ratio)) damping_ratio = rows(:, 4)
+      if (present(passed)) passed = rows(:, 5)
+      if (present(error)) error = rows(:, 6)
+   end function branch_campbell_response
 
 end module hbvib

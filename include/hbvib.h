@@ -3542,8 +3542,11 @@ typedef struct {
   int64_t dof;
   /// Factor on all forces of the model, > 0; default 1.
   double force_factor;
-  /// Damping ratio that is added to the mode's; default 0.
+  /// Damping ratio that is added to the mode's; default 0. With one, nothing is integrated.
   double damping_ratio;
+  /// Most turns that are integrated in time around the largest displacement, which corrects it and
+  /// tells its error; default 10000; 0: none.
+  int64_t integrated_turns;
 } hbvib_run_up_options;
 
 /// Fills the options of a run-up: the degree of freedom of the mode, forces and damping as they
@@ -3567,14 +3570,19 @@ typedef struct {
   double largest_omega;
   /// That time, from the begin of the run-up.
   double largest_time;
-  /// Estimated relative error of the largest displacement; NaN where no steady resonance of the
-  /// mode under these forces was found to compare with.
+  /// Relative error of the largest displacement: by how much three leads of the integration in time
+  /// change it. Where `integrated` is 0 it is an estimate that may be too small; NaN where no
+  /// steady resonance of the mode under these forces was found to compare with.
   double error;
   /// The largest displacement without the memory of sliders.
   double without_memory;
   /// Amplitude of the highest steady resonance at the degree of freedom, in the fundamental; NaN
   /// without one.
   double steady;
+  /// The largest displacement by the slow flow alone.
+  double slow_flow;
+  /// Turns that were integrated in time; 0: none, and `largest` is that of the slow flow.
+  int64_t integrated;
 } hbvib_run_up_info;
 
 /// Fills the numbers of a run-up with zeros.
@@ -3587,11 +3595,12 @@ hbvib_status hbvib_run_up_info_init(hbvib_run_up_info *i, size_t size_of_i);
 
 /// The amplitude while the frequency of the forces changes at a constant rate, from the steady
 /// motion at the first frequency on, by the slow flow of a nonlinear mode with the memory of
-/// sliders. hbvib_time_sweep integrates the same motion in time.
+/// sliders. Turns around the largest displacement are integrated in time, which corrects it and
+/// tells its error. hbvib_time_sweep integrates the whole motion.
 ///
 /// branch           a nonlinear mode.
-/// model            a plain model as for hbvib_branch_synthesis; forces in other harmonics have no
-///                  effect.
+/// model            a plain model as for hbvib_branch_synthesis; forces in other harmonics act in
+///                  the turns that are integrated alone.
 /// options          frequencies and rate.
 /// hooks            phase and cancellation; NULL: none.
 /// capacity         numbers that fit into each array.
@@ -3701,6 +3710,67 @@ hbvib_status hbvib_branch_mission(const hbvib_branch *branch,
                                   double *crossing,
                                   int64_t *count,
                                   double *error);
+
+/// Options of hbvib_campbell_response. Fill it by hbvib_campbell_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// As of hbvib_synthesis_options; default 0.
+  int32_t model_damping;
+  /// Angular frequency of the forces over the speed of rotation, > 0; default 1.
+  double engine_order;
+  /// Change of the speed per time in a passage, either sign; default 0: no passage.
+  double acceleration;
+  /// Damping ratio that is added to the mode's; default 0.
+  double damping_ratio;
+} hbvib_campbell_options;
+
+/// Fills the options of resonances in a Campbell diagram: engine order 1, no passage.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_campbell_options_init(hbvib_campbell_options *o, size_t size_of_o);
+
+/// The highest resonance of a nonlinear mode where an engine order meets it, under each of several
+/// factors on the forces, and how much of it a passage reaches: the numbers of a Campbell diagram
+/// coloured by amplitude. A passage is that of hbvib_branch_mission. Several modes and engine
+/// orders are as many calls.
+///
+/// branch         a nonlinear mode.
+/// model          as for hbvib_branch_synthesis; its own speed has no effect.
+/// options        engine order, acceleration, damping; NULL: the defaults.
+/// hooks          phase and cancellation; NULL: none.
+/// n              number of factors, >= 1.
+/// force_factors  factors on all forces of the model, > 0, n numbers.
+/// speed          receives the speed of rotation of each resonance, n numbers, or NULL.
+/// omega          receives its angular frequency, n numbers, or NULL.
+/// amplitude      receives the steady amplitude of the degree of freedom of the mode, in the
+///                fundamental, n numbers, or NULL.
+/// damping_ratio  receives the damping ratio there, n numbers, or NULL.
+/// passed         receives the largest amplitude of the passage, n numbers, or NULL; NaN without
+///                acceleration.
+/// error          receives the steady amplitude over the computed one, minus 1, n numbers, or NULL;
+///                NaN where it was not computed.
+/// All numbers of a factor are NaN where the mode has no resonance under it within its amplitudes.
+/// Errors: HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION (options, factors, overlapping
+/// arrays; a passage that leaves the amplitudes of the mode), HBVIB_E_UNSUPPORTED (an unbalance
+/// with a passage), those of hbvib_branch_synthesis. HBVIB_STOPPED_BY_CALLER: nothing is written.
+/// Threads: any number on one model and branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_campbell_response(const hbvib_branch *branch,
+                                     const hbvib_model *model,
+                                     const hbvib_campbell_options *options,
+                                     const hbvib_hooks *hooks,
+                                     int64_t n,
+                                     const double *force_factors,
+                                     double *speed,
+                                     double *omega,
+                                     double *amplitude,
+                                     double *damping_ratio,
+                                     double *passed,
+                                     double *error);
 
 /// Options of hbvib_verify. Fill it by hbvib_verify_options_init.
 typedef struct {
@@ -5026,7 +5096,7 @@ hbvib_status hbvib_life_info_init(hbvib_life_info *i, size_t size_of_i);
 /// omega           receives their angular frequencies, n numbers, or NULL.
 /// capacity        events that fit into each of the next arrays.
 /// event_cycles    receives the cycles of the first events, or NULL.
-/// event_kind      receives values of enum hbvib_life_event, or NULL.
+/// event_kind      receives numbers of enum hbvib_life_event, or NULL.
 /// event_contact   receives numbers of contacts, -1 for the amplitude; or NULL.
 /// events          receives the number of events; or NULL.
 /// info            receives the numbers of the life; fill it by hbvib_life_info_init before; or

@@ -399,6 +399,10 @@ using SolverOptions = Filled<hbvib_solver_options, hbvib_solver_options_init>;
 using SynthesisOptions = Filled<hbvib_synthesis_options, hbvib_synthesis_options_init>;
 using RunUpOptions = Filled<hbvib_run_up_options, hbvib_run_up_options_init>;
 using MissionOptions = Filled<hbvib_mission_options, hbvib_mission_options_init>;
+using CampbellOptions = Filled<hbvib_campbell_options, hbvib_campbell_options_init>;
+using SweepInfo = Filled<hbvib_sweep_info, hbvib_sweep_info_init>;
+using LifeInfo = Filled<hbvib_life_info, hbvib_life_info_init>;
+using BestLoad = Filled<hbvib_best_load, hbvib_best_load_init>;
 using Reduction = Filled<hbvib_reduction, hbvib_reduction_init>;
 using Energy = Filled<hbvib_energy, hbvib_energy_init>;
 using ContactSummary = Filled<hbvib_contact_summary, hbvib_contact_summary_init>;
@@ -418,6 +422,37 @@ using Unknown = Filled<hbvib_unknown, hbvib_unknown_init>;
 using FitOptions = Filled<hbvib_fit_options, hbvib_fit_options_init>;
 using FitInfo = Filled<hbvib_fit_info, hbvib_fit_info_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
+
+/// Range and rate of a sweep in time. A guess handed in is borrowed until the sweep.
+struct SweepOptions : Filled<hbvib_sweep_options, hbvib_sweep_options_init> {
+  SweepOptions() = default;
+  SweepOptions(double from, double to, double per_time) { omega_start = from, omega_stop = to, rate = per_time; }
+  /// Start values of the first periodic motion, (H + 1) x ndof.
+  SweepOptions& start_from(Span<const Complex> x) { return start = detail::flat(x.data()), start_len = x.length(), *this; }
+};
+
+/// Contacts that wear, and the vibration that wears them. Arrays handed in are borrowed until the life was followed.
+struct LifeOptions : Filled<hbvib_life_options, hbvib_life_options_init> {
+  LifeOptions() = default;
+  /// Contacts, and the worn volume per work of each.
+  LifeOptions(Span<const Index> which, Span<const double> volumes) {
+    contacts = which.data(), contacts_len = which.length(), rates = volumes.data();
+    if (volumes.length() != which.length()) throw Error(HBVIB_E_DIMENSION, 2, "contacts and rates differ in length");
+  }
+  /// The peak between two angular frequencies, as it moves.
+  LifeOptions& peak(double from, double to) {
+    return follow = HBVIB_LIFE_PEAK, omega_start = from, omega_stop = to, *this;
+  }
+  /// Vibrations at angular frequencies.
+  LifeOptions& at(Span<const double> omega) {
+    return follow = HBVIB_LIFE_DUTIES, duty_omega = omega.data(), duties_len = omega.length(), *this;
+  }
+  /// Static stiffness between the normals of the contacts, contacts x contacts.
+  LifeOptions& coupled(Span<const double> s) {
+    if (s.length() != contacts_len * contacts_len) throw Error(HBVIB_E_DIMENSION, 1, "stiffness needs contacts x contacts numbers");
+    return stiffness = s.data(), *this;
+  }
+};
 
 /// Data of a test. Arrays handed in are borrowed until the fit.
 struct DataSet : Filled<hbvib_data, hbvib_data_init> {
@@ -854,9 +889,11 @@ struct SynthesisPeak {
 struct RunUp {
   std::vector<double> time, omega, amplitude, modal_amplitude;
   double largest, largest_omega, largest_time;
-  double error;           ///< Estimated relative error of the largest displacement, NaN if unknown.
+  double error;           ///< Relative error of the largest displacement; an estimate where nothing was integrated, NaN if unknown.
   double without_memory;  ///< The largest displacement without the memory of sliders.
   double steady;          ///< Amplitude of the highest steady resonance, NaN without one.
+  double slow_flow;       ///< The largest displacement by the slow flow alone.
+  Index integrated;       ///< Turns that were integrated in time; 0: none.
   double factor() const { return largest / steady; }
 };
 /// A passage of a mission through a resonance: its largest amplitude and the steady one, the cycles with at least 1/sqrt(2) of it.
@@ -868,6 +905,31 @@ struct Mission {
   std::vector<double> amplitude, cycles, damage;
   std::vector<Passage> passages;
   double error;
+};
+/// A sweep in time, turn by turn.
+struct TimeSweep {
+  std::vector<double> time, omega, amplitude;
+  SweepInfo info;
+  bool stopped;  ///< By a hook; the turns so far are kept.
+};
+/// A change of a contact over a life: kind is a hbvib_life_event, contact -1 for the amplitude.
+struct LifeEvent {
+  double cycles;
+  Index kind, contact;
+};
+/// A life at the wanted cycles: depths, loads and works have a row of `contacts` numbers for each. NaN where a life that ended early,
+/// with a positive status, did not come.
+struct Life {
+  Index contacts;
+  std::vector<double> depths, loads, works, amplitude, omega;
+  std::vector<LifeEvent> events;
+  LifeInfo info;
+  hbvib_status status;
+};
+/// Resonances of a mode in a Campbell diagram, a number for each factor on the forces; NaN where there is none.
+struct CampbellResponse {
+  std::vector<double> speed, omega, amplitude, damping_ratio, passed, error;
+  double factor(std::size_t i) const { return passed[i] / amplitude[i]; }
 };
 /// Damped natural modes.
 struct DampedModes {
@@ -1184,6 +1246,9 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   RunUp run_up(const Model& model, const RunUpOptions& options, const Hooks& hooks = {}) const;
   /// This nonlinear mode over a mission.
   Mission mission(const Model& model, const MissionOptions& options, const Hooks& hooks = {}) const;
+  /// The highest resonance of this nonlinear mode where an engine order meets it, under each factor on the forces.
+  CampbellResponse campbell_response(const Model& model, const CampbellOptions& options = CampbellOptions(),
+                                     In<double> force_factors = {}, const Hooks& hooks = {}) const;
 
  private:
   friend class Model;
@@ -1621,6 +1686,52 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
                               static_cast<Index>(numbers), out.residuals.data(), out.values.data(), nullptr));
     return out;
   }
+  /// The motion in time while the frequency of the forces changes at a constant rate.
+  TimeSweep time_sweep(const SweepOptions& options, const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const double square = options.omega_stop * options.omega_stop - options.omega_start * options.omega_start;
+    const double turns = options.rate > 0 ? std::abs(square) / (12.566370614359172 * options.rate) : 0;
+    Index count = turns < 1e8 ? static_cast<Index>(turns) + 2 : 2;
+    const std::size_t n = detail::extent(count);
+    TimeSweep out{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), SweepInfo(), false};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    const auto status = hbvib_time_sweep(get(), &options, &bound, count, out.time.data(), out.omega.data(), out.amplitude.data(), &count,
+                                         &out.info);
+    call.done(status);
+    out.stopped = status == HBVIB_STOPPED_BY_CALLER;
+    for (auto* list : {&out.time, &out.omega, &out.amplitude}) list->resize(detail::extent(count));
+    return out;
+  }
+  /// Wear over a life: states at the wanted cycles, in ascending order.
+  Life life(const LifeOptions& options, In<double> cycles, const SolverOptions& solver = SolverOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const std::size_t n = detail::extent(cycles.length()), all = n * detail::extent(options.contacts_len);
+    Life out{options.contacts_len, std::vector<double>(all), std::vector<double>(all), std::vector<double>(all), std::vector<double>(n),
+             std::vector<double>(n), {}, LifeInfo(), HBVIB_OK};
+    constexpr Index room = 1024;
+    std::vector<double> at(detail::extent(room));
+    std::vector<Index> kind(detail::extent(room)), contact(detail::extent(room));
+    Index events = 0;
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    out.status = hbvib_life(get(), &solver, &options, &bound, cycles.length(), cycles.data(), out.depths.data(), out.loads.data(),
+                            out.works.data(), out.amplitude.data(), out.omega.data(), room, at.data(), kind.data(), contact.data(), &events,
+                            &out.info);
+    call.done(out.status);
+    for (std::size_t i = 0; i < detail::extent(events < room ? events : room); i++) out.events.push_back({at[i], kind[i], contact[i]});
+    return out;
+  }
+  /// The factor on the loads of the contacts that wear, between two, with which the largest amplitude over a life is least.
+  BestLoad best_load_for_life(const LifeOptions& options, double cycles, double factor_low, double factor_high,
+                              const SolverOptions& solver = SolverOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    BestLoad out;
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    call.done_whole(hbvib_best_load_for_life(get(), &solver, &options, cycles, factor_low, factor_high, &bound, &out));
+    return out;
+  }
   /// The sliders of a point of a forced response that stick through the period and change its vibration. A hook that stops it is
   /// an Error.
   std::vector<FreeSlider> freedom(const Branch& branch, Index point, const Hooks& hooks = {}) const {
@@ -1810,7 +1921,7 @@ inline RunUp Branch::run_up(const Model& model, const RunUpOptions& options, con
   const double turns = options.rate > 0 ? std::abs(square) / (12.566370614359172 * options.rate) : 0;
   Index count = turns < 2e5 ? static_cast<Index>(turns) + 2 : 2;
   const std::size_t n = detail::extent(count);
-  RunUp up{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), 0, 0, 0, 0, 0, 0};
+  RunUp up{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), 0, 0, 0, 0, 0, 0, 0, 0};
   Filled<hbvib_run_up_info, hbvib_run_up_info_init> info;
   const detail::BoundHooks bound(hooks);
   detail::Call call;
@@ -1823,7 +1934,25 @@ inline RunUp Branch::run_up(const Model& model, const RunUpOptions& options, con
   up.error = info.error;
   up.without_memory = info.without_memory;
   up.steady = info.steady;
+  up.slow_flow = info.slow_flow;
+  up.integrated = info.integrated;
   return up;
+}
+
+inline CampbellResponse Branch::campbell_response(const Model& model, const CampbellOptions& options, In<double> force_factors,
+                                                  const Hooks& hooks) const {
+  const auto keep = model.core_;
+  const double one = 1;
+  const bool given = force_factors.length() > 0;
+  const Index n = given ? force_factors.length() : 1;
+  const std::vector<double> room(detail::extent(n));
+  CampbellResponse found{room, room, room, room, room, room};
+  const detail::BoundHooks bound(hooks);
+  detail::Call call;
+  call.done_whole(hbvib_campbell_response(get(), model.get(), &options, &bound, n, given ? force_factors.data() : &one, found.speed.data(),
+                                          found.omega.data(), found.amplitude.data(), found.damping_ratio.data(), found.passed.data(),
+                                          found.error.data()));
+  return found;
 }
 
 inline Mission Branch::mission(const Model& model, const MissionOptions& options, const Hooks& hooks) const {

@@ -356,6 +356,7 @@ typedef struct hbvib_sweep_info hbvib_sweep_info;
 typedef struct hbvib_run_up_options hbvib_run_up_options;
 typedef struct hbvib_run_up_info hbvib_run_up_info;
 typedef struct hbvib_mission_options hbvib_mission_options;
+typedef struct hbvib_campbell_options hbvib_campbell_options;
 typedef struct hbvib_verify_options hbvib_verify_options;
 typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
@@ -760,6 +761,7 @@ struct hbvib_run_up_options {
   int64_t dof;
   double force_factor;
   double damping_ratio;
+  int64_t integrated_turns;
 };
 struct hbvib_run_up_info {
   uint32_t struct_size;
@@ -770,6 +772,8 @@ struct hbvib_run_up_info {
   double error;
   double without_memory;
   double steady;
+  double slow_flow;
+  int64_t integrated;
 };
 struct hbvib_mission_options {
   uint32_t struct_size;
@@ -788,6 +792,13 @@ struct hbvib_mission_options {
   double woehler_slope;
   double woehler_slope_below;
   double force_factor;
+  double damping_ratio;
+};
+struct hbvib_campbell_options {
+  uint32_t struct_size;
+  int32_t model_damping;
+  double engine_order;
+  double acceleration;
   double damping_ratio;
 };
 struct hbvib_verify_options {
@@ -1141,6 +1152,8 @@ hbvib_status hbvib_run_up_info_init(hbvib_run_up_info *i, size_t size_of_i);
 hbvib_status hbvib_branch_run_up(const hbvib_branch *branch, const hbvib_model *model, const hbvib_run_up_options *options, const hbvib_hooks *hooks, int64_t capacity, double *time, double *omega, double *amplitude, double *modal_amplitude, int64_t *count, hbvib_run_up_info *info);
 hbvib_status hbvib_mission_options_init(hbvib_mission_options *o, size_t size_of_o);
 hbvib_status hbvib_branch_mission(const hbvib_branch *branch, const hbvib_model *model, const hbvib_mission_options *options, const hbvib_hooks *hooks, double *amplitude, double *cycles, double *damage, int64_t capacity, double *crossing, int64_t *count, double *error);
+hbvib_status hbvib_campbell_options_init(hbvib_campbell_options *o, size_t size_of_o);
+hbvib_status hbvib_campbell_response(const hbvib_branch *branch, const hbvib_model *model, const hbvib_campbell_options *options, const hbvib_hooks *hooks, int64_t n, const double *force_factors, double *speed, double *omega, double *amplitude, double *damping_ratio, double *passed, double *error);
 hbvib_status hbvib_verify_options_init(hbvib_verify_options *o, size_t size_of_o);
 hbvib_status hbvib_verification_init(hbvib_verification *v, size_t size_of_v);
 hbvib_status hbvib_verify(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_verify_options *options, const hbvib_hooks *hooks, double *harmonics, int64_t harmonics_len, double *errors, int64_t errors_len, hbvib_verification *out);

@@ -741,6 +741,7 @@ static const Struct SWEEP_INFO_STRUCT;
 static const Struct RUN_UP_OPTIONS_STRUCT;
 static const Struct RUN_UP_INFO_STRUCT;
 static const Struct MISSION_OPTIONS_STRUCT;
+static const Struct CAMPBELL_OPTIONS_STRUCT;
 static const Struct VERIFY_OPTIONS_STRUCT;
 static const Struct VERIFICATION_STRUCT;
 static const Struct FLOQUET_OPTIONS_STRUCT;
@@ -1105,6 +1106,7 @@ static const Field run_up_options_fields[] = {
   {"dof", INT64, offsetof(hbvib_run_up_options, dof), 1, NULL},
   {"force_factor", DOUBLE, offsetof(hbvib_run_up_options, force_factor), 1, NULL},
   {"damping_ratio", DOUBLE, offsetof(hbvib_run_up_options, damping_ratio), 1, NULL},
+  {"integrated_turns", INT64, offsetof(hbvib_run_up_options, integrated_turns), 1, NULL},
 };
 static hbvib_status run_up_options_fill(void *s) { return hbvib_run_up_options_init(s, sizeof(hbvib_run_up_options)); }
 static const Struct RUN_UP_OPTIONS_STRUCT = {"run_up_options", sizeof(hbvib_run_up_options), run_up_options_fields, sizeof run_up_options_fields / sizeof *run_up_options_fields, run_up_options_fill};
@@ -1116,6 +1118,8 @@ static const Field run_up_info_fields[] = {
   {"error", DOUBLE, offsetof(hbvib_run_up_info, error), 1, NULL},
   {"without_memory", DOUBLE, offsetof(hbvib_run_up_info, without_memory), 1, NULL},
   {"steady", DOUBLE, offsetof(hbvib_run_up_info, steady), 1, NULL},
+  {"slow_flow", DOUBLE, offsetof(hbvib_run_up_info, slow_flow), 1, NULL},
+  {"integrated", INT64, offsetof(hbvib_run_up_info, integrated), 1, NULL},
 };
 static hbvib_status run_up_info_fill(void *s) { return hbvib_run_up_info_init(s, sizeof(hbvib_run_up_info)); }
 static const Struct RUN_UP_INFO_STRUCT = {"run_up_info", sizeof(hbvib_run_up_info), run_up_info_fields, sizeof run_up_info_fields / sizeof *run_up_info_fields, run_up_info_fill};
@@ -1140,6 +1144,15 @@ static const Field mission_options_fields[] = {
 };
 static hbvib_status mission_options_fill(void *s) { return hbvib_mission_options_init(s, sizeof(hbvib_mission_options)); }
 static const Struct MISSION_OPTIONS_STRUCT = {"mission_options", sizeof(hbvib_mission_options), mission_options_fields, sizeof mission_options_fields / sizeof *mission_options_fields, mission_options_fill};
+
+static const Field campbell_options_fields[] = {
+  {"model_damping", INT32, offsetof(hbvib_campbell_options, model_damping), 1, NULL},
+  {"engine_order", DOUBLE, offsetof(hbvib_campbell_options, engine_order), 1, NULL},
+  {"acceleration", DOUBLE, offsetof(hbvib_campbell_options, acceleration), 1, NULL},
+  {"damping_ratio", DOUBLE, offsetof(hbvib_campbell_options, damping_ratio), 1, NULL},
+};
+static hbvib_status campbell_options_fill(void *s) { return hbvib_campbell_options_init(s, sizeof(hbvib_campbell_options)); }
+static const Struct CAMPBELL_OPTIONS_STRUCT = {"campbell_options", sizeof(hbvib_campbell_options), campbell_options_fields, sizeof campbell_options_fields / sizeof *campbell_options_fields, campbell_options_fill};
 
 static const Field verify_options_fields[] = {
   {"method", INT32, offsetof(hbvib_verify_options, method), 1, NULL},
@@ -2688,6 +2701,35 @@ static void call_branch_mission(Call *a) {
   finish(a, status_);
 }
 
+static void call_campbell_response(Call *a) {
+  const hbvib_branch *branch_ = handle(a, "branch");
+  const hbvib_model *model_ = handle(a, "model");
+  const hbvib_campbell_options *options_ = structs(a, "options", &CAMPBELL_OPTIONS_STRUCT);
+  const hbvib_hooks *hooks_ = hooks(a, "hooks");
+  int64_t n_ = whole(a, "n");
+  const double *force_factors_ = reals(a, "force_factors");
+  int64_t speed_n = room(a, "speed");
+  double *speed_ = array(speed_n, 1 * sizeof(double));
+  int64_t omega_n = room(a, "omega");
+  double *omega_ = array(omega_n, 1 * sizeof(double));
+  int64_t amplitude_n = room(a, "amplitude");
+  double *amplitude_ = array(amplitude_n, 1 * sizeof(double));
+  int64_t damping_ratio_n = room(a, "damping_ratio");
+  double *damping_ratio_ = array(damping_ratio_n, 1 * sizeof(double));
+  int64_t passed_n = room(a, "passed");
+  double *passed_ = array(passed_n, 1 * sizeof(double));
+  int64_t error_n = room(a, "error");
+  double *error_ = array(error_n, 1 * sizeof(double));
+  hbvib_status status_ = hbvib_campbell_response(branch_, model_, options_, hooks_, n_, force_factors_, speed_, omega_, amplitude_, damping_ratio_, passed_, error_);
+  give_reals(a, speed_, speed_n);
+  give_reals(a, omega_, omega_n);
+  give_reals(a, amplitude_, amplitude_n);
+  give_reals(a, damping_ratio_, damping_ratio_n);
+  give_reals(a, passed_, passed_n);
+  give_reals(a, error_, error_n);
+  finish(a, status_);
+}
+
 static void call_verify(Call *a) {
   const hbvib_model *model_ = handle(a, "model");
   const hbvib_branch *branch_ = handle(a, "branch");
@@ -3187,20 +3229,21 @@ static void call_life(Call *a) {
   int64_t capacity_ = whole(a, "capacity");
   int64_t event_cycles_n = room(a, "event_cycles");
   double *event_cycles_ = array(event_cycles_n, 1 * sizeof(double));
-  int64_t event_kind_ = 0;
+  int64_t event_kind_n = room(a, "event_kind");
+  int64_t *event_kind_ = array(event_kind_n, 1 * sizeof(int64_t));
   int64_t event_contact_n = room(a, "event_contact");
   int64_t *event_contact_ = array(event_contact_n, 1 * sizeof(int64_t));
   int64_t events_ = 0;
   hbvib_life_info info_;
   hbvib_life_info_init(&info_, sizeof info_);
-  hbvib_status status_ = hbvib_life(model_, solver_, options_, hooks_, n_, cycles_, depths_, loads_, works_, amplitude_, omega_, capacity_, event_cycles_, &event_kind_, event_contact_, &events_, &info_);
+  hbvib_status status_ = hbvib_life(model_, solver_, options_, hooks_, n_, cycles_, depths_, loads_, works_, amplitude_, omega_, capacity_, event_cycles_, event_kind_, event_contact_, &events_, &info_);
   give_reals(a, depths_, depths_n);
   give_reals(a, loads_, loads_n);
   give_reals(a, works_, works_n);
   give_reals(a, amplitude_, amplitude_n);
   give_reals(a, omega_, omega_n);
   give_reals(a, event_cycles_, event_cycles_n);
-  give_number(a, (double)event_kind_);
+  give_wholes(a, event_kind_, event_kind_n);
   give_wholes(a, event_contact_, event_contact_n);
   give_number(a, (double)events_);
   give_struct(a, &info_, &LIFE_INFO_STRUCT);
@@ -3478,6 +3521,7 @@ static const Function FUNCTIONS[] = {
   {"time_sweep", call_time_sweep, 7},
   {"branch_run_up", call_branch_run_up, 9},
   {"branch_mission", call_branch_mission, 10},
+  {"campbell_response", call_campbell_response, 12},
   {"verify", call_verify, 9},
   {"floquet", call_floquet, 9},
   {"smallest_kick", call_smallest_kick, 8},
@@ -3502,7 +3546,7 @@ static const Function FUNCTIONS[] = {
   {"band_curve", call_band_curve, 13},
   {"mode_band", call_mode_band, 15},
   {"static_history", call_static_history, 12},
-  {"life", call_life, 14},
+  {"life", call_life, 15},
   {"best_load_for_life", call_best_load_for_life, 7},
   {"fit", call_fit, 14},
   {"predict", call_predict, 12},

@@ -117,6 +117,7 @@ pub use analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
 pub use analysis::band_curve::{BandPoint, band_curve};
 pub use analysis::batch::{Batch, batch};
 pub use analysis::campbell::{Campbell, Crossing, campbell};
+pub use analysis::campbell_response::{CampbellResonance, campbell_response};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
 pub use analysis::damped_modes::{DampedModes, damped_modes};
@@ -154,9 +155,9 @@ pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 #[doc(inline)]
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
-    Amplitude, BatchOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions, LifeFollow, LifeOptions,
-    MissionOptions, ModeChoice, ModeOptions, Response, RunUpOptions, SolverOptions, SteadyMethod, SweepOptions,
-    SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
+    Amplitude, BatchOptions, CampbellResponseOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions,
+    LifeFollow, LifeOptions, MissionOptions, ModeChoice, ModeOptions, Response, RunUpOptions, SolverOptions,
+    SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
 };
 
 // Results.

@@ -980,11 +980,13 @@ sweep_options: uint32 struct_size; int32 reserved; double omega_start omega_stop
     int64 max_periods; pointer start; int64 start_len
 sweep_info: uint32 struct_size; int32 reserved; double largest largest_omega largest_time; int64 events
 run_up_options: uint32 struct_size; int32 model_damping; double omega_start omega_stop rate; int64 dof; double
-    force_factor damping_ratio
+    force_factor damping_ratio; int64 integrated_turns
 run_up_info: uint32 struct_size; int32 reserved; double largest largest_omega largest_time error without_memory steady
+    slow_flow; int64 integrated
 mission_options: uint32 struct_size; int32 model_damping; pointer times speeds; int64 points_len; double engine_order;
     int64 dof; pointer edges; int64 edges_len; pointer stresses; int64 stresses_len; double woehler_stress
     woehler_cycles woehler_slope woehler_slope_below force_factor damping_ratio
+campbell_options: uint32 struct_size; int32 model_damping; double engine_order acceleration damping_ratio
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
     response_error motion_error above distance peak peak_error residual; int64 periods events worst_response; double
@@ -1163,6 +1165,8 @@ run_up_info_init: run_up_info z
 branch_run_up: h h run_up_options hooks l p p p p p run_up_info
 mission_options_init: mission_options z
 branch_mission: h h mission_options hooks p p p l p p p
+campbell_options_init: campbell_options z
+campbell_response: h h campbell_options hooks l p p p p p p p
 verify_options_init: verify_options z
 verification_init: verification z
 verify: h h l verify_options hooks p l p l verification
@@ -1402,6 +1406,9 @@ if TYPE_CHECKING:
         def hbvib_mission_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_branch_mission(self, branch: Any, model: Any, options: Any, hooks: Any, amplitude: Any, cycles: Any,
             damage: Any, capacity: int, crossing: Any, count: Any, error: Any) -> int: ...
+        def hbvib_campbell_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_campbell_response(self, branch: Any, model: Any, options: Any, hooks: Any, n: int, force_factors: Any,
+            speed: Any, omega: Any, amplitude: Any, damping_ratio: Any, passed: Any, error: Any) -> int: ...
         def hbvib_verify_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_verification_init(self, v: Any, size_of_v: int) -> int: ...
         def hbvib_verify(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, harmonics: Any,

@@ -26,9 +26,12 @@ class RunUp(NamedTuple):
     time, omega    at the begin of each turn of the forces, arrays; modal_amplitude there.
     amplitude      the largest displacement within the turn: one cycle each.
     largest        of the run-up, at the angular frequency largest_omega and the time largest_time.
-    error          estimated relative error of it; NaN where the mode has no steady resonance to compare with.
+    error          relative error of it, from three leads of the integration in time. Where integrated is 0 it is an estimate that may be
+                   too small, NaN where the mode has no steady resonance to compare with.
     without_memory the largest displacement without the memory of sliders.
     steady         amplitude of the highest steady resonance; factor is largest over it.
+    slow_flow      the largest displacement by the slow flow alone.
+    integrated     turns that were integrated in time; 0: none.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.02)
@@ -48,6 +51,8 @@ class RunUp(NamedTuple):
     error: float
     without_memory: float
     steady: float
+    slow_flow: float
+    integrated: int
 
     @property
     def factor(self) -> float:
@@ -99,7 +104,7 @@ class Mission(NamedTuple):
 class CampbellResponse(NamedTuple):
     """Resonances of a Campbell diagram with their amplitudes; made by campbell_response.
 
-    engine_order, speed, omega   of each resonance: omega = engine_order speed.
+    engine_order, force_factor, speed, omega   of each resonance: omega = engine_order speed.
     amplitude      steady peak of the mode under its force, of the fundamental of its response degree of freedom.
     damping_ratio  there.
     passed         largest amplitude of a passage at the acceleration; factor is passed over amplitude, NaN without acceleration.
@@ -108,10 +113,11 @@ class CampbellResponse(NamedTuple):
     >>> import hbvib
     >>> import numpy as np
     >>> one = np.ones(1)
-    >>> hbvib.CampbellResponse(one, one, one, one, one, 0.5 * one, one).factor
+    >>> hbvib.CampbellResponse(one, one, one, one, one, one, 0.5 * one, one).factor
     array([0.5])
     """
     engine_order: FloatArray
+    force_factor: FloatArray
     speed: FloatArray
     omega: FloatArray
     amplitude: FloatArray
@@ -155,11 +161,14 @@ class CampbellResponse(NamedTuple):
         return _plots.campbell_response(self, diagram, ax, hertz)
 
 
-def campbell_response(resonances: Sequence[tuple[Branch, Model, float]], acceleration: float = 0.0) -> CampbellResponse:
+def campbell_response(resonances: Sequence[tuple[Branch, Model, float]], acceleration: float = 0.0, *,
+                      force_factors: ArrayLike = (1.0,), damping_ratio: float = 0.0, model_damping: int = 0) -> CampbellResponse:
     """The highest resonance of each nonlinear mode under its forces, and how much of it a passage at an acceleration reaches.
 
-    resonances    (mode, model with the forces, engine order) of each.
-    acceleration  change of the speed per time, either sign; 0: none.
+    resonances     (mode, model with the forces, engine order) of each.
+    acceleration   change of the speed per time, either sign; 0: none.
+    force_factors  factors on the forces of the models, each with resonances of its own.
+    damping_ratio, model_damping   as in synthesis.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.02)
@@ -170,24 +179,16 @@ def campbell_response(resonances: Sequence[tuple[Branch, Model, float]], acceler
     >>> found.speed.round(2), found.damping_ratio.round(3), found.factor.round(2)
     (array([0.51]), array([0.036]), array([0.8]))
     """
-    rows: list[list[float]] = []
+    factors = _array("force_factors", force_factors, np.float64, [None])
+    blocks = []
     for mode, model, order in resonances:
-        peaks = mode.synthesis_peaks(model)
-        if not len(peaks.omega):
-            rows.append([order] + [float("nan")] * 6)
-            continue
-        top = int(np.argmax(peaks.amplitude))
-        omega, damping, amplitude = float(peaks.omega[top]), float(peaks.damping_ratio[top]), float(peaks.amplitude[top])
-        rate, passed = abs(order * acceleration), float("nan")
-        if rate > 0:
-            # Far enough on both sides for a steady begin and for the beat behind.
-            width = 15 * (damping * omega + rate**0.5)
-            low, high = max(omega - width, 0.2 * omega), omega + width
-            speeds = np.array([low, high] if acceleration > 0 else [high, low]) / order
-            flight = mode.mission(model, [0.0, (high - low) / rate], speeds, engine_order=order)
-            passed = float(flight.passage_amplitude.max()) if flight.passage_amplitude.size else float("nan")
-        rows.append([order, omega / order, omega, amplitude, damping, passed, float(peaks.error[top])])
-    columns: Any = np.array(rows, dtype=float).reshape(len(rows), 7).T.copy()
+        options = _new("hbvib_campbell_options", engine_order=order, acceleration=acceleration, damping_ratio=damping_ratio,
+                       model_damping=model_damping)
+        rows = np.empty((8, factors.size))
+        rows[0], rows[1] = order, factors
+        _call("hbvib_campbell_response", mode.handle, model.handle, options, None, factors.size, factors, *rows[2:])
+        blocks.append(rows)
+    columns: Any = np.concatenate(blocks, axis=1) if blocks else np.empty((8, 0))
     return CampbellResponse(*columns)
 
 
@@ -195,14 +196,17 @@ class _RunUps(_Owner):
     """Methods of Branch for run-ups and missions."""
 
     def run_up(self, model: Model, omega: ArrayLike, rate: float, *, dof: int = -1, force_factor: float = 1.0,
-               damping_ratio: float = 0.0, model_damping: int = 0, phase: Hook = None, cancel: Optional[CancelFlag] = None) -> RunUp:
+               damping_ratio: float = 0.0, model_damping: int = 0, integrated_turns: int = 10_000, phase: Hook = None,
+               cancel: Optional[CancelFlag] = None) -> RunUp:
         """The amplitude while the frequency of the forces of a plain model changes at a constant rate, from the steady motion at the
-        first frequency on, by the slow flow of this nonlinear mode with the memory of sliders. Model.time_sweep integrates in time.
+        first frequency on, by the slow flow of this nonlinear mode with the memory of sliders. Turns around the largest displacement are
+        integrated in time, which corrects it and tells its error. Model.time_sweep integrates all.
 
         omega        (start, stop), angular frequencies; stop < start runs down.
         rate         change of the angular frequency per time, > 0 in both senses.
         dof          degree of freedom whose displacement is observed; -1: that of the mode.
-        force_factor, damping_ratio, model_damping   as in synthesis.
+        force_factor, damping_ratio, model_damping   as in synthesis; with a damping_ratio nothing is integrated.
+        integrated_turns   most turns that are integrated in time; 0: none.
         phase, cancel   as in nonlinear_mode; Stopped is raised where they stop it.
 
         >>> import hbvib
@@ -217,7 +221,7 @@ class _RunUps(_Owner):
         """
         begin, end = _range("omega", omega, "run_up(model, (0.8, 1.3), rate=1e-3)")
         options = _new("hbvib_run_up_options", omega_start=begin, omega_stop=end, rate=rate, dof=dof, force_factor=force_factor,
-                       damping_ratio=damping_ratio, model_damping=model_damping)
+                       damping_ratio=damping_ratio, model_damping=model_damping, integrated_turns=integrated_turns)
         turns = abs(end * end - begin * begin) / (4 * np.pi * abs(rate)) if rate else 0.0
         room = int(min(turns, 2e5)) + 2 if turns == turns else 2
         lists = [np.empty(room) for _ in range(4)]
@@ -229,7 +233,7 @@ class _RunUps(_Owner):
             raise Stopped(_sentence(status), Status(status), 0)
         time, frequency, amplitude, modal = (values[:count.value].copy() for values in lists)
         return RunUp(time, frequency, amplitude, modal, info.largest, info.largest_omega, info.largest_time, info.error,
-                     info.without_memory, info.steady)
+                     info.without_memory, info.steady, info.slow_flow, info.integrated)
 
     def mission(self, model: Model, time: ArrayLike, speed: ArrayLike, *, engine_order: float = 1.0, dof: int = -1,
                 edges: ArrayLike = (), stresses: ArrayLike = (), woehler: Optional[Sequence[float]] = None, force_factor: float = 1.0,

@@ -15,16 +15,16 @@ use crate::options::{LifeOptions, SolverOptions};
 
 const CONTEXT: &str = "the life";
 
-/// Share of the tolerance by which loads change over the step across an event.
-const LIFE_EVENT: f64 = 1e-2;
+/// Share of the tolerance by which the straight step across an event may err. Chosen: a twentieth does not add to the error.
+const LIFE_EVENT: f64 = 0.05;
 
-/// Share of the distance to an event that the step before it goes.
-const LIFE_APPROACH: f64 = 0.95;
+/// Share of the length across an event that the step before it leaves. Chosen: the path ahead errs by less than the rest of that length.
+const LIFE_APPROACH: f64 = 0.7;
 
-/// Vibrations that are looked at to find an event.
+/// Vibrations that are looked at to find an event. A cap: two or three on the chains of the tests.
 const LIFE_EVENT_TRIES: usize = 12;
 
-/// Halvings of a step that fails.
+/// Halvings of a step that fails. A cap.
 const LIFE_HALVINGS: usize = 40;
 
 /// Change of a contact, or of the amplitude.
@@ -172,6 +172,8 @@ impl Walk<'_> {
         let mut last: Option<LifeStep> = None;
         let mut delta = self.first_length(&at, end);
         let mut halvings = 0;
+        // The event that lies ahead, once a step has met it.
+        let mut met: Option<f64> = None;
         while at.n < end {
             hooks.interrupt().phase(Phase::Continuation, at.n / end)?;
             if self.found.steps >= self.options.most_steps {
@@ -181,8 +183,20 @@ impl Walk<'_> {
                 ));
             }
             let rest = end - at.n;
+            if let Some(event) = met {
+                let (distance, across) = (event - at.n, self.length_across(&at, rest)?);
+                if distance <= across {
+                    at = self.across(&at, (event, across), hooks)?;
+                    (last, met) = (None, None);
+                    delta = self.first_length(&at, end - at.n);
+                    continue;
+                }
+                delta = delta.min(distance - LIFE_APPROACH * across);
+            }
             // A step of the last hundredth alone would be lost on rounding.
-            let length = if delta >= 0.99 * rest {
+            let length = if met.is_some() {
+                delta
+            } else if delta >= 0.99 * rest {
                 rest
             } else {
                 delta.min(0.5 * rest).max(0.01 * delta)
@@ -210,21 +224,16 @@ impl Walk<'_> {
                 }
             };
             if let Some(event) = self.event(&at, last.as_ref(), &step, hooks)? {
-                // Steps before an event know nothing of what follows it.
-                let distance = event - at.n;
-                let across = self.length_across(&at, length);
-                if distance > across {
-                    // An event at the end of the step alone is known no better.
-                    delta = if distance < length {
-                        LIFE_APPROACH * distance
-                    } else {
-                        0.5 * length
-                    };
-                    continue;
+                // Steps before an event know nothing of what follows it. One that is met again is nearer than it seemed.
+                halvings += 1;
+                if halvings > LIFE_HALVINGS {
+                    return Err(Error::new(
+                        Status::StoppedStepTooSmall,
+                        format_args!("the life does not pass a change of a contact at {} cycles", at.n),
+                    ));
                 }
-                at = self.across(&at, distance.max(0.0) + across, hooks)?;
-                last = None;
-                delta = self.first_length(&at, end - at.n);
+                met = Some(event);
+                delta = if event < step.to.n { length } else { 0.5 * length };
                 continue;
             }
             let (error, power) = step.error(&self.states, last.as_ref())?;
@@ -257,9 +266,10 @@ impl Walk<'_> {
         }
     }
 
-    /// Cycles over which loads change by the share of the tolerance that a step across an event may have, at most those of the step.
-    fn length_across(&self, at: &LifeState, length: f64) -> f64 {
-        (LIFE_EVENT * self.options.tolerance / at.size_of(&self.states, &at.worn.rate)).min(length)
+    /// Cycles before and after an event that a straight step may go: twice these, it errs by the share of the tolerance.
+    fn length_across(&self, at: &LifeState, length: f64) -> Result<f64> {
+        let bent = at.size_of(&self.states, &at.second()?);
+        Ok((0.5 * LIFE_EVENT * self.options.tolerance / bent).sqrt().min(length))
     }
 
     /// Cycles at which a contact changes its state within a step, if one does: along the path of the states before it, on which the work of
@@ -276,26 +286,27 @@ impl Walk<'_> {
         }
         let (mut low, mut high) = (at.n, step.to.n);
         let mut n = high;
-        let across = self.length_across(at, step.length());
+        let across = self.length_across(at, step.length())?;
         for tries in 0..LIFE_EVENT_TRIES {
-            let depths = ahead((at, last), n - at.n)?;
-            let probe = LifeState {
-                n,
-                worn: self.states.at(&depths, hooks)?,
-                depths,
+            // The end of the step is the first probe.
+            let probe = if tries == 0 {
+                step.to.clone()
+            } else {
+                let depths = ahead((at, last), n - at.n)?;
+                LifeState {
+                    n,
+                    worn: self.states.at(&depths, hooks)?,
+                    depths,
+                }
             };
             let changed = at.worn.changes(&probe.worn);
-            if !changed && tries == 0 {
-                // The step alone meets the change: it is near its end.
-                return Ok(Some(high));
-            }
             if changed {
                 high = n;
             } else {
                 low = n;
             }
             let root = self.estimate(at, &probe).filter(|root| *root >= low && *root <= high);
-            let close = root.is_some_and(|root| (root - n).abs() <= 0.1 * across);
+            let close = root.is_some_and(|root| (root - n).abs() <= 0.5 * across);
             if close || high - low <= across {
                 return Ok(Some(root.unwrap_or(high)));
             }
@@ -332,24 +343,28 @@ impl Walk<'_> {
         first
     }
 
-    /// The state a short distance ahead, beyond an event; the events are recorded.
-    fn across(&mut self, at: &LifeState, distance: f64, hooks: &mut Hooks<'_>) -> Result<LifeState> {
-        let mut length = distance;
+    /// The state a short distance beyond an event; the events are recorded.
+    fn across(&mut self, at: &LifeState, (event, beyond): (f64, f64), hooks: &mut Hooks<'_>) -> Result<LifeState> {
+        let end = self.options.cycles.last().copied().unwrap_or(at.n);
+        let mut length = ((event - at.n).max(0.0) + beyond).min(end - at.n);
         for _ in 0..LIFE_HALVINGS {
             let mut depths = try_copy(&at.depths, CONTEXT)?;
             for (h, rate) in depths.iter_mut().zip(&at.worn.rate) {
                 *h += length * rate;
             }
             let to = LifeState {
-                n: at.n + length,
+                n: if length < end - at.n { at.n + length } else { end },
                 worn: self.states.at(&depths, hooks)?,
                 depths,
             };
-            if !at.worn.changes(&to.worn) {
-                length *= 2.0;
+            if at.worn.changes(&to.worn) {
+                // Next to the event the state tells it best.
+                let root = self.estimate(at, &to).unwrap_or(event);
+                self.tell(&at.worn, &to.worn, root.clamp(at.n, to.n))?;
+            } else if to.n < end {
+                length = (2.0 * length).min(end - at.n);
                 continue;
             }
-            self.tell(&at.worn, &to)?;
             let step = LifeStep::short(at, to)?;
             self.record(&step, hooks)?;
             return Ok(step.to);
@@ -360,9 +375,8 @@ impl Walk<'_> {
         ))
     }
 
-    /// Records what has changed.
-    fn tell(&mut self, a: &WornState, to: &LifeState) -> Result<()> {
-        let b = &to.worn;
+    /// Records what has changed at an event.
+    fn tell(&mut self, a: &WornState, b: &WornState, cycles: f64) -> Result<()> {
         for (j, wear) in self.options.wear.iter().enumerate() {
             let kind = match (a.lost[j], b.lost[j], a.slips[j], b.slips[j]) {
                 (false, true, ..) => LifeEventKind::Lost,
@@ -372,7 +386,7 @@ impl Walk<'_> {
                 _ => continue,
             };
             let event = LifeEvent {
-                cycles: to.n,
+                cycles,
                 kind,
                 contact: Some(wear.contact),
             };

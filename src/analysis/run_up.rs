@@ -2,9 +2,10 @@
 //!
 //! The amplitude of the mode follows an oscillator whose frequency and damping depend on it. Contacts with sliders remember amplitudes
 //! before, which is an effect of the first order in the rate: it is found by passing the motion of the slow flow through the laws, and
-//! the slow flow is solved again with it, until it repeats.
+//! the slow flow is solved again with it, until it repeats. The turns around the largest displacement are then integrated in time.
 
 mod chirp;
+mod integrated;
 pub(super) mod mode_table;
 pub(super) mod other_modes;
 mod slider_memory;
@@ -12,6 +13,7 @@ pub(super) mod slow_flow;
 mod slow_path;
 
 use crate::analysis::run_up::chirp::Chirp;
+use crate::analysis::run_up::integrated::integrate;
 use crate::analysis::run_up::mode_table::{ModeTable, Place};
 use crate::analysis::run_up::other_modes::OtherModes;
 use crate::analysis::run_up::slider_memory::{Defect, SliderMemory};
@@ -28,13 +30,15 @@ use crate::results::Branch;
 use crate::time_integration::System;
 use std::f64::consts::TAU;
 
-/// Most solutions of the slow flow with the memory of the one before.
+/// Most solutions of the slow flow with the memory of the one before. A cap.
 const RUN_UP_MOST_REPEATS: usize = 8;
 
-/// Change of the largest displacement, relative, at which the memory is known.
+/// Change of the largest displacement, relative, at which the memory is known. A cap: below what the slow flow alone errs by, 2e-5 and more
+/// on the oscillator of the stored runs.
 const RUN_UP_REPEATED: f64 = 1e-5;
 
-/// Phase over which the memory is averaged, two turns: the change of the amplitude in it is the share of the second order.
+/// Phase over which the memory is averaged, two turns: the change of the amplitude in it is the share of the second order. Tuned on six
+/// models, of three of which it bounds all errors: it decides about the estimate without integration alone.
 const RUN_UP_AVERAGED: f64 = 2.0 * TAU;
 
 /// A run-up by the slow flow.
@@ -48,8 +52,13 @@ pub struct RunUp {
     pub largest_omega: f64,
     /// That time, from the begin.
     pub largest_time: f64,
-    /// Estimated relative error of the largest displacement; NaN where the mode has no resonance under these forces to compare with.
+    /// Relative error of the largest displacement: by how much three leads of the integration in time change it. Without integration it is an
+    /// estimate that may be too small, NaN where the mode has no resonance under these forces to compare with.
     pub error: f64,
+    /// The largest displacement by the slow flow alone.
+    pub slow_flow: f64,
+    /// Turns that were integrated in time, as many as the run-up has where all were; 0: none.
+    pub integrated: usize,
     /// The largest displacement without the memory of sliders.
     pub without_memory: f64,
     /// Amplitude of the highest steady resonance, with all harmonics of the mode; NaN without one.
@@ -137,15 +146,32 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
     );
     let growth = path.growth(last, |time| chirp.omega(time));
     let of_memory = path.distance(&simple, last) / amplitude.max(f64::MIN_POSITIVE) * seen.largest;
-    Ok(RunUp {
+    let slow_flow = seen.largest;
+    let mut found = RunUp {
         largest_omega: chirp.omega(seen.largest_time),
-        largest: seen.largest,
+        largest: slow_flow,
         largest_time: seen.largest_time,
-        error: (change + of_steady + seen.beside + of_memory * (RUN_UP_AVERAGED * growth).min(1.0)) / seen.largest,
+        error: (change + of_steady + seen.beside + of_memory * (RUN_UP_AVERAGED * growth).min(1.0)) / slow_flow,
+        slow_flow,
+        integrated: 0,
         without_memory,
         steady,
-        turns: seen.turns,
-    })
+        turns: Vec::new(),
+    };
+    let cost = (system.operations(), interrupt);
+    if let Some(part) = integrate(model, (&table, &mut seen), (options, &chirp, dof), cost)? {
+        found.largest = part.largest;
+        found.largest_time = part.largest_time;
+        found.largest_omega = part.largest_omega;
+        found.error = if part.turns > 0 {
+            part.error
+        } else {
+            part.error.max(found.error)
+        };
+        found.integrated = part.turns;
+    }
+    found.turns = seen.turns;
+    Ok(found)
 }
 
 /// Forces and damping on a mode, and its highest steady resonance under them, compared with the computed one; none without a resonance.

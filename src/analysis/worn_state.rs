@@ -37,6 +37,8 @@ pub(super) struct WornState {
     pub amplitude_by_depth: Vec<f64>,
     /// Its angular frequency.
     pub omega: f64,
+    /// Derivatives of a peak's frequency by the depths.
+    pub omega_by_depth: Vec<f64>,
     /// Whether each contact slips.
     pub slips: Vec<bool>,
     /// Whether each contact has lost its load.
@@ -58,6 +60,7 @@ struct Vibration {
     amplitude: f64,
     amplitude_by_load: Vec<f64>,
     omega: f64,
+    omega_by_load: Vec<f64>,
     slips: Vec<bool>,
 }
 
@@ -74,6 +77,8 @@ pub(super) struct WornStates<'a> {
     peak: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Number of states so far.
     pub solutions: usize,
+    /// Largest friction force of the first state, by its work and amplitude: the scale of loads that are 0 at rest.
+    friction: Option<f64>,
 }
 
 impl<'a> WornStates<'a> {
@@ -106,6 +111,7 @@ impl<'a> WornStates<'a> {
             guesses: try_vec(duties, Vec::new(), CONTEXT)?,
             peak: None,
             solutions: 0,
+            friction: None,
         })
     }
 
@@ -128,9 +134,11 @@ impl<'a> WornStates<'a> {
         self.model.contacts()[self.options.wear[i].contact].kn
     }
 
-    /// The largest load without wear, the unit of errors of loads.
+    /// The largest load without wear, or the friction force where that is larger, as in a patch that forces press: the unit of errors of
+    /// loads.
     pub fn load_unit(&self) -> f64 {
-        self.new.iter().fold(0.0_f64, |most, n| most.max(n.abs()))
+        let friction = self.friction.unwrap_or(0.0);
+        self.new.iter().fold(friction, |most, n| most.max(n.abs()))
     }
 
     /// The load of a contact under depths, which may be negative.
@@ -177,6 +185,7 @@ impl<'a> WornStates<'a> {
             amplitude: f64::NEG_INFINITY,
             amplitude_by_depth: try_vec(n, 0.0, CONTEXT)?,
             omega: 0.0,
+            omega_by_depth: try_vec(n, 0.0, CONTEXT)?,
             slips: try_vec(n, false, CONTEXT)?,
             lost,
         };
@@ -196,6 +205,12 @@ impl<'a> WornStates<'a> {
                 }
             }
         }
+        if self.friction.is_none() {
+            // A work is at most four times force and amplitude of the contact, which is taken to be that of the response.
+            let most = state.works.iter().fold(0.0_f64, |most, work| most.max(*work));
+            let force = 0.25 * most / state.amplitude.abs().max(f64::MIN_POSITIVE);
+            self.friction = Some(if force.is_finite() { force } else { 0.0 });
+        }
         for (j, wear) in self.options.wear.iter().enumerate() {
             let factor = wear.rate / wear.area;
             state.rate[j] = factor * state.works[j];
@@ -214,6 +229,7 @@ impl<'a> WornStates<'a> {
             state.amplitude = found.amplitude;
             state.omega = found.omega;
             state.amplitude_by_depth.fill(0.0);
+            state.omega_by_depth.fill(0.0);
         }
         for j in 0..n {
             state.slips[j] |= found.slips[j] && share > 0.0;
@@ -233,6 +249,7 @@ impl<'a> WornStates<'a> {
                 }
                 if largest {
                     state.amplitude_by_depth[l] -= s * found.amplitude_by_load[k];
+                    state.omega_by_depth[l] -= s * found.omega_by_load[k];
                 }
             }
         }
@@ -402,6 +419,10 @@ impl<'a> WornStates<'a> {
             amplitude,
             amplitude_by_load: try_vec(n, 0.0, CONTEXT)?,
             omega,
+            omega_by_load: match peak {
+                Some(shift) => crate::error::try_copy(shift, CONTEXT)?,
+                None => try_vec(n, 0.0, CONTEXT)?,
+            },
             slips: try_vec(n, false, CONTEXT)?,
         };
         let at_frequency = model.at_frequency(omega)?;
@@ -433,7 +454,7 @@ impl<'a> WornStates<'a> {
             let Some(law) = law.filter(|_| found.slips[j]) else {
                 continue;
             };
-            let (work, adjoint) = at.work(u, omega, &law.coordinates)?;
+            let (work, adjoint) = at.work((u, omega), (law, samples))?;
             found.works[j] = work.max(0.0);
             gradient(&adjoint, &mut by_load)?;
             let own = (&*at_frequency, wear.contact, constant(model, wear.contact));

@@ -312,7 +312,7 @@ impl Wanted {
 /// omega           receives their angular frequencies, n numbers, or NULL.
 /// capacity        events that fit into each of the next arrays.
 /// event_cycles    receives the cycles of the first events, or NULL.
-/// event_kind      receives values of enum hbvib_life_event, or NULL.
+/// event_kind      receives numbers of enum hbvib_life_event, or NULL.
 /// event_contact   receives numbers of contacts, -1 for the amplitude; or NULL.
 /// events          receives the number of events; or NULL.
 /// info            receives the numbers of the life; fill it by hbvib_life_info_init before; or

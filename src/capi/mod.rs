@@ -36,6 +36,7 @@ mod band_curves;
 mod batch;
 mod caller_laws;
 mod caller_laws_check;
+mod campbell_response;
 mod complex_sensitivities;
 mod contacts;
 mod contacts_batch;

@@ -14,7 +14,7 @@ use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
 use crate::analysis;
 use crate::error::{Error, Result, Status, fail};
 use crate::model::Model;
-use crate::options::{MissionOptions, RunUpOptions, SynthesisOptions, Woehler};
+use crate::options::{MissionOptions, RUN_UP_INTEGRATED_TURNS, RunUpOptions, SynthesisOptions, Woehler};
 use core::ptr;
 
 /// Options of hbvib_branch_run_up. Fill it by hbvib_run_up_options_init, then set frequencies and
@@ -36,13 +36,16 @@ pub struct hbvib_run_up_options {
     pub dof: i64,
     /// Factor on all forces of the model, > 0; default 1.
     pub force_factor: f64,
-    /// Damping ratio that is added to the mode's; default 0.
+    /// Damping ratio that is added to the mode's; default 0. With one, nothing is integrated.
     pub damping_ratio: f64,
+    /// Most turns that are integrated in time around the largest displacement, which corrects it and
+    /// tells its error; default 10000; 0: none.
+    pub integrated_turns: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_run_up_options {
     const NAME: &'static str = "hbvib_run_up_options";
-    const FIRST_SIZE: usize = 56;
+    const FIRST_SIZE: usize = 64;
 
     fn defaults() -> Self {
         let defaults = SynthesisOptions::default();
@@ -55,6 +58,7 @@ unsafe impl VersionedStruct for hbvib_run_up_options {
             dof: -1,
             force_factor: defaults.force_factor,
             damping_ratio: defaults.damping_ratio,
+            integrated_turns: RUN_UP_INTEGRATED_TURNS as i64,
         }
     }
 }
@@ -84,19 +88,24 @@ pub struct hbvib_run_up_info {
     pub largest_omega: f64,
     /// That time, from the begin of the run-up.
     pub largest_time: f64,
-    /// Estimated relative error of the largest displacement; NaN where no steady resonance of the
-    /// mode under these forces was found to compare with.
+    /// Relative error of the largest displacement: by how much three leads of the integration in time
+    /// change it. Where `integrated` is 0 it is an estimate that may be too small; NaN where no
+    /// steady resonance of the mode under these forces was found to compare with.
     pub error: f64,
     /// The largest displacement without the memory of sliders.
     pub without_memory: f64,
     /// Amplitude of the highest steady resonance at the degree of freedom, in the fundamental; NaN
     /// without one.
     pub steady: f64,
+    /// The largest displacement by the slow flow alone.
+    pub slow_flow: f64,
+    /// Turns that were integrated in time; 0: none, and `largest` is that of the slow flow.
+    pub integrated: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_run_up_info {
     const NAME: &'static str = "hbvib_run_up_info";
-    const FIRST_SIZE: usize = 56;
+    const FIRST_SIZE: usize = 72;
 
     fn defaults() -> Self {
         Self {
@@ -108,6 +117,8 @@ unsafe impl VersionedStruct for hbvib_run_up_info {
             error: 0.0,
             without_memory: 0.0,
             steady: 0.0,
+            slow_flow: 0.0,
+            integrated: 0,
         }
     }
 }
@@ -124,11 +135,12 @@ pub unsafe extern "C" fn hbvib_run_up_info_init(i: *mut hbvib_run_up_info, size_
 
 /// The amplitude while the frequency of the forces changes at a constant rate, from the steady
 /// motion at the first frequency on, by the slow flow of a nonlinear mode with the memory of
-/// sliders. hbvib_time_sweep integrates the same motion in time.
+/// sliders. Turns around the largest displacement are integrated in time, which corrects it and
+/// tells its error. hbvib_time_sweep integrates the whole motion.
 ///
 /// branch           a nonlinear mode.
-/// model            a plain model as for hbvib_branch_synthesis; forces in other harmonics have no
-///                  effect.
+/// model            a plain model as for hbvib_branch_synthesis; forces in other harmonics act in
+///                  the turns that are integrated alone.
 /// options          frequencies and rate.
 /// hooks            phase and cancellation; NULL: none.
 /// capacity         numbers that fit into each array.
@@ -166,6 +178,7 @@ pub unsafe extern "C" fn hbvib_branch_run_up(
             omega_stop: o.omega_stop,
             rate: o.rate,
             dof: observed(o.dof, &model, 3)?,
+            integrated_turns: length(o.integrated_turns, 3, "integrated_turns")?,
             synthesis: synthesis((o.force_factor, o.damping_ratio, o.model_damping), 3)?,
         };
         options.check(model.ndof()).with_argument(3)?;
@@ -207,6 +220,8 @@ pub unsafe extern "C" fn hbvib_branch_run_up(
                 error: found.error,
                 without_memory: found.without_memory,
                 steady: found.steady,
+                slow_flow: found.slow_flow,
+                integrated: found.integrated as i64,
                 ..hbvib_run_up_info::defaults()
             };
             unsafe { fill_out(info, value) };
@@ -419,7 +434,10 @@ fn observed(dof: i64, model: &Model, argument: i32) -> Result<Option<usize>> {
 }
 
 /// Forces and damping of a synthesis.
-fn synthesis((force_factor, damping_ratio, damping): (f64, f64, i32), argument: i32) -> Result<SynthesisOptions> {
+pub(super) fn synthesis(
+    (force_factor, damping_ratio, damping): (f64, f64, i32),
+    argument: i32,
+) -> Result<SynthesisOptions> {
     Ok(SynthesisOptions {
         force_factor,
         damping_ratio,
@@ -433,7 +451,7 @@ fn synthesis((force_factor, damping_ratio, damping): (f64, f64, i32), argument: 
 }
 
 /// The argument of an error of the mode or its model.
-fn of_mode(e: Error) -> Error {
+pub(super) fn of_mode(e: Error) -> Error {
     match e.status {
         Status::Unsupported | Status::Argument | Status::Dimension if e.argument == 0 => e.in_argument(1),
         _ => e,

@@ -42,7 +42,7 @@ pub mod wave_modes;
 mod wave_poles;
 mod wave_reduction;
 
-pub use condensed::{Condensed, Reference};
+pub use condensed::{AssembledLaw, Condensed, Reference};
 pub use flexibility_way::FlexibilityWay;
 pub use harmonic_block::{Artificial, HarmonicBlock};
 pub use model_cache::ModelCache;

@@ -133,6 +133,14 @@ impl Excitation {
         }
     }
 
+    /// Multiplies the forces of one harmonic.
+    pub(super) fn scale_harmonic(&mut self, harmonic: usize, factor: f64) {
+        for force in self.forces.iter_mut().filter(|force| force.harmonic == harmonic) {
+            force.value *= factor;
+            force.per_speed2 *= factor;
+        }
+    }
+
     /// Multiplies each force by a factor of its degree of freedom.
     pub(super) fn scale_each(&mut self, factor: impl Fn(usize) -> f64) {
         for force in &mut self.forces {

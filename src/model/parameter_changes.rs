@@ -37,6 +37,16 @@ impl Model {
         Ok(())
     }
 
+    /// Multiplies the forces of the fundamental.
+    ///
+    /// # Errors
+    /// `NotFinite`.
+    pub(crate) fn scale_fundamental(&mut self, factor: f64) -> Result<()> {
+        check_finite("force", factor)?;
+        self.excitation.scale_harmonic(1, factor);
+        Ok(())
+    }
+
     /// Changes a constant of a contact; the normal load is that at rest.
     ///
     /// # Errors

@@ -59,10 +59,10 @@ pub struct LifeOptions<'a> {
     pub most_steps: usize,
 }
 
-/// Default tolerance of a life.
+/// Default tolerance of a life. Chosen: a hundredth of what wear rates are known to.
 pub const LIFE_TOLERANCE: f64 = 1e-4;
 
-/// Default of the largest number of steps of a life.
+/// Default of the largest number of steps of a life. A cap.
 pub const LIFE_MOST_STEPS: usize = 10_000;
 
 /// Largest number of contacts that wear: the integrator factorises matrices of that order.

@@ -1,6 +1,7 @@
 //! Options of the analyses, each with its defaults and checks.
 
 mod batch_options;
+mod campbell_response_options;
 pub(crate) mod content;
 mod floquet_options;
 mod forced_options;
@@ -17,6 +18,7 @@ mod waves;
 
 pub use crate::fourier::Measure;
 pub use batch_options::{BatchOptions, MOST_THREADS};
+pub use campbell_response_options::{CAMPBELL_MOST_FACTORS, CampbellResponseOptions};
 pub use content::Content;
 pub use floquet_options::FloquetOptions;
 pub use forced_options::ForcedOptions;
@@ -26,7 +28,7 @@ pub use mission_options::{MISSION_MOST, MissionOptions, Woehler};
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeGuess, ModeOptions};
 pub(crate) use response::check_responses;
 pub use response::{Component, Response};
-pub use run_up_options::{RUN_UP_MOST_TURNS, RunUpOptions};
+pub use run_up_options::{RUN_UP_INTEGRATED_TURNS, RUN_UP_MOST_TURNS, RunUpOptions};
 pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
 pub use sweep_options::SweepOptions;
 pub use synthesis_options::SynthesisOptions;

@@ -4,8 +4,11 @@ use crate::error::{Result, fail};
 use crate::options::SynthesisOptions;
 use std::f64::consts::TAU;
 
-/// Most turns of the forces in a run-up by the slow flow; slower ones are steady.
+/// Most turns of the forces in a run-up by the slow flow; slower ones are steady. A cap.
 pub const RUN_UP_MOST_TURNS: f64 = 2e5;
+
+/// Default of the most turns of a run-up that are integrated in time. A cap on work: one to some seconds for a few masses.
+pub const RUN_UP_INTEGRATED_TURNS: usize = 10_000;
 
 /// Options of a run-up by the slow flow of a nonlinear mode.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +21,9 @@ pub struct RunUpOptions {
     pub rate: f64,
     /// Degree of freedom whose displacement is observed; `None`: the response degree of freedom of the mode.
     pub dof: Option<usize>,
-    /// Forces and damping, as for a synthesised response; `compare` has no effect.
+    /// Most turns that are integrated in time around the largest displacement, which corrects it and tells its error; 0: none.
+    pub integrated_turns: usize,
+    /// Forces and damping, as for a synthesised response; `compare` has no effect. With a damping ratio nothing is integrated.
     pub synthesis: SynthesisOptions,
 }
 
@@ -29,6 +34,7 @@ impl Default for RunUpOptions {
             omega_stop: 0.0,
             rate: 0.0,
             dof: None,
+            integrated_turns: RUN_UP_INTEGRATED_TURNS,
             synthesis: SynthesisOptions::default(),
         }
     }

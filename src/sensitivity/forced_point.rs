@@ -22,7 +22,7 @@ use num_complex::Complex64;
 /// The equations of a forced response near one solution.
 pub(crate) struct ForcedPoint<'a> {
     pub(super) condensed: &'a Condensed,
-    interrupt: &'a Interrupt<'a>,
+    pub(super) interrupt: &'a Interrupt<'a>,
     pub(super) problem: HarmonicBalance<'a>,
     workspace: Workspace,
     /// Newton's matrix at the point linearised last.

@@ -7,49 +7,62 @@
 //! The derivative by the motions is −iπh f_h + (∂f/∂y)ᵀ W. One adjoint solution with it gives the derivatives by all parameters through
 //! the motion, and W that by the load of the contact itself at a fixed motion.
 
-use crate::condense::Condensed;
+use crate::condense::{AssembledLaw, Condensed};
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::dot;
 use crate::model::Model;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
-use crate::sensitivity::contact_products::ContactMotion;
+use crate::sensitivity::contact_products::{ContactMotion, evaluate};
 use crate::sensitivity::forced_point::ForcedPoint;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
 impl ForcedPoint<'_> {
-    /// Work per cycle of the forces along some coordinates, in the caller's units, and its adjoint, at the point of which the adjoint of the
-    /// amplitude was made last. The total derivative of the adjoint by ω is that of the work.
+    /// Work per cycle of one law, in the caller's units, and its adjoint, at the point of which the adjoint of the amplitude was made last.
+    /// The law is evaluated by itself: others may act along the same relative motions. The total derivative of the adjoint by ω is that of
+    /// the work.
     ///
     /// # Errors
     /// As [`ForcedPoint::adjoint`].
-    pub fn work(&mut self, u: &[f64], omega: f64, coordinates: &[usize]) -> Result<(f64, Adjoint)> {
+    pub fn work(
+        &mut self,
+        (u, omega): (&[f64], f64),
+        (assembled, samples): (&AssembledLaw, usize),
+    ) -> Result<(f64, Adjoint)> {
         let condensed = self.condensed;
         let (set, length) = (condensed.set(), condensed.length());
         let m = set.packed_len();
+        let at = &assembled.coordinates;
+        let size = at.len().saturating_mul(m);
+        let mut motion = try_vec(size, 0.0, CONTEXT)?;
+        for (y, &c) in motion.chunks_exact_mut(m.max(1)).zip(at) {
+            y.copy_from_slice(&self.problem.forces().motion()[c * m..(c + 1) * m]);
+        }
+        let found = evaluate(&*assembled.law, (condensed, samples, omega), &motion, self.interrupt)?;
+        // W, and −iπh f.
+        let (mut weight, mut own) = (try_vec(size, 0.0, CONTEXT)?, try_vec(size, 0.0, CONTEXT)?);
+        for k in 0..at.len() {
+            let here = k * m..(k + 1) * m;
+            for (i, &number) in set.numbers().iter().enumerate() {
+                if number == 0 {
+                    continue;
+                }
+                let share = Complex64::new(0.0, PI * number as f64);
+                set.set(&mut weight[here.clone()], i, share * set.get(&motion[here.clone()], i));
+                set.set(
+                    &mut own[here.clone()],
+                    i,
+                    -share * set.get(&found.force[here.clone()], i),
+                );
+            }
+        }
+        let work = dot(&weight, &found.force);
+        let by_omega = dot(&weight, &found.by_omega);
         let mut lambda = try_vec(u.len(), 0.0, CONTEXT)?;
-        let (mut work, mut by_omega) = (0.0, 0.0);
-        for (i, &number) in set.numbers().iter().enumerate() {
-            if number == 0 {
-                continue;
-            }
-            let share = Complex64::new(0.0, PI * number as f64);
-            for &c in coordinates {
-                let forces = self.problem.forces();
-                let range = c * m..(c + 1) * m;
-                let (y, f) = (set.get(&u[range.clone()], i), set.get(&forces.forces()[range], i));
-                let weight = (share * y).conj();
-                work += (weight * f).re;
-                // The coupling below is that of f less the force κy of the reference stiffness.
-                let kappa = condensed.kappa(c, i);
-                let own = -share * f + (weight * kappa).conj();
-                let at = c * m + set.offset(i);
-                lambda[at] += own.re;
-                lambda[at + 1] += own.im;
-                forces.couple_scalar(i, (0, c), weight, &mut lambda, 1);
-                by_omega += (weight * forces.by_omega(c, i)).re;
-            }
+        for (q, column) in found.jacobian.chunks_exact(size.max(1)).enumerate() {
+            lambda[at[q / m] * m + q % m] += own[q] + dot(column, &weight);
         }
         self.system.solve_transposed(&mut lambda);
         let mut adjoint = self.of_lambda((u, omega), Complex64::ZERO, &lambda)?;

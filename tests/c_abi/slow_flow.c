@@ -19,6 +19,9 @@ int main(void)
     hbvib_mission_options m;
     hbvib_sweep_options truth;
     hbvib_sweep_info swept;
+    hbvib_campbell_options d;
+    const double factors[2] = {0.5, 1};
+    double row[6][2];
     hbvib_hooks hooks;
     hbvib_matrix a = matrix(1, one);
     WORKS("model", hbvib_model_new(1, &model));
@@ -54,6 +57,7 @@ int main(void)
     WORKS("up", hbvib_branch_run_up(mode, model, &o, NULL, 512, time, omega, amplitude, modal, &turns, &info));
     EXPECT("up", fabs(info.largest / swept.largest - 1) < info.error && info.error < 0.01);
     EXPECT("turns", turns == 84 && time[0] == 0 && omega[0] == 0.8 && amplitude[10] > 0 && modal[10] > 0);
+    EXPECT("integrated", info.integrated > 0 && info.slow_flow > 0 && fabs(info.slow_flow / info.largest - 1) < 0.01);
     EXPECT("memory", info.without_memory != info.largest && info.steady > info.largest);
     WORKS("nothing wanted", hbvib_branch_run_up(mode, model, &o, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL));
     REFUSED("capacity", hbvib_branch_run_up(mode, model, &o, NULL, 2, time, NULL, NULL, NULL, &turns, NULL), HBVIB_E_DIMENSION, 5,
@@ -66,6 +70,25 @@ int main(void)
     o.dof = 0;
     o.rate = 0;
     REFUSED("rate", hbvib_branch_run_up(mode, model, &o, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 3, "rate = 0");
+    WORKS("diagram", hbvib_campbell_options_init(&d, sizeof d));
+    d.engine_order = 2;
+    d.acceleration = 5e-4;
+    WORKS("resonances", hbvib_campbell_response(mode, model, &d, NULL, 2, factors, row[0], row[1], row[2], row[3], row[4], row[5]));
+    EXPECT("speeds", row[1][0] == 2 * row[0][0] && row[1][1] == 2 * row[0][1]);
+    EXPECT("amplitudes", row[2][1] == info.steady && row[2][0] < row[2][1] && row[4][1] < row[2][1] && row[4][1] > 0.5 * row[2][1]);
+    EXPECT("damping", row[3][1] > 0 && fabs(row[5][1]) < 0.01);
+    d.acceleration = -5e-4;
+    WORKS("downwards", hbvib_campbell_response(mode, model, &d, NULL, 2, factors, NULL, NULL, NULL, NULL, row[5], NULL));
+    EXPECT("another passage", row[5][1] > row[4][1]);
+    WORKS("defaults", hbvib_campbell_response(mode, model, NULL, NULL, 1, factors + 1, row[0], NULL, NULL, NULL, row[4], NULL));
+    EXPECT("no passage", row[0][0] == row[1][1] && isnan(row[4][0]));
+    REFUSED("factors", hbvib_campbell_response(mode, model, &d, NULL, 0, factors, NULL, NULL, NULL, NULL, NULL, NULL), HBVIB_E_DIMENSION, 3,
+            "0 factors");
+    REFUSED("overlap", hbvib_campbell_response(mode, model, &d, NULL, 2, factors, row[0], row[0], NULL, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 8,
+            "omega");
+    d.engine_order = -1;
+    REFUSED("order", hbvib_campbell_response(mode, model, &d, NULL, 2, factors, NULL, NULL, NULL, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 3,
+            "engine_order = -1");
     m.times = times;
     m.speeds = speeds;
     m.points_len = 3;

@@ -62,9 +62,10 @@ fn in_rust() -> String {
         hbvib_time_info { struct_size, reserved, period, residual, periods, events }
         hbvib_sweep_options { struct_size, reserved, omega_start, omega_stop, rate, dof, tolerance, max_periods, start, start_len }
         hbvib_sweep_info { struct_size, reserved, largest, largest_omega, largest_time, events }
-        hbvib_run_up_options { struct_size, model_damping, omega_start, omega_stop, rate, dof, force_factor, damping_ratio }
-        hbvib_run_up_info { struct_size, reserved, largest, largest_omega, largest_time, error, without_memory, steady }
+        hbvib_run_up_options { struct_size, model_damping, omega_start, omega_stop, rate, dof, force_factor, damping_ratio, integrated_turns }
+        hbvib_run_up_info { struct_size, reserved, largest, largest_omega, largest_time, error, without_memory, steady, slow_flow, integrated }
         hbvib_mission_options { struct_size, model_damping, times, speeds, points_len, engine_order, dof, edges, edges_len, stresses, stresses_len, woehler_stress, woehler_cycles, woehler_slope, woehler_slope_below, force_factor, damping_ratio }
+        hbvib_campbell_options { struct_size, model_damping, engine_order, acceleration, damping_ratio }
         hbvib_verify_options { struct_size, method, tolerance, max_periods, same_within }
         hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events, worst_response, worst_response_error }
         hbvib_floquet_options { struct_size, waves, refine, modes, tolerance, max_periods }

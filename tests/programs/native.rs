@@ -108,6 +108,7 @@ fn fortran_feels_native() {
         "senses",
         "statuses",
         "threads",
+        "wear_and_passages",
     ];
     two_at_a_time(&names, |name| {
         let folder = workshop(&format!("fortran_tests/{name}"));

@@ -17,7 +17,7 @@
 #pragma weak memory_bytes
 #pragma weak memory_peak
 
-enum { MOST = 24, N_FUNCTIONS = 64 };
+enum { MOST = 24, N_FUNCTIONS = 80 };
 
 static uint64_t state;
 
@@ -654,6 +654,83 @@ static void ask_for_sensitivity(const hbvib_model *model, const hbvib_branch *br
     CALL_WITHIN(need, hbvib_sensitivity, model, branch, point, (int32_t)(next() % (one_in(9) ? 6 : 3)), &p, 1, &derivative, 1, &reason, &onset, &h);
 }
 
+/* Lives, sweeps, and passages through the resonance of a mode; branches are mostly no modes, which is refused. */
+static void ask_for_lives_and_passages(const hbvib_branch *branch, const hbvib_model *model, double need)
+{
+    enum { ROOM = 4096 };
+    static double a[ROOM], b[ROOM], c[ROOM], d[ROOM], e[ROOM], f[ROOM];
+    static int64_t kind[64], whose[64];
+    const double begin = number(1), end = number(1), rate = number(0.02), factors[2] = {number(1), number(0.5)};
+    const double cycles[2] = {number(1), number(3)}, volume[1] = {number(0.01)}, at[1] = {number(1)}, spring[1] = {number(1)};
+    const double time[3] = {0, number(100), number(300)}, speed[3] = {number(1), number(1), number(1)}, stress[1] = {number(50)};
+    const int64_t contact[1] = {count(0)};
+    int64_t n = 0;
+    hbvib_hooks h = hooks();
+    hbvib_solver_options s = solver();
+    hbvib_status status;
+    hbvib_life_options life;
+    hbvib_life_info worn;
+    hbvib_best_load best;
+    hbvib_sweep_options sweep;
+    hbvib_sweep_info swept;
+    hbvib_run_up_options up;
+    hbvib_run_up_info passed;
+    hbvib_mission_options flight;
+    hbvib_campbell_options diagram;
+    hbvib_life_options_init(&life, sizeof life);
+    hbvib_life_info_init(&worn, sizeof worn);
+    hbvib_best_load_init(&best, sizeof best);
+    hbvib_sweep_options_init(&sweep, sizeof sweep);
+    hbvib_sweep_info_init(&swept, sizeof swept);
+    hbvib_run_up_options_init(&up, sizeof up);
+    hbvib_run_up_info_init(&passed, sizeof passed);
+    hbvib_mission_options_init(&flight, sizeof flight);
+    hbvib_campbell_options_init(&diagram, sizeof diagram);
+    life.contacts = contact;
+    life.contacts_len = 1;
+    life.rates = volume;
+    life.stiffness = one_in(3) ? NULL : spring;
+    life.duty_omega = at;
+    life.duties_len = 1;
+    life.most_steps = 20;
+    if (one_in(3)) {
+        life.follow = HBVIB_LIFE_PEAK;
+        life.omega_start = begin;
+        life.omega_stop = end;
+    }
+    sweep.omega_start = up.omega_start = begin;
+    sweep.omega_stop = up.omega_stop = end;
+    sweep.rate = up.rate = rate;
+    up.integrated_turns = one_in(3) ? count(0) : up.integrated_turns;
+    up.damping_ratio = one_in(5) ? number(0.01) : 0;
+    flight.times = time;
+    flight.speeds = speed;
+    flight.points_len = 3;
+    flight.edges = one_in(2) ? factors : NULL;
+    flight.edges_len = flight.edges != NULL;
+    flight.stresses = stress;
+    flight.stresses_len = one_in(2);
+    flight.woehler_stress = number(100);
+    flight.woehler_cycles = number(1e6);
+    flight.woehler_slope = number(5);
+    diagram.engine_order = number(2);
+    diagram.acceleration = one_in(2) ? number(1e-3) : 0;
+    switch (next() % 6) {
+    case 0:
+        CALL_WITHIN(need, hbvib_life, model, one_in(3) ? &s : NULL, &life, &h, one_in(20) ? count(2) & 1 : 2, cycles, a, b, c, d, e, 64, f, kind, whose,
+                    &n, &worn);
+        break;
+    case 1: CALL_WITHIN(need, hbvib_best_load_for_life, model, one_in(3) ? &s : NULL, &life, cycles[1], factors[1], factors[0], &h, &best); break;
+    case 2: CALL_WITHIN(need, hbvib_time_sweep, model, &sweep, &h, ROOM, a, b, c, &n, &swept); break;
+    case 3:
+        CALL_WITHIN(need, hbvib_branch_run_up, branch, model, &up, &h, ROOM, a, b, c, d, &n, &passed);
+        failures += status == HBVIB_OK && !isfinite(passed.largest);
+        break;
+    case 4: CALL_WITHIN(need, hbvib_branch_mission, branch, model, &flight, &h, a, b, c, ROOM / 6, d, &n, e); break;
+    default: CALL_WITHIN(need, hbvib_campbell_response, branch, model, &diagram, &h, 2, factors, a, b, c, d, e, f);
+    }
+}
+
 static void ask_of(hbvib_branch *branch, int what)
 {
     static double x[2 * 64 * 128], y[256], f[256];
@@ -718,6 +795,7 @@ static void ask_of(hbvib_branch *branch, int what)
     case 11: ask_for_waves(); break;
     case 12: ask_for_many_times(branch, at, result, &of, &h); break;
     case 13: ask_for_sensitivity(model, branch, at, result + need_of_a_branch_point(&of.model, of.harmonics, of.samples) + 8 * (double)m.saved); break;
+    case 15: ask_for_lives_and_passages(branch, model, 500 * MIB + 8 * (result + need_in_time(&m, of.harmonics))); break;
     case 14: CALL_WITHIN(result, hbvib_branch_slip_fraction, branch, at, y, one_in(20) ? count(1) : hbvib_model_contacts(model) & 255); break;
     default:
         solved_model = model;
@@ -728,7 +806,7 @@ static void ask_of(hbvib_branch *branch, int what)
     }
 }
 
-static void ask(void) { ask_of(some_branch(), (int)(next() % 16)); }
+static void ask(void) { ask_of(some_branch(), (int)(next() % 17)); }
 
 /* A law at a motion of up to 10,000 harmonics, with and without its Jacobian, exactly or by samples. */
 static void many_harmonics(const hbvib_contact *c, int64_t d)

@@ -297,6 +297,89 @@ fn steps_end_where_a_contact_begins_to_slip() {
     }
 }
 
+/// At an accuracy of 1e-4 a life takes at most thirty steady vibrations, also where a contact begins to slip, and with three contacts;
+/// sixty cycles in the peak, until all loads are worn off, take twice as many. Loads keep about the accuracy.
+#[test]
+fn a_life_takes_thirty_vibrations() {
+    let duties = at(0.62);
+    let coupled = [1.0, -0.2, 0.0, -0.2, 1.2, -0.3, 0.0, -0.3, 0.9];
+    let peak = LifeFollow::Peak {
+        omega_start: 0.6,
+        omega_stop: 1.1,
+    };
+    let steady = at(0.82);
+    let separate = [1.0, 0.0, 0.0, 1.0];
+    let cases: [(&str, &[f64], &[f64], &[f64], LifeFollow<'_>, f64); 4] = [
+        (
+            "an event",
+            &[1.6, 0.3],
+            &[0.1, 0.1],
+            &separate,
+            LifeFollow::Duties(&duties),
+            20.0,
+        ),
+        (
+            "three contacts",
+            &[0.5, 0.8, 1.1],
+            &[0.05, 0.02, 0.08],
+            &coupled,
+            LifeFollow::Duties(&steady),
+            60.0,
+        ),
+        (
+            "in the peak",
+            &[0.5, 0.8, 1.1],
+            &[0.05, 0.02, 0.08],
+            &coupled,
+            peak,
+            6.0,
+        ),
+        (
+            "in the peak for long",
+            &[0.5, 0.8, 1.1],
+            &[0.05, 0.02, 0.08],
+            &coupled,
+            peak,
+            60.0,
+        ),
+    ];
+    for (name, loads, rates, stiffness, follow, end) in cases {
+        let model = chain(loads);
+        let cycles = [0.0, 0.25 * end, end];
+        let run_at = |tolerance: f64| {
+            let options = LifeOptions {
+                wear: &wear(rates),
+                stiffness,
+                follow,
+                cycles: &cycles,
+                tolerance,
+                ..LifeOptions::default()
+            };
+            let solver = SolverOptions {
+                response_dof: Some(loads.len() - 1),
+                ..solver(5)
+            };
+            life(&model, &solver, &options, &mut Hooks::default()).unwrap()
+        };
+        let (found, exact) = (run_at(1e-4), run_at(1e-8));
+        assert_eq!(exact.status, Status::Ok, "{:?}", exact.reason);
+        let unit = loads.iter().fold(0.0_f64, |most, n| most.max(*n));
+        let mut error = 0.0_f64;
+        for (a, b) in found.points.iter().zip(&exact.points) {
+            for (a, b) in a.loads.iter().zip(&b.loads) {
+                error = error.max((a - b).abs() / unit);
+            }
+        }
+        println!(
+            "{name}: {} vibrations in {} steps, error {error:.1e}, events {:?}",
+            found.solutions, found.steps, found.events
+        );
+        assert!(error < 5e-4, "{name}: {error:e}");
+        let most = if name.ends_with("for long") { 70 } else { 30 };
+        assert!(found.solutions <= most, "{name}: {} vibrations", found.solutions);
+    }
+}
+
 #[test]
 fn a_life_goes_on_from_its_depths_and_tells_its_limit() {
     let model = chain(&[0.6]);

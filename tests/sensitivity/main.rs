@@ -15,6 +15,7 @@ mod fit_of_modes;
 mod fit_of_responses;
 mod fit_uncertainty;
 mod life;
+mod life_patch;
 mod ring_damper_preload;
 mod sampled_curves;
 mod tracked_damping;

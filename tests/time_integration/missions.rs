@@ -1,8 +1,9 @@
 //! Missions: cycles, amplitudes and damage over speeds against time.
 
 use hbvib::{
-    Branch, Contact, Hooks, Interrupt, MatrixKind, MatrixView, MissionOptions, ModeOptions, Model, RunUpOptions,
-    SolverOptions, Status, Woehler, mission, nonlinear_mode, run_up,
+    Branch, CampbellResponseOptions, Contact, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, MissionOptions,
+    ModeChoice, ModeOptions, Model, RunUpOptions, SolverOptions, Status, SweepOptions, Woehler, campbell_response,
+    forced_response, mission, nonlinear_mode, run_up, sweep,
 };
 use std::f64::consts::TAU;
 
@@ -146,6 +147,141 @@ fn ten_thousand_points_are_quick() {
     println!("{} steps, {took:?}, {:?}", found.steps, found.crossings);
     assert_eq!(found.crossings.len(), 5);
     assert!(found.damage[0] > 0.0 && found.steps < 1_000_000);
+}
+
+/// Masses in a row with three sliders.
+fn chain(n: usize) -> Model {
+    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        m[i * n + i] = 1.0;
+        k[i * n + i] = 2.0;
+        if i > 0 {
+            k[i * n + i - 1] = -1.0;
+            k[(i - 1) * n + i] = -1.0;
+        }
+    }
+    let mut model = Model::new(n).unwrap();
+    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
+        .unwrap();
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    for (dof, kt, load) in [(0, 0.2, 0.5), (2, 0.1, 0.3), (n - 1, 0.2, 0.5)] {
+        model.add_contact(&Contact::jenkins(dof, None, kt, 0.1, load)).unwrap();
+    }
+    model.add_force(n - 1, 1, 0.05.into()).unwrap();
+    model
+}
+
+/// A speed that rises at ten thousand points through the resonances of five modes: the missions of all of them, whose modes are known.
+#[test]
+fn five_modes_over_ten_thousand_points() {
+    let model = chain(5);
+    let solver = SolverOptions {
+        harmonics: 3,
+        response_dof: Some(4),
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    };
+    let modes: Vec<Branch> = (0..5)
+        .map(|mode| {
+            let range = ModeOptions {
+                choice: ModeChoice::Index(mode),
+                log10_start: -3.0,
+                log10_stop: 1.0,
+                ..ModeOptions::default()
+            };
+            nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap()
+        })
+        .collect();
+    let count = 10_000;
+    let times: Vec<f64> = (0..count).map(|i| 50.0 * f64::from(i)).collect();
+    let speeds: Vec<f64> = (0..count)
+        .map(|i| 1.3 - 1.0 * (0.5 * TAU * f64::from(i) / f64::from(count)).cos())
+        .collect();
+    let options = MissionOptions {
+        times: &times,
+        speeds: &speeds,
+        engine_order: 1.0,
+        dof: None,
+        edges: &[0.1, 0.2, 0.5],
+        stresses: &[100.0],
+        woehler: Some(LINE),
+        synthesis: hbvib::SynthesisOptions::default(),
+    };
+    let begin = std::time::Instant::now();
+    let found: Vec<_> = modes
+        .iter()
+        .map(|mode| mission(mode, &model, &options, &Interrupt::none()).unwrap())
+        .collect();
+    let took = begin.elapsed();
+    let steps: usize = found.iter().map(|one| one.steps).sum();
+    println!("five modes over {count} points: {steps} steps, {took:?}");
+    for one in &found {
+        assert_eq!(one.crossings.len(), 1, "{:?}", one.crossings);
+        let all: f64 = one.cycles.iter().sum();
+        let wanted: f64 = (1..times.len())
+            .map(|i| 25.0 * (speeds[i] + speeds[i - 1]))
+            .sum::<f64>()
+            / TAU;
+        assert!((all / wanted - 1.0).abs() < 1e-9);
+    }
+    // Work, not time, which the machine may not have: a second is some five million steps.
+    assert!(steps < 1_000_000, "{steps} steps");
+}
+
+/// Resonances of a Campbell diagram are the peaks of forced responses under their forces, passages are those of sweeps in time, to the
+/// harmonics that a mission leaves out and to its slider without memory.
+#[test]
+fn resonances_of_a_diagram_are_peaks_and_sweeps() {
+    let model = oscillator(0.12);
+    let branch = mode(&model);
+    let (order, factors) = (2.0, [0.5, 1.0]);
+    for acceleration in [0.0, 5e-4, -5e-4] {
+        let options = CampbellResponseOptions {
+            engine_order: order,
+            acceleration,
+            force_factors: &factors,
+            ..CampbellResponseOptions::default()
+        };
+        let found = campbell_response(&branch, &model, &options, &Interrupt::none()).unwrap();
+        for (one, factor) in found.iter().zip(factors) {
+            let forced = oscillator(0.12 * factor);
+            let range = ForcedOptions {
+                omega_start: 0.8,
+                omega_stop: 1.3,
+                ..ForcedOptions::default()
+            };
+            let solver = SolverOptions {
+                harmonics: 5,
+                tolerance: 0.0,
+                ..SolverOptions::default()
+            };
+            let peak = forced_response(&forced, &solver, &range, &mut Hooks::default())
+                .unwrap()
+                .peaks()[0];
+            assert!((one.amplitude / peak.amplitude - 1.0).abs() < 2.0 * one.error.abs() + 1e-6);
+            assert!((one.omega / peak.omega - 1.0).abs() < 1e-3 && (order * one.speed / one.omega - 1.0).abs() < 1e-15);
+            if acceleration == 0.0 {
+                assert!(one.passed.is_nan());
+                continue;
+            }
+            let (low, high) = (0.5, 2.0);
+            let in_time = SweepOptions {
+                omega_start: if acceleration > 0.0 { low } else { high },
+                omega_stop: if acceleration > 0.0 { high } else { low },
+                rate: order * f64::abs(acceleration),
+                ..SweepOptions::default()
+            };
+            let truth = sweep(&forced, &in_time, &mut Hooks::default()).unwrap().largest;
+            let error = one.passed / truth - 1.0;
+            println!("factor {factor}, acceleration {acceleration:e}: {error:+.2e}");
+            assert!(
+                error.abs() < 0.04,
+                "factor {factor}, acceleration {acceleration:e}: {error:.2e}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -87,7 +87,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Time",
         about: "integration in time, and points of a branch compared with it",
-        files: &["time", "time_sweep", "time_run_up", "time_verify"],
+        files: &["time", "time_sweep", "time_run_up", "campbell_response", "time_verify"],
     },
     Section {
         title: "Stability",

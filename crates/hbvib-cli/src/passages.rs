@@ -89,11 +89,12 @@ pub fn write_run_up(part: &RunUpPart, built: &Built, hooks: &mut Hooks<'_>, file
         .write(path)
     });
     let text = format!(
-        "run-up: {:.6e} at {:.6} Hz after {:.6e} s, estimated error {:.2e}; {:.4} of the steady resonance\n",
+        "run-up: {:.6e} at {:.6} Hz after {:.6e} s, error {:.2e} with {} turns integrated in time; {:.4} of the steady resonance\n",
         found.largest,
         found.largest_omega / TAU,
         found.largest_time,
         found.error,
+        found.integrated,
         found.factor()
     );
     Ok((text, false))

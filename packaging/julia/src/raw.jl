@@ -694,6 +694,7 @@ struct hbvib_run_up_options
     dof::Int64
     force_factor::Float64
     damping_ratio::Float64
+    integrated_turns::Int64
 end
 hbvib_run_up_options() = initialised(hbvib_run_up_options, dlsym_(:hbvib_run_up_options_init))
 
@@ -707,6 +708,8 @@ struct hbvib_run_up_info
     error::Float64
     without_memory::Float64
     steady::Float64
+    slow_flow::Float64
+    integrated::Int64
 end
 hbvib_run_up_info() = initialised(hbvib_run_up_info, dlsym_(:hbvib_run_up_info_init))
 
@@ -731,6 +734,16 @@ struct hbvib_mission_options
     damping_ratio::Float64
 end
 hbvib_mission_options() = initialised(hbvib_mission_options, dlsym_(:hbvib_mission_options_init))
+
+"Options of hbvib_campbell_response."
+struct hbvib_campbell_options
+    struct_size::UInt32
+    model_damping::Int32
+    engine_order::Float64
+    acceleration::Float64
+    damping_ratio::Float64
+end
+hbvib_campbell_options() = initialised(hbvib_campbell_options, dlsym_(:hbvib_campbell_options_init))
 
 "Options of hbvib_verify."
 struct hbvib_verify_options
@@ -1273,6 +1286,10 @@ hbvib_branch_run_up(branch, model, options, hooks, capacity, time, omega, amplit
 hbvib_mission_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_mission_options_init), Int32, (Ptr{hbvib_mission_options}, Csize_t), o, size_of_o)
 "One resonance over a mission, speed against time, by the slow flow of its nonlinear mode without the memory of sliders: amplitudes, cycles of each amplitude, and the sum of Miner."
 hbvib_branch_mission(branch, model, options, hooks, amplitude, cycles, damage, capacity, crossing, count, error) = ccall(dlsym_(:hbvib_branch_mission), Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Ptr{hbvib_mission_options}, Ptr{hbvib_hooks}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Int64, Ptr{Float64}, Ptr{Int64}, Ptr{Float64}), branch, model, options, hooks, amplitude, cycles, damage, capacity, crossing, count, error)
+"Fills the options of resonances in a Campbell diagram: engine order 1, no passage."
+hbvib_campbell_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_campbell_options_init), Int32, (Ptr{hbvib_campbell_options}, Csize_t), o, size_of_o)
+"The highest resonance of a nonlinear mode where an engine order meets it, under each of several factors on the forces, and how much of it a passage reaches: the numbers of a Campbell diagram coloured by amplitude."
+hbvib_campbell_response(branch, model, options, hooks, n, force_factors, speed, omega, amplitude, damping_ratio, passed, error) = ccall(dlsym_(:hbvib_campbell_response), Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Ptr{hbvib_campbell_options}, Ptr{hbvib_hooks}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}), branch, model, options, hooks, n, force_factors, speed, omega, amplitude, damping_ratio, passed, error)
 "Fills the options of a check in time with their defaults: shooting, tolerance = 1e-11, same_within = 0.1."
 hbvib_verify_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_verify_options_init), Int32, (Ptr{hbvib_verify_options}, Csize_t), o, size_of_o)
 "Fills the result of a check in time with zeros."

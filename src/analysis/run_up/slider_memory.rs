@@ -18,16 +18,16 @@ use crate::time_integration::Element;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Times per turn at which sliders are moved.
+/// Times per turn at which sliders are moved. Chosen, not measured by itself; turning points between them are exact.
 const SLIDER_MEMORY_SAMPLES: usize = 64;
 
-/// Most times of a run-up at which the memory is evaluated.
+/// Most times of a run-up at which the memory is evaluated. A cap.
 const SLIDER_MEMORY_MOST_TIMES: usize = 1000;
 
-/// Evaluations of the memory per turn where there are few turns.
+/// Evaluations of the memory per turn where there are few turns. Chosen, not measured by itself.
 const SLIDER_MEMORY_TIMES_PER_TURN: f64 = 6.0;
 
-/// Change of the amplitude within two turns, relative, below which nothing is remembered.
+/// Change of the amplitude within two turns, relative, below which nothing is remembered. Rounding.
 const SLIDER_MEMORY_STEADY: f64 = 1e-9;
 
 const CONTEXT: &str = "the memory of sliders";

@@ -326,6 +326,34 @@ void run_ups() {
   mission.edges_len = 1;
   const auto flight = mode.mission(model, mission);
   claim(flight.passages.size() == 2 && flight.amplitude.size() == 3 && flight.cycles[1] > 0, "a mission passes twice");
+  const auto truth = model.time_sweep({0.8, 1.3, 5e-3});
+  claim(truth.time.size() == up.time.size() && !truth.stopped, "a sweep has the turns of the run-up");
+  claim(std::abs(up.largest / truth.info.largest - 1) <= up.error && up.integrated == 17, "a run-up has the largest displacement of a sweep");
+  hbvib::CampbellOptions diagram;
+  diagram.engine_order = 2;
+  diagram.acceleration = 5e-4;
+  const double factors[2] = {0.5, 1};
+  const auto picture = mode.campbell_response(model, diagram, factors);
+  claim(picture.speed.size() == 2 && picture.omega[1] == 2 * picture.speed[1], "a resonance for each factor");
+  claim(picture.factor(1) > 0.5 && picture.factor(1) < 1 && picture.amplitude[1] == up.steady, "it is that of the run-up");
+}
+
+/// Wear of one contact: the stored row of ten cycles with one harmonic, and the best load.
+void lives() {
+  auto model = oscillator(1, 0.05, 1, 0.3);
+  model.add_contact(Contact::jenkins(0, HBVIB_GROUND, 1, 0.3, 0.6));
+  hbvib::SolverOptions solver;
+  solver.harmonics = 1;
+  solver.tolerance = 0;
+  const Index contact[1] = {0};
+  const double rate[1] = {0.05}, omega[1] = {1.1}, stiffness[1] = {1}, cycles[2] = {0, 10};
+  hbvib::LifeOptions options(contact, rate);
+  options.at(omega).coupled(stiffness).tolerance = 1e-8;
+  const auto life = model.life(options, cycles, solver);
+  claim(life.status == HBVIB_OK && life.loads.size() == 2 && std::abs(life.loads[1] - 0.29957673568767756) < 1e-6, "a life wears");
+  claim(life.info.points == 2 && life.events.empty() && life.amplitude[1] > life.amplitude[0], "its numbers");
+  const auto best = model.best_load_for_life(options.peak(0.6, 2), 8, 0.2, 3, solver);
+  claim(best.factor > 0.2 && best.factor < 3 && best.lives > 9, "a best load");
 }
 
 /// Stodola's rotor, a loss factor, modal damping, a load of the speed.
@@ -448,6 +476,7 @@ int main() {
     alike();
     nonlinear_mode();
     run_ups();
+    lives();
     rotation();
     residual_forces();
     load_history();

@@ -37,6 +37,7 @@ program layout
    call run_up_options()
    call run_up_info()
    call mission_options()
+   call campbell_options()
    call verify_options()
    call verification()
    call floquet_options()
@@ -542,6 +543,7 @@ contains
       call field('dof', c_loc(s), c_loc(s%dof), c_sizeof(s%dof))
       call field('force_factor', c_loc(s), c_loc(s%force_factor), c_sizeof(s%force_factor))
       call field('damping_ratio', c_loc(s), c_loc(s%damping_ratio), c_sizeof(s%damping_ratio))
+      call field('integrated_turns', c_loc(s), c_loc(s%integrated_turns), c_sizeof(s%integrated_turns))
    end subroutine run_up_options
 
    subroutine run_up_info()
@@ -555,6 +557,8 @@ contains
       call field('error', c_loc(s), c_loc(s%error), c_sizeof(s%error))
       call field('without_memory', c_loc(s), c_loc(s%without_memory), c_sizeof(s%without_memory))
       call field('steady', c_loc(s), c_loc(s%steady), c_sizeof(s%steady))
+      call field('slow_flow', c_loc(s), c_loc(s%slow_flow), c_sizeof(s%slow_flow))
+      call field('integrated', c_loc(s), c_loc(s%integrated), c_sizeof(s%integrated))
    end subroutine run_up_info
 
    subroutine mission_options()
@@ -578,6 +582,16 @@ contains
       call field('force_factor', c_loc(s), c_loc(s%force_factor), c_sizeof(s%force_factor))
       call field('damping_ratio', c_loc(s), c_loc(s%damping_ratio), c_sizeof(s%damping_ratio))
    end subroutine mission_options
+
+   subroutine campbell_options()
+      type(hbvib_campbell_options), target :: s
+      call whole('hbvib_campbell_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('model_damping', c_loc(s), c_loc(s%model_damping), c_sizeof(s%model_damping))
+      call field('engine_order', c_loc(s), c_loc(s%engine_order), c_sizeof(s%engine_order))
+      call field('acceleration', c_loc(s), c_loc(s%acceleration), c_sizeof(s%acceleration))
+      call field('damping_ratio', c_loc(s), c_loc(s%damping_ratio), c_sizeof(s%damping_ratio))
+   end subroutine campbell_options
 
    subroutine verify_options()
       type(hbvib_verify_options), target :: s

@@ -349,6 +349,12 @@ def run_through(**o):
     return bits(info.largest, info.largest_omega, info.error)
 
 
+def pictured(**o):
+    options, rows = new("hbvib_campbell_options", **{**dict(engine_order=2.0, acceleration=1e-3), **o}), np.zeros((6, 2))
+    call("hbvib_campbell_response", mode_of_moded.handle, moded.handle, options, None, 2, np.array([0.5, 1.0]), *rows)
+    return bits(*rows.ravel())
+
+
 def flown(**o):
     given = dict(times=np.array([0.0, 1e3, 2e3]), speeds=np.array([0.8, 1.3, 1.1]), points_len=3, edges=np.array([0.5, 0.8]), edges_len=2,
                  stresses=np.array([80.0, 70.0]), stresses_len=2, woehler_stress=50.0, woehler_cycles=1e6, woehler_slope=5.0)
@@ -676,6 +682,14 @@ TABLE = {
         "dof": [(same("one degree of freedom"), run_through, 0), (refused("dof"), run_through, 9)],
         "force_factor": [(CHANGES, run_through, 1.1), (refused("force_factor"), run_through, 0.0)],
         "damping_ratio": [(CHANGES, run_through, 0.01), (refused("damping_ratio"), run_through, 1.0)],
+        "integrated_turns": [(CHANGES, run_through, 0), (refused("integrated_turns"), run_through, -1)],
+    },
+    "hbvib_campbell_options": {
+        "struct_size": [(refused("struct_size"), pictured, 8)],
+        "model_damping": [(CHANGES, pictured, 1), (refused("model_damping"), pictured, 2)],
+        "engine_order": [(CHANGES, pictured, 3.0), (refused("engine_order"), pictured, 0.0)],
+        "acceleration": [(CHANGES, pictured, -1e-3), (refused("acceleration"), pictured, NAN)],
+        "damping_ratio": [(CHANGES, pictured, 0.01), (refused("damping_ratio"), pictured, 1.0)],
     },
     "hbvib_mission_options": {
         "struct_size": [(refused("struct_size"), flown, 8)],
