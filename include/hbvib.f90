@@ -2408,6 +2408,7 @@ module hbvib
       procedure :: band_curve => model_band_curve
       procedure :: mode_band => model_mode_band
       procedure :: freedom => model_freedom
+      procedure :: static_history => model_static_history
       procedure :: add_damper => model_add_damper
       procedure :: add_jenkins => model_add_jenkins
       procedure :: add_springs => model_add_springs
@@ -2505,7 +2506,7 @@ module hbvib
    private :: model_set_aero, model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
    private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings, model_interference, &
       model_signed_diameter
-   private :: model_set_slider, model_band, model_band_curve, model_mode_band, model_freedom, model_add_damper
+   private :: model_static_history, model_set_slider, model_band, model_band_curve, model_mode_band, model_freedom, model_add_damper
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -3546,6 +3547,35 @@ contains
       if (present(place)) place = places(:n)
       if (present(derivative)) derivative = derivatives(:n)
    end function model_freedom
+
+   !> Static states along a load history with friction: factors of the constant forces, speeds, or as many of both, one for each step.
+   !> motion(dof, step), places of the sliders along t1 and t2 as places(direction, contact, step), for set_slider, and
+   !> forces(direction, contact, step) along t1, t2 and n.
+   function model_static_history(self, factors, speeds, motion, places, forces, solver, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      real(dp), intent(in), optional :: factors(:), speeds(:)
+      real(dp), allocatable, intent(out), optional :: motion(:, :), places(:, :, :), forces(:, :, :)
+      type(hbvib_solver_options), intent(in), optional :: solver
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      real(dp), allocatable :: displacements(:, :), sliders(:, :, :), tractions(:, :, :)
+      integer(i64) :: steps, contacts, dofs
+      status = HBVIB_OK
+      steps = 0
+      if (present(factors)) steps = size(factors, kind=i64)
+      if (present(speeds) .and. present(factors)) call same_length(status, 'speeds', size(speeds, kind=i64), steps)
+      if (status /= HBVIB_OK) return
+      if (present(speeds)) steps = size(speeds, kind=i64)
+      contacts = max(hbvib_model_contacts(self%handle), 0_i64)
+      dofs = max(hbvib_model_dofs(self%handle), 0_i64)
+      allocate (displacements(dofs, steps), sliders(2, contacts, steps), tractions(3, contacts, steps))
+      status = hbvib_static_history(self%handle, solver, steps, factors, speeds, hooks, displacements, dofs*steps, sliders, &
+                                    2*contacts*steps, tractions, 3*contacts*steps)
+      if (status /= HBVIB_OK) return
+      if (present(motion)) motion = displacements
+      if (present(places)) places = sliders
+      if (present(forces)) forces = tractions
+   end function model_static_history
 
    !> The lower and the upper curve of a forced response over its residual forces, at all points of the curve or at some.
    function model_band_curve(self, branch, lower, upper, omega, sliders, complete, points, options, hooks) result(status)

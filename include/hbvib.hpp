@@ -955,6 +955,12 @@ struct FreeSlider {
   Index contact, direction;
   double place, derivative;
 };
+/// Static states along a load history: displacements of each step, places of the sliders along t1 and t2 of each contact, and forces along
+/// t1, t2 and n of each contact, step after step.
+struct StaticHistory {
+  Index steps;
+  std::vector<double> motion, places, forces;
+};
 /// The band of a result over residual forces: numbers, free sliders as contact and direction, and their places at both ends, for
 /// Model::set_slider.
 struct Band {
@@ -1627,6 +1633,25 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
                    place.data(), derivative.data(), &count);
     std::vector<FreeSlider> out;
     for (std::size_t i = 0; i < detail::extent(count); i++) out.push_back({contact[i], direction[i], place[i], derivative[i]});
+    return out;
+  }
+  /// Static states along a load history with friction: factors of the constant forces, speeds, or as many of both, one for each step. The
+  /// places of a step are the residual state that is left there, for set_slider. A hook that stops it is an Error.
+  StaticHistory static_history(const std::vector<double>& factors, const std::vector<double>& speeds = {},
+                               const SolverOptions& solver = SolverOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    if (!factors.empty() && !speeds.empty() && factors.size() != speeds.size())
+      throw Error(HBVIB_E_DIMENSION, 4, "needs as many speeds as factors, or none of one");
+    const std::size_t steps = factors.empty() ? speeds.size() : factors.size();
+    const std::size_t count = detail::extent(contacts());
+    StaticHistory out{static_cast<Index>(steps), std::vector<double>(steps * detail::extent(dofs())),
+                      std::vector<double>(steps * count * 2), std::vector<double>(steps * count * 3)};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    call.done_whole(hbvib_static_history(get(), &solver, out.steps, factors.empty() ? nullptr : factors.data(),
+                                         speeds.empty() ? nullptr : speeds.data(), &bound, out.motion.data(),
+                                         static_cast<Index>(out.motion.size()), out.places.data(), static_cast<Index>(out.places.size()),
+                                         out.forces.data(), static_cast<Index>(out.forces.size())));
     return out;
   }
   /// The least and the largest result at a point of a forced response over all residual forces of contacts that stick. A hook that

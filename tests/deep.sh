@@ -2,7 +2,8 @@
 # Checks that take too long for every change, on one thread. Run after tests/run.sh has passed.
 set -eu
 cd "$(dirname "$0")/.."
-cargo test --release --tests -- --ignored --test-threads=1
+# All cases of each test, and the tests that take minutes.
+HBVIB_THOROUGH=1 cargo test --release --tests -- --include-ignored --test-threads=1
 cargo test --release -p hbvib-cli --bin hbvib -- --include-ignored
 # Lints of tests, examples and benches.
 cargo clippy --release --workspace --all-targets --features hbvib/bindings -- -D warnings

@@ -71,13 +71,15 @@ step() { # name, command
 "
 }
 # The libraries, which programs link against, all tests and the examples that some run, in one call, which keeps all cores busy; then the
-# command and the readers of files.
+# command, the readers of files and the unit tests.
 step "compile the library and its tests" \
     cargo build --release --lib --tests --example ring_damper --example flutter --example campbell
 step "compile the command and the readers of files" cargo build --release --lib --bins --tests -p hbvib-io -p hbvib-cli
+units="-p hbvib-unit-tests -p hbvib-numerics-unit-tests"
+step "compile the unit tests" cargo test --release --no-run --lib $units
 [ "${1:-}" != build ] || { printf '%s' "$times"; exit 0; }
 step "tests of claims, programs in five languages" cargo test --release --no-fail-fast --test '*'
-step "unit tests of the library and of its numerics" cargo test --release --lib
+step "unit tests of the library and of its numerics" cargo test --release --lib $units
 # Examples in the documentation of the Rust interface.
 step "examples of the Rust interface" cargo test --release --doc -p hbvib
 step "readers of files" cargo test --release -p hbvib-io --lib --test '*'

@@ -5,7 +5,7 @@
 //! another place is halved, so that contacts that open and close on the way, and those that hold others, are followed.
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::analysis::static_solution::{NEEDS_SPEED, static_state};
+use crate::analysis::static_solution::{NEEDS_SPEED, linear_static_motion, static_state};
 use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -175,7 +175,7 @@ impl Walk<'_> {
         let independent = if state.is_loaded() {
             try_copy(&state.structure, CONTEXT)?
         } else {
-            try_vec(degrees.independent(), 0.0, CONTEXT)?
+            linear_static_motion(&model, self.solver, self.interrupt)?
         };
         let mut motion = try_vec(model.ndof(), 0.0, CONTEXT)?;
         degrees.expand_in_time(&independent, &independent, &mut motion);

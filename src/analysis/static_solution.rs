@@ -84,6 +84,35 @@ pub(super) fn static_state(
     solve(model, &condensed, solver, interrupt)
 }
 
+/// The static motion under constant forces of a structure whose contacts are springs or none, of its independent degrees of freedom: that
+/// of linear equations. Zeros where a law is evaluated: [`static_state`] has the motion then.
+///
+/// # Errors
+/// `Singular` where the structure does not hold the forces; `OutOfMemory`; `StoppedByCaller`.
+pub(super) fn linear_static_motion(
+    model: &Model,
+    solver: &SolverOptions,
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<f64>> {
+    let mut motion = try_vec(model.structure().degrees().independent(), 0.0, CONTEXT)?;
+    if !model.excitation().forces().iter().any(|f| f.harmonic == 0) {
+        return Ok(motion);
+    }
+    let condensed = Condensed::for_static(model, solver, interrupt)?;
+    if condensed.coordinates() > 0 {
+        return Ok(motion);
+    }
+    let mut x = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
+    let mut workspace = Workspace::new(&condensed, None)?;
+    workspace
+        .recover(&condensed, 0, OMEGA, &[], &mut x, interrupt)
+        .map_err(|e| explained(e, solver))?;
+    for (to, x) in motion.iter_mut().zip(&x) {
+        *to = x.re * condensed.length();
+    }
+    Ok(motion)
+}
+
 /// Whether the force at rest of a law follows from its evaluation alone.
 fn needs_evaluation(model: &Model) -> Result<bool> {
     for contact in model.contacts() {

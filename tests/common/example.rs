@@ -16,7 +16,7 @@ pub fn built(name: &str) -> PathBuf {
     let output = Command::new(env!("CARGO"))
         .args(["build", "--release", "--example", name, "--message-format", "json"])
         .arg("--manifest-path")
-        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        .arg(crate::common::programs::root().join("Cargo.toml"))
         .arg("--target-dir")
         .arg(target)
         .output()

@@ -6,6 +6,7 @@
 
 pub mod chains;
 pub mod decimal_comma;
+pub mod depth;
 pub mod energy;
 pub mod example;
 pub mod friction;
@@ -36,7 +37,6 @@ use hbvib::results::Branch;
 use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Degrees of freedom of a sector with its ring, in the order of the reference data.
@@ -54,7 +54,7 @@ pub const SECTORS: usize = 24;
 
 /// Reads a JSON file of `tests/data`.
 pub fn data(name: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
+    let path = crate::common::programs::root().join("tests/data").join(name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

@@ -1,6 +1,7 @@
 //! Friction under a normal load that varies and vanishes: its force against reference coefficients, a march
 //! over dense samples, closed forms and the laws that it contains.
 
+use crate::common::depth::{some_of, thorough};
 use crate::common::friction::{March, Random, distance, evaluate, pieces, slipping_at_closing};
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::Law;
@@ -64,6 +65,9 @@ fn forces_are_those_of_a_march_over_a_million_samples() {
             // Hardly slips or not at all.
             (law.mu, law.load) = (1.5, law.load + 3.0);
         }
+        if !thorough() && i % 4 > 0 {
+            continue;
+        }
         let (out, tangential, normal) = pieces(&law, &set, &motion);
         let march = March {
             law: &law,
@@ -91,7 +95,11 @@ fn forces_are_those_of_a_march_over_a_million_samples() {
         assert!((time - tangential[0].start - TAU).abs() < 1e-12);
     }
     println!("worst {worst:e}; open, slip closed, stuck, dragged along, stick at closing, never closed: {seen:?}");
-    assert!(seen[0] > 5 && seen[1] > 3 && seen[2] > 0 && seen[4] > 3, "{seen:?}");
+    let least = some_of(1, 4);
+    assert!(
+        seen[0] > least && seen[1] >= least && seen[2] > 0 && seen[4] >= least,
+        "{seen:?}"
+    );
 }
 
 #[test]

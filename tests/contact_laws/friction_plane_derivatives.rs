@@ -1,5 +1,6 @@
 //! Derivatives of friction in a plane against differences.
 
+use crate::common::depth::some_of;
 use crate::common::plane::{Random, evaluate, largest, law};
 use hbvib::aft::Evaluation;
 use hbvib::contact::contact_state::State;
@@ -16,7 +17,8 @@ fn the_jacobian_is_the_derivative_of_the_force() {
     let (mut entries, mut corners) = (0, 0);
     let (mut opened, mut slipped_in_part, mut slipped) = (0, 0, 0);
     for highest in [1, 3, 5] {
-        for round in 0..60 {
+        // Every fifth has all kinds too.
+        for round in (0..60).step_by(some_of(5, 1)) {
             let has_normal = round % 4 != 0;
             // Half a turn suffices for odd motions under a constant load.
             let set = if round % 8 == 4 {
@@ -69,7 +71,8 @@ fn the_jacobian_is_the_derivative_of_the_force() {
     println!("largest relative error of the Jacobian {worst:.1e}");
     println!("{corners} of {entries} entries left out at corners");
     println!("{opened} with separation, {slipped_in_part} with partial, {slipped} with full slip");
-    assert!(opened > 10 && slipped_in_part > 10 && slipped > 5);
+    let least = some_of(2, 10);
+    assert!(opened > least && slipped_in_part > least && slipped > least / 2);
     assert!(worst < 1e-6 && 1000 * corners < entries);
 }
 

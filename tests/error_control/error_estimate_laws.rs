@@ -11,31 +11,38 @@ use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions, TimeOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 
-/// Estimate and true error of the fundamental of the response at one frequency.
-fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: f64) -> (f64, f64, usize) {
-    let branch = solve_at(model, solver, omega);
-    // From the solution itself: there may be several.
-    let mut guess = all_harmonics(&branch, 0);
+/// The solution with the options of a truth, from another solution on: there may be several.
+fn truth_from(model: &Model, branch: &Branch, truth: &SolverOptions) -> Branch {
+    let omega = branch.omega()[0];
+    let mut guess = all_harmonics(branch, 0);
     guess.resize((truth.harmonics + 1) * model.ndof(), Complex64::ZERO);
     let range = ForcedOptions {
         omega_start: omega,
         omega_stop: omega,
-        at: &[],
         guess: Some(&guess),
-        responses: &[],
-        together: false,
         ..ForcedOptions::default()
     };
-    let truth = forced_response(model, truth, &range, &mut Hooks::default()).unwrap();
-    let fundamental = |b: &hbvib::results::Branch| {
+    forced_response(model, truth, &range, &mut Hooks::default()).unwrap()
+}
+
+/// Estimate and true error of the fundamental of the response, and the steps of the estimate.
+fn compared(model: &Model, solver: &SolverOptions, branch: &Branch, truth: &Branch) -> (f64, f64, usize) {
+    let fundamental = |b: &Branch| {
         let i = b.carried_at(0).unwrap().iter().position(|&h| h > 0).unwrap();
         b.response_at(0).unwrap()[i]
     };
-    let (x, y) = (fundamental(&branch), fundamental(&truth));
-    let estimate = estimate_at(model, solver, &branch, 0).unwrap();
+    let (x, y) = (fundamental(branch), fundamental(truth));
+    let estimate = estimate_at(model, solver, branch, 0).unwrap();
     (estimate.response, (x - y).norm() / y.norm(), estimate.steps)
+}
+
+/// The same at one frequency, with a truth of its own.
+fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: f64) -> (f64, f64, usize) {
+    let branch = solve_at(model, solver, omega);
+    compared(model, solver, &branch, &truth_from(model, &branch, truth))
 }
 
 fn with(solver: SolverOptions, highest: usize, samples: usize) -> SolverOptions {
@@ -110,8 +117,11 @@ fn effectivities_on_small_systems_are_told() {
         let mut ratios = Vec::new();
         let mut unknown = 0;
         for omega in omegas {
+            let finest = solve_at(&model, &harmonics(31), omega);
+            let truth = truth_from(&model, &finest, &harmonics(255));
             for highest in [1, 3, 5, 9, 15, 31] {
-                let (estimate, error, _) = compare(&model, &harmonics(highest), &harmonics(255), omega);
+                let solver = harmonics(highest);
+                let (estimate, error, _) = compared(&model, &solver, &solve_at(&model, &solver, omega), &truth);
                 if estimate.is_nan() {
                     println!("{name}, {omega}, H = {highest}: unknown, {error:.1e}");
                     unknown += 1;

@@ -271,7 +271,7 @@ fn wrong_flags_and_data_write_nothing() {
 #[test]
 fn the_file_holds_exactly_what_was_asked_for() {
     let folder = folder("fe_json");
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    let data = crate::common::programs::root().join("examples/data/fe");
     let data = data.to_str().unwrap();
     let arguments = "--force 0.2 --harmonics 3 --from 531 --to 529.9 --at-hz 530 --at-hz 530.7";
     let mut arguments: Vec<&str> = arguments.split(' ').collect();

@@ -11,10 +11,9 @@ use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
 use hbvib::results::Branch;
 use hbvib::results::mode_branch::ModeField;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 fn model(size: Size) -> (Model, usize) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    let folder = crate::common::programs::root().join("examples/data/fe");
     let sector = Sector::read(&folder, size).unwrap();
     (sector.forced(2.0).unwrap(), sector.size.tip())
 }

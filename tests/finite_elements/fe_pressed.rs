@@ -16,11 +16,10 @@ use hbvib::results::Branch;
 use hbvib::results::mode_branch::ModeField;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::time::Instant;
 
 fn sector() -> Sector {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    let folder = crate::common::programs::root().join("examples/data/fe");
     Sector::read(&folder, Size::Reduced).unwrap()
 }
 

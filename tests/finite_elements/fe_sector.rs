@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    crate::common::programs::root()
 }
 
 fn data(name: &str) -> Value {

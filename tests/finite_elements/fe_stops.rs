@@ -8,7 +8,6 @@ use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
-use std::path::Path;
 
 /// The analyses of a model around its first resonance in a pattern of some nodal diameters.
 fn analyses(model: &Model, response: usize, diameter: i64) -> Vec<Analysis<'_>> {
@@ -68,7 +67,7 @@ fn finite_element_models_return_within_a_tenth_of_a_second() {
     for analysis in analyses(&model, beam.tips()[0] + Z, 0) {
         all.add("beam", &analysis, 4, &mut state);
     }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    let folder = crate::common::programs::root().join("examples/data/fe");
     for (name, size) in [("reduced", Size::Reduced), ("sector", Size::Full)] {
         let sector = Sector::read(&folder, size).unwrap();
         let model = sector.forced(2.0).unwrap();

@@ -191,3 +191,35 @@ fn integration_in_time_leaves_the_slider_where_the_vibration_has_dragged_it() {
     }
     assert!((places[0].0 - (places[0].1 - 0.3)).abs() < 1e-6 && places[1].0 > places[0].0 + 0.1);
 }
+
+/// A structure without contacts, or with springs alone, follows its constant forces: K x = factor F.
+#[test]
+fn without_contacts_the_states_are_those_of_the_stiffness() {
+    let stiffness = [3.0, -1.0, -1.0, 2.0];
+    let mut model = Model::new(2).unwrap();
+    for (which, values) in [(MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]), (MatrixKind::Stiffness, stiffness)] {
+        model.set_matrix(which, &MatrixView::dense(2, &values)).unwrap();
+    }
+    model.add_force(1, 0, Complex64::new(0.7, 0.0)).unwrap();
+    model.add_force(0, 1, Complex64::new(5.0, 0.0)).unwrap();
+    let states = |model: &Model| {
+        let history = LoadHistory {
+            factors: &[1.0, -2.0, 0.0],
+            speeds: &[],
+        };
+        static_history(model, &SolverOptions::default(), &history, &Interrupt::none()).unwrap()
+    };
+    // K⁻¹ (0, 0.7) of the determinant 5, and with a spring of 2 at the second degree of freedom of 11.
+    for (spring, right) in [(0.0, [0.14, 0.42]), (2.0, [0.7 / 11.0, 2.1 / 11.0])] {
+        let mut model = model.try_clone().unwrap();
+        if spring > 0.0 {
+            model.add_contact(&Contact::cubic(1, None, spring, 0.0)).unwrap();
+        }
+        for (step, factor) in states(&model).iter().zip([1.0, -2.0, 0.0]) {
+            for (x, right) in step.motion.iter().zip(right) {
+                assert!((x - factor * right).abs() < 1e-14, "{:?} {factor} {right}", step.motion);
+            }
+            assert!(step.forces.iter().all(|f| (f[0] - spring * step.motion[1]).abs() < 1e-14), "{:?}", step.forces);
+        }
+    }
+}

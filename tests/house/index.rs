@@ -9,13 +9,17 @@ const INTRODUCTION: &str = "\
 # Tests
 
 `sh tests/run.sh` runs them and the unit tests inside the libraries, installs what they need, and lists at the end how long each step took;
-`sh tests/deep.sh` runs those that take minutes. The files are
-grouped into a few crates, so that the library is linked a few times only: `cargo test --release --test contact_laws` runs one
+`sh tests/deep.sh` runs those that take minutes, and all cases of those that take some (`HBVIB_THOROUGH`, [common/depth.rs](common/depth.rs)).
+The files are grouped into a few crates, so that the library is linked a few times only: `cargo test --release --test contact_laws` runs one
 crate, and `cargo test --release --test contact_laws friction` what has this word in its name.
 
 A new test is a file in the folder of its crate, named by its claim and declared in the `main.rs` there. This index is made from
 the first sentence of each file: `HBVIB_WRITE_INDEX=1 cargo test --release --test house` writes it, and without the variable that test fails
 where it is out of date.
+
+The tests are a package of their own, which is compiled with little optimisation, the library with all of it. Unit tests see what is
+private, so they are compiled with the sources of the library; the packages in [units](units) do that without optimisation:
+`cargo test --release -p hbvib-unit-tests --lib`, and `-p hbvib-numerics-unit-tests` for the numerics.
 
 Beside the crates: [common](common) holds what they share, [data](data) reference values, [c_abi](c_abi) and
 [languages](languages) the programs in C, C++, Fortran and Python that `programs` builds and runs, and
@@ -52,7 +56,7 @@ fn crates() -> Vec<PathBuf> {
 }
 
 fn tests() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests")
+    crate::root().join("tests")
 }
 
 /// The first sentence of the documentation of a file.
@@ -73,7 +77,13 @@ fn first_sentence(path: &Path) -> String {
 
 fn index() -> String {
     let mut text = INTRODUCTION.to_owned();
+    let manifest = fs::read_to_string(tests().join("Cargo.toml")).unwrap();
     for folder in crates() {
+        let line = format!("path = \"{}/main.rs\"", name(&folder));
+        assert!(
+            manifest.contains(&line),
+            "tests/Cargo.toml lacks {line}: its tests would not run"
+        );
         let main = folder.join("main.rs");
         let title = name(&folder);
         write!(text, "\n## {title}\n\n{}\n\n", first_sentence(&main)).unwrap();

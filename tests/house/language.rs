@@ -62,7 +62,7 @@ fn check(folder: &Path, files: &mut usize) {
 fn sentences_of_the_documentation_begin_with_the_thing() {
     let mut files = 0;
     for folder in ["src", "crates", "tests", "examples"] {
-        check(Path::new(folder), &mut files);
+        check(&crate::root().join(folder), &mut files);
     }
     assert!(files > 300, "{files}");
 }

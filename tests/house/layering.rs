@@ -102,7 +102,7 @@ struct Tree {
 
 impl Tree {
     fn read() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = crate::root();
         let crates = [root.join("src"), root.join("crates/numerics/src")];
         let mut found = Vec::new();
         for folder in &crates {

@@ -7,3 +7,8 @@ mod python;
 mod rust_interface;
 mod supply;
 mod thresholds;
+
+/// The path of the checkout, which this package lies in.
+fn root() -> &'static std::path::Path {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
+}

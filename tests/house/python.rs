@@ -6,7 +6,7 @@ use std::fs;
 /// Modules by hand: name and text.
 fn modules() -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
-    for entry in fs::read_dir("include/hbvib").unwrap() {
+    for entry in fs::read_dir(crate::root().join("include/hbvib")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|end| end == "py") {
             let text = fs::read_to_string(&path).unwrap();

@@ -37,7 +37,7 @@ const FOREIGN: [&str; 23] = [
 
 #[test]
 fn methods_of_the_public_interface_name_public_types_only() {
-    let list = std::fs::read_to_string("docs/rust-api.txt").unwrap();
+    let list = std::fs::read_to_string(crate::root().join("docs/rust-api.txt")).unwrap();
     let declared: BTreeSet<&str> = ["pub struct ", "pub enum ", "pub trait ", "pub type "]
         .iter()
         .flat_map(|kind| list.split(kind).skip(1).filter_map(|rest| types(rest).next()))

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 /// Crates beside the library itself, versions of the same one counted apart.
@@ -10,7 +9,7 @@ const PACKAGES: usize = 52;
 
 /// Licences that deny.toml allows: they ask for no more than their text. An expression with OR needs one of them, with AND all.
 fn permissive() -> Vec<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("deny.toml");
+    let path = crate::root().join("deny.toml");
     let text = fs::read_to_string(path).unwrap();
     let list = text.split("\nallow = [").nth(1).and_then(|rest| rest.split(']').next());
     let names = list
@@ -26,7 +25,7 @@ fn tree(format: &str, edges: &str) -> BTreeSet<String> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "-p", "hbvib", "--offline", "--no-dedupe", "--prefix", "none"])
         .args(["-e", edges, "-f", format])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .current_dir(crate::root())
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -45,7 +44,7 @@ fn is_permissive(licence: &str, allowed: &[String]) -> bool {
 
 /// Names in backquotes of the first column of the table.
 fn listed() -> BTreeSet<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/dependencies.md");
+    let path = crate::root().join("docs/dependencies.md");
     let text = fs::read_to_string(path).unwrap();
     let columns = text
         .lines()

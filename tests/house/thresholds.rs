@@ -28,7 +28,7 @@ struct Threshold {
 }
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    crate::root()
 }
 
 /// Files in Rust below a folder, but for the C interface and files of unit tests.

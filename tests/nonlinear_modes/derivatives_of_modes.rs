@@ -1,6 +1,7 @@
 //! Every derivative of the equations of a nonlinear mode against finite differences, at random states
 //! of a sector without mirror symmetry: these are identities, no solution is needed.
 
+use crate::common::depth::some_of;
 use crate::common::harmonics;
 use crate::common::mode_cases::{N, Skewed};
 use crate::common::rotating::{rotate, speeds};
@@ -231,7 +232,7 @@ impl Case {
 }
 
 proptest! {
-    #![proptest_config(config(120))]
+    #![proptest_config(config(some_of(30, 120)))]
 
     #[test]
     fn the_derivatives_of_the_equations_of_a_mode_about_a_static_state(

@@ -13,6 +13,7 @@ mod linear_stretches;
 mod near_rigid;
 mod near_rigid_chains;
 mod near_rigid_slip;
+mod other_curves;
 mod passed_resonances;
 mod random_chains;
 mod random_points;

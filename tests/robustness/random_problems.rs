@@ -2,7 +2,7 @@
 //! solution, that sweeps reach their end, that nothing hangs, and that results repeat bit for bit.
 //!
 //! The problems come from a generator of this test's own with a fixed seed. `HBVIB_SEED` chooses another,
-//! `HBVIB_CASES` the number of cold starts: `HBVIB_SEED=7 HBVIB_CASES=20000 cargo test --release --test
+//! `HBVIB_CASES` the number of cold starts, 600 otherwise and 2,000 in `tests/deep.sh`: `HBVIB_SEED=7 HBVIB_CASES=20000 cargo test --release --test
 //! robustness random_problems -- --nocapture`. Sweeps are an eighth as many.
 
 mod absurd;
@@ -11,6 +11,7 @@ mod problem;
 pub mod random;
 mod residual;
 
+use crate::common::depth::some_of;
 use crate::common::{all_harmonics, harmonics, relative_gap};
 use hbvib::analysis::{forced_response, time_response};
 use hbvib::error::{Error, Status};
@@ -42,7 +43,7 @@ fn seed() -> u64 {
 }
 
 fn cases() -> u64 {
-    from_environment("HBVIB_CASES", 2_000)
+    from_environment("HBVIB_CASES", some_of(600, 2_000))
 }
 
 /// A cold start at the frequency of a case, and what the log says of it.
@@ -205,10 +206,11 @@ fn fingerprint(case: &Case, solver: &SolverOptions) -> Vec<u64> {
 
 #[test]
 fn results_repeat_bit_for_bit_on_any_number_of_threads() {
-    let own: Vec<Case> = (0..100).map(|number| Case::random(seed(), number)).collect();
+    let count = some_of(40, 100);
+    let own: Vec<Case> = (0..count).map(|number| Case::random(seed(), number)).collect();
     let all = |solver: SolverOptions| -> Vec<Vec<u64>> { own.iter().map(|case| fingerprint(case, &solver)).collect() };
     let one = all(harmonics(H));
-    assert!(one.iter().filter(|x| x.len() > 1).count() > 90);
+    assert!(10 * one.iter().filter(|x| x.len() > 1).count() as u64 > 9 * count);
     assert!(one == all(harmonics(H)), "once more");
     std::thread::scope(|scope| {
         let together: Vec<_> = (0..4).map(|_| scope.spawn(|| all(harmonics(H)))).collect();

@@ -7,7 +7,6 @@ use hbvib::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use serde_json::Value;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Number of sectors.
 pub const N: usize = 12;
@@ -26,7 +25,7 @@ pub struct BoundarySector {
 }
 
 fn text(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/boundary_sector");
+    let folder = crate::common::programs::root().join("tests/data/boundary_sector");
     std::fs::read_to_string(folder.join(name)).unwrap()
 }
 

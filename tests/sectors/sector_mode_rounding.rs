@@ -2,6 +2,7 @@
 //! the onset of slip to its end, and is that of a dense solution with the describing function of the contact.
 
 use crate::boundary_sector::{BoundarySector, dofs};
+use crate::common::depth::{some_of, thorough};
 use crate::common::mode_cases::{damping, follow, harmonic, only, singular_at};
 use crate::common::{harmonics, phase};
 use hbvib::contact::Contact;
@@ -44,12 +45,16 @@ fn describing_function(a: f64) -> Complex64 {
 fn modes_of_a_stiff_sector_pass_the_onset_of_slip_and_have_the_closed_form_of_the_contact() {
     let sector = BoundarySector::read(SectorFrame::Cylindrical);
     let (mut worst, mut slipping) = ((0.0_f64, 0.0_f64), 0);
-    for engine_order in [-2, 0, 3] {
+    for (turn, engine_order) in [-2, 0, 3].into_iter().enumerate() {
         let t = expansion(&sector, engine_order);
         let of_wave = |a: &DMatrix<f64>| t.adjoint() * a.map(Complex64::from) * &t;
         let (k, m) = (of_wave(&sector.k), of_wave(&sector.m));
         // Inside the sector, from the blade to the ground, from the disk to the ground.
-        for (a, b) in [(82, Some(97)), (98, Some(104)), (106, None), (97, None)] {
+        // Every pair with one engine order, all with all of them where that is asked for.
+        let pairs = [(82, Some(97)), (98, Some(104)), (106, None), (97, None)]
+            .into_iter()
+            .enumerate();
+        for (_, (a, b)) in pairs.filter(|(pair, _)| thorough() || pair % 3 == turn) {
             let mut row = DVector::zeros(sector.ndof());
             row[a] = Complex64::ONE;
             if let Some(b) = b {
@@ -97,5 +102,8 @@ fn modes_of_a_stiff_sector_pass_the_onset_of_slip_and_have_the_closed_form_of_th
         }
     }
     println!("{slipping} slipping points: ω {:.1e}, D {:.1e}", worst.0, worst.1);
-    assert!(slipping > 120 && worst.0 < 1e-9 && worst.1 < 1e-9, "{worst:?}");
+    assert!(
+        slipping > some_of(40, 120) && worst.0 < 1e-9 && worst.1 < 1e-9,
+        "{worst:?}"
+    );
 }

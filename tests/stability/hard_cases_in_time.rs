@@ -16,7 +16,6 @@ use hbvib::options::{FloquetOptions, ForcedOptions, ModeOptions, SolverOptions, 
 use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// A parameter of a case of `data/hardcases.json`.
 fn parameter(id: &str, name: &str) -> f64 {
@@ -27,7 +26,7 @@ fn parameter(id: &str, name: &str) -> f64 {
 
 /// Asserts that the table of the book has a radius, or its difference from another one, to the digits printed there.
 fn in_book(id: &str, radius: f64) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/stability.md");
+    let path = crate::common::programs::root().join("docs/stability.md");
     let text = std::fs::read_to_string(path).unwrap();
     let table = text.split("## Motions of hard cases").nth(1).unwrap();
     let table = table.split("\n## ").next().unwrap();

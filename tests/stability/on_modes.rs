@@ -107,6 +107,7 @@ fn every_law_has_the_multipliers_of_all_degrees_of_freedom() {
 }
 
 #[test]
+#[ignore = "as the test above, on three times as many degrees of freedom: half a minute"]
 fn every_law_has_the_multipliers_of_a_finer_bar() {
     compare(48, 12);
 }

@@ -52,6 +52,19 @@ pub enum ShellName {
 /// Verbs of the command.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
+    /// Writes a small job, a bladed disk with a friction ring, runs it, and tells where its pictures are.
+    #[command(after_help = "\
+Examples:
+  hbvib demo                     # into the folder hbvib-demo, which must not be there yet
+  hbvib demo --open first        # into the folder first, and shows the report")]
+    Demo {
+        /// The new folder.
+        #[arg(default_value = "hbvib-demo")]
+        folder: PathBuf,
+        /// Opens the report with the program of the desktop.
+        #[arg(long)]
+        open: bool,
+    },
     /// Solves a job and writes what it names.
     #[command(after_help = format!(
         "Examples:\n  hbvib run job.toml\n  hbvib run --strict job.toml   # warnings on the model are errors\n\n{CODES}"

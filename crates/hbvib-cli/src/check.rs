@@ -4,7 +4,9 @@ use crate::build::{Built, Outcome, built};
 use crate::counted::counted;
 use crate::job::Job;
 use crate::model_report::ModelReport;
-use crate::{band_curve, campbell, fit_run, life, map, motion_files, passages, print, study, tornado, wheel_response};
+use crate::{
+    band_curve, campbell, fit_run, kicks, life, map, motion_files, passages, print, study, tornado, wheel_response,
+};
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -76,6 +78,7 @@ pub fn check(path: &Path, strict: bool, json: bool) -> Outcome<u8> {
 /// A sentence.
 pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     motion_files::check(job, built)?;
+    kicks::check(job, built)?;
     if let Some(part) = &job.campbell {
         campbell::check(part, &built.model)?;
     }

@@ -26,6 +26,7 @@ mod counted;
 mod craig_bampton;
 mod curve;
 mod dampers;
+mod demo;
 mod end;
 mod events;
 mod face_images;
@@ -50,6 +51,7 @@ mod job_solutions;
 mod job_static;
 mod job_studies;
 mod job_surfaces;
+mod kicks;
 mod life;
 mod line_chart;
 mod manual;
@@ -124,6 +126,7 @@ fn main() -> ExitCode {
 /// Does what the arguments say; returns the exit code.
 fn done(verb: &Verb) -> Outcome<u8> {
     match verb {
+        Verb::Demo { folder, open } => demo::demo(folder, *open),
         Verb::Run(of) => run_job::run(&of.job, of.strict),
         Verb::Fit(of) => run_job::fit(&of.job, of.strict),
         Verb::Check { of, json } => check::check(&of.job, of.strict, *json),

@@ -12,8 +12,8 @@ use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
-    band_curve, campbell, check, contact_tables, fit_run, html_report, life, map, motion_files, output, passages,
-    solutions, study, tornado, verification, wheel_response,
+    band_curve, campbell, check, contact_tables, fit_run, html_report, kicks, life, map, motion_files, output,
+    passages, solutions, study, tornado, verification, wheel_response,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -45,6 +45,13 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
             written(&job, &built, &Curve::new(&branch, before.as_ref()), &mut files);
             let text = solutions::write(&job, &branch, &mut files);
             files.tell(&text);
+            let kick = job.solutions.as_ref().and_then(|part| part.kick.as_ref());
+            if let Some(part) = kick.filter(|_| end.goes_on(&stop)) {
+                let outcome = watched(&stop, |hooks| {
+                    kicks::write((&job, part), &built, &branch, hooks, &mut files)
+                });
+                ended(outcome, "solutions.kick", &stop, &mut files, &mut end);
+            }
             judged(&job, (&built.model, &branch), &stop, &mut files, &mut end);
         }
     }

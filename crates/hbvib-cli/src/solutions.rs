@@ -14,14 +14,14 @@ use std::fs;
 use std::path::Path;
 
 /// A branch of the tree, with its number, that of its parent, and the periods of the forces in one of its own.
-struct Place<'b> {
-    branch: &'b Branch,
+pub struct Place<'b> {
+    pub branch: &'b Branch,
     parent: usize,
-    periods: usize,
+    pub periods: usize,
 }
 
 /// The branches in the order of the tree, the response first.
-fn places(branch: &Branch) -> Vec<Place<'_>> {
+pub fn places(branch: &Branch) -> Vec<Place<'_>> {
     let mut found = vec![Place {
         branch,
         parent: 0,

@@ -9,6 +9,7 @@ mod command_licences;
 mod common;
 mod contact_outputs;
 mod decimal_comma;
+mod demo;
 mod doubtful_jobs;
 mod first_job;
 mod fits;

@@ -49,3 +49,94 @@ fn the_motion_of_the_double_period_is_in_every_output() {
     let svg = std::fs::read_to_string(folder.join("all.svg")).unwrap();
     assert!(svg.matches("<polyline").count() > 4);
 }
+
+/// Between the folds of a hardening spring both stable motions have a kick across the unstable one, that which the library finds; without a
+/// frequency the job is refused.
+#[test]
+fn the_kicks_between_two_motions_are_those_of_the_library() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (one, damping) = (folder.join("one_for_kicks.mtx"), folder.join("damping_for_kicks.mtx"));
+    for (path, value) in [(&one, "1.0"), (&damping, "0.05")] {
+        let text = format!("%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 {value}\n");
+        std::fs::write(path, text).unwrap();
+    }
+    let job = |more: &str| {
+        format!(
+            "model.stiffness = '{0}'\nmodel.mass = '{0}'\nmodel.damping = '{1}'\n\
+             [[contact]]\nkind = 'cubic'\na = [0]\ncubic = 0.3\n[[force]]\ndof = 0\nvalue = 0.2\n\
+             [forced]\nfrom_hz = {2}\nto_hz = {3}\nharmonics = 9\n{more}",
+            one.display(),
+            damping.display(),
+            0.8 / TAU,
+            2.2 / TAU
+        )
+    };
+    let whole = format!(
+        "at_hz = [{}]\n[solutions]\nkick = {{ dof = 0, csv = 'kicks.csv' }}\n",
+        1.5 / TAU
+    );
+    let (output, folder) = crate::common::hbvib("run", ("solutions", "kicks"), &job(&whole));
+    let screen = String::from_utf8_lossy(&output.stdout);
+    let failure = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{screen}{failure}");
+    let csv = std::fs::read_to_string(folder.join("kicks.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    // Two stable motions, one saddle between them.
+    assert_eq!(rows.len(), 2, "{csv}\n{screen}");
+    let mut model = hbvib::Model::new(1).unwrap();
+    for (kind, value) in [
+        (hbvib::MatrixKind::Mass, 1.0),
+        (hbvib::MatrixKind::Damping, 0.05),
+        (hbvib::MatrixKind::Stiffness, 1.0),
+    ] {
+        model.set_matrix(kind, &hbvib::MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(&hbvib::Contact::cubic(0, None, 0.0, 0.3)).unwrap();
+    model.add_force(0, 1, 0.2.into()).unwrap();
+    let solver = hbvib::SolverOptions {
+        harmonics: 9,
+        tolerance: 0.0,
+        stability: Some(hbvib::Waves::Wave),
+        ..hbvib::SolverOptions::default()
+    };
+    let at = [1.5];
+    let range = hbvib::ForcedOptions {
+        omega_start: 0.8,
+        omega_stop: 2.2,
+        at: &at,
+        ..hbvib::ForcedOptions::default()
+    };
+    let hooks = &mut hbvib::Hooks::default();
+    let branch = hbvib::forced_response(&model, &solver, &range, hooks).unwrap();
+    // Between the folds the middle one of three motions is the saddle.
+    let mut motions = branch.at(0).to_vec();
+    motions.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    let [_, saddle, _] = motions[..] else {
+        panic!("{motions:?}")
+    };
+    for row in &rows {
+        let from = branch
+            .at(0)
+            .iter()
+            .find(|s| (s.amplitude / row[2] - 1.0).abs() < 1e-6)
+            .unwrap();
+        let places = ((&branch, from.point), (&branch, saddle.point));
+        let kick = hbvib::smallest_kick(&model, places.0, places.1, (0, 16), hooks).unwrap();
+        assert!((row[4] / saddle.amplitude - 1.0).abs() < 1e-6, "{row:?}");
+        // The mirror image half a period later is as small.
+        assert!(
+            (row[5].abs() / kick.impulse.abs() - 1.0).abs() < 1e-3,
+            "{row:?} {kick:?}"
+        );
+        assert!(row[12] > 0.5 && row[6].abs() < row[5].abs(), "{row:?}");
+    }
+    assert_eq!(screen.matches("leads across").count(), 2, "{screen}");
+    let without = "[solutions]\nkick = { dof = 0 }\n";
+    let (output, _) = crate::common::hbvib("run", ("solutions", "kicks_nowhere"), &job(without));
+    let failure = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && failure.contains("needs at_hz"), "{failure}");
+}

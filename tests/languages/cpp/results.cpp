@@ -391,6 +391,23 @@ void residual_forces() {
   near(model.forced_response(s, {1.25, 1.25}).field(HBVIB_AMPLITUDE)[0], band.info.upper, 1e-6, "its end is a response");
 }
 
+/// A slider under twice the force that it can hold, and under none: it keeps a force of the other sense.
+void load_history() {
+  auto model = hbvib::Model::plain(1);
+  const double one[1][1] = {{1}};
+  model.set_matrix(HBVIB_MASS, one);
+  model.set_matrix(HBVIB_STIFFNESS, one);
+  model.add_contact(hbvib::Contact::jenkins(0, HBVIB_GROUND, 1, 0.5, 1));
+  model.add_force(0, 0, 1);
+  const auto history = model.static_history({2, 0});
+  claim(history.steps == 2 && history.motion.size() == 2 && history.places.size() == 4, "a load history has two states");
+  near(history.motion[0], 1.5, 1e-12, "the motion under the force");
+  near(history.motion[1], 0.5, 1e-12, "what is left of it");
+  near(history.forces[3], -0.5, 1e-12, "the force that is left");
+  model.set_slider(0, history.places[2]);
+  near(model.static_history({0}).motion[0], 0.5, 1e-12, "the state that is left is that of its slider");
+}
+
 /// The same wedge as a damper by one call.
 void damper_under_platforms() {
   auto model = hbvib::Model::plain(1);
@@ -433,6 +450,8 @@ int main() {
     run_ups();
     rotation();
     residual_forces();
+    load_history();
+  load_history();
     damper_under_platforms();
   });
 }

@@ -75,6 +75,7 @@ program physics
    call modes()
    call friction()
    call damper()
+   call load_history()
    call in_time()
    call one_law_in_many_words()
    call never_slipping()
@@ -327,6 +328,27 @@ contains
       call works(mode%free(), 'free')
       call works(blade%free(), 'free')
    end subroutine damper
+
+   !> A slider under twice the force that it can hold, and under none: it keeps a force of the other sense.
+   subroutine load_history()
+      type(hbvib_model) :: mass
+      real(dp), allocatable :: motion(:, :), places(:, :, :), forces(:, :, :)
+      real(dp) :: one(1, 1)
+      one = 1
+      call works(mass%new(1), 'a mass')
+      call works(mass%set_matrix(HBVIB_MASS, one), 'its mass')
+      call works(mass%set_matrix(HBVIB_STIFFNESS, one), 'its stiffness')
+      call works(mass%add_jenkins([1], [1._dp], [0.5_dp], [1._dp]), 'its contact')
+      call works(mass%add_force(1, 0, 1._dp), 'a constant force')
+      call works(mass%static_history([2._dp, 0._dp], motion=motion, places=places, forces=forces), 'a load history')
+      call expect('the motion under the force, and what is left', close(motion(1, 1), 1.5_dp, 1e-12_dp) .and. &
+                  close(motion(1, 2), 0.5_dp, 1e-12_dp) .and. close(forces(1, 1, 2), -0.5_dp, 1e-12_dp))
+      call works(mass%set_slider(1, 1, places(1, 1, 2)), 'the place of its slider')
+      call works(mass%static_history([0._dp], motion=motion), 'the state that is left')
+      call expect('it is that of the slider', close(motion(1, 1), 0.5_dp, 1e-12_dp))
+      call refused(mass%static_history([1._dp], [1._dp, 2._dp]), HBVIB_E_DIMENSION, 'speeds', 'more speeds than factors')
+      call works(mass%free(), 'free')
+   end subroutine load_history
 
    subroutine in_time()
       real(dp), parameter :: omega = 1.3_dp, k = 2, c = 0.3_dp, load = 0.7_dp
