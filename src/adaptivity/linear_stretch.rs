@@ -301,18 +301,23 @@ impl BranchTracer<'_> {
             };
             try_push(&mut brackets, bracket, CONTEXT)?;
         }
-        for mut bracket in brackets {
-            for (value, slope) in &mut bracket {
-                if *value > from
-                    && *value < to
-                    && let Some(point) = analysis.linear_at(low, *value, self.interrupt)?
-                {
-                    *slope = growth_of(analysis, kind, &point)?;
-                }
+        // The cubic tells where to look; the derivatives there and at the ends tell between which of them a maximum lies.
+        let mut before = ends[0];
+        for (value, _) in brackets.into_iter().flatten().chain([ends[1]]) {
+            let inside = value > from && value < to;
+            let here = if value <= before.0 {
+                continue;
+            } else if !inside {
+                ends[1]
+            } else if let Some(point) = analysis.linear_at(low, value, self.interrupt)? {
+                (value, growth_of(analysis, kind, &point)?)
+            } else {
+                continue;
+            };
+            if before.1 > 0.0 && here.1 <= 0.0 {
+                self.find_peak(analysis, kind, low, [before, here])?;
             }
-            if bracket[0].1 > 0.0 && bracket[1].1 <= 0.0 {
-                self.find_peak(analysis, kind, low, bracket)?;
-            }
+            before = here;
         }
         Ok(())
     }

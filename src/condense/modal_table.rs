@@ -9,7 +9,7 @@ use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
 use crate::condense::modal_rows::{ModalRows, terms_within};
 use crate::condense::single_contact::{Denominators, SingleContact};
 use crate::condense::sum_terms::{Denominator, Source};
-use crate::condense::wave_modes::NEAR_RESONANCE;
+use crate::condense::wave_modes::{NEAR_ALONE, NEAR_RESONANCE};
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_columns;
@@ -157,6 +157,11 @@ impl ModalTable {
     ) -> Result<bool> {
         let at = self.rows.source().denominator(self.number, omega);
         let nu = self.number * omega;
+        let near = if self.rows.coordinates() == 0 {
+            NEAR_ALONE
+        } else {
+            NEAR_RESONANCE
+        };
         let frequency = Frequency {
             c: at.a - 1.0,
             d_c: at.d_a,
@@ -173,7 +178,10 @@ impl ModalTable {
             single.evaluate(by, (of.entry(0, frequency.c), of.d_entry(0, frequency.d_c)), table)
         } else {
             let work = work.of(self)?;
-            let is_clear = self.rows.source().invert((at, nu), &mut work.inverse, &mut work.slopes);
+            let is_clear = self
+                .rows
+                .source()
+                .invert((at, nu, near), &mut work.inverse, &mut work.slopes);
             if is_clear {
                 interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
                 self.sum(work, (at, omega), slopes)?;

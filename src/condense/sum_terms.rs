@@ -1,6 +1,6 @@
 //! The terms of a flexibility that is a sum: the modes of a wave, or its poles where damping couples the modes.
 
-use crate::condense::wave_modes::{NEAR_RESONANCE, WaveModes};
+use crate::condense::wave_modes::WaveModes;
 use crate::condense::wave_poles::WavePoles;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -87,10 +87,15 @@ impl Source {
         }
     }
 
-    /// 1/d of all terms at ν, and −∂d/d²; `false` where a denominator is small.
-    pub fn invert(&self, (at, nu): (Denominator, f64), inverse: &mut [Complex64], slopes: &mut [Complex64]) -> bool {
+    /// 1/d of all terms at ν, and −∂d/d²; `false` where a denominator is small: as small as `near` of modes, whose μ have all digits.
+    pub fn invert(
+        &self,
+        (at, nu, near): (Denominator, f64, f64),
+        inverse: &mut [Complex64],
+        slopes: &mut [Complex64],
+    ) -> bool {
         let is_clear = match self {
-            Self::Modes(modes) => modes.invert((at.a - 1.0, at.b), (nu, NEAR_RESONANCE), inverse),
+            Self::Modes(modes) => modes.invert((at.a - 1.0, at.b), (nu, near), inverse),
             Self::Poles(poles) => poles.invert(nu, inverse),
         };
         for (k, (slope, inverse)) in slopes.iter_mut().zip(inverse).enumerate() {

@@ -38,6 +38,10 @@ pub struct WaveModes {
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
 pub(super) const NEAR_RESONANCE: f64 = 1e-6;
 
+/// The same of a response without contacts: the mode hides no flexibility that acts on a contact, and a factorisation has no more
+/// digits of its response.
+pub(super) const NEAR_ALONE: f64 = 1e-10;
+
 /// The same for a nonlinear mode, which is a resonance of the stuck structure while its contacts stick.
 pub(super) const NEAR_MODE: f64 = 1e-4;
 

@@ -1,7 +1,11 @@
 //! Peaks of every measure, against maxima of solutions at single frequencies, which know no peaks.
 
 use crate::common::chains::{chain, duffing};
-use hbvib::{Branch, Component, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response};
+use hbvib::{
+    Branch, Component, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
+    forced_response,
+};
+use num_complex::Complex64;
 
 fn solver() -> SolverOptions {
     SolverOptions {
@@ -186,4 +190,97 @@ fn a_linear_structure_has_the_peaks_of_each_degree_of_freedom() {
             assert!((a.amplitude / b.amplitude - 1.0).abs() < 1e-10, "{dof}");
         }
     }
+}
+
+/// A chain of 120 masses between walls, whose modes are sines: with a damping ratio that all modes share the response is a sum in closed
+/// form. Within the range lie 56 resonances; with 1 % of damping some are no maxima, and others next to a minimum.
+#[test]
+fn a_long_chain_has_the_peaks_of_its_closed_form_and_no_others() {
+    const N: usize = 120;
+    let (force, response) = (0, N / 2 + 3);
+    let angle = |k: usize| std::f64::consts::PI * k as f64 / (N + 1) as f64;
+    let frequency = |k: usize| 2.0 * (0.5 * angle(k)).sin();
+    let modes: Vec<(f64, f64)> = (1..=N)
+        .map(|k| {
+            let shape = |i: usize| (angle(k) * (i + 1) as f64).sin();
+            (frequency(k), 2.0 / (N + 1) as f64 * shape(force) * shape(response))
+        })
+        .collect();
+    let range = (0.5 * frequency(1), 0.5 * (frequency(56) + frequency(57)));
+    for (ratio, count) in [(1e-2, 41), (1e-3, 56), (1e-4, 56), (1e-5, 56), (1e-6, 56), (1e-7, 56)] {
+        // The amplitude, and ½ d|x|²/dω.
+        let exact = |omega: f64| {
+            let (mut x, mut d_x) = (Complex64::ZERO, Complex64::ZERO);
+            for &(own, weight) in &modes {
+                let d = Complex64::new((own - omega) * (own + omega), 2.0 * ratio * own * omega);
+                let d_d = Complex64::new(-2.0 * omega, 2.0 * ratio * own);
+                x += weight / d;
+                d_x -= weight * d_d / (d * d);
+            }
+            (x.norm(), (x.conj() * d_x).re)
+        };
+        let mut places: Vec<f64> = (0..=4000)
+            .map(|i| range.0 + (range.1 - range.0) * f64::from(i) / 4000.0)
+            .collect();
+        for &(own, _) in &modes[..57] {
+            places.extend((-60..=60).map(|i| own * (1.0 + ratio * (0.15 * f64::from(i)).sinh())));
+        }
+        places.retain(|omega| (range.0..=range.1).contains(omega));
+        places.sort_by(f64::total_cmp);
+        let mut known = Vec::new();
+        for pair in places.windows(2) {
+            let (mut low, mut high) = (pair[0], pair[1]);
+            if exact(low).1 > 0.0 && exact(high).1 <= 0.0 {
+                while high - low > 4.0 * f64::EPSILON * high {
+                    let middle = 0.5 * (low + high);
+                    if exact(middle).1 > 0.0 {
+                        low = middle
+                    } else {
+                        high = middle
+                    }
+                }
+                known.push((low, exact(low).0));
+            }
+        }
+        assert_eq!(known.len(), count, "{ratio}");
+        let mut model = chain_between_walls(N);
+        model.set_modal_damping(&[ratio; N]).unwrap();
+        model.add_force(force, 1, 1.0.into()).unwrap();
+        let options = SolverOptions {
+            response_dof: Some(response),
+            ..solver()
+        };
+        let sweep = ForcedOptions {
+            omega_start: range.0,
+            omega_stop: range.1,
+            ..ForcedOptions::default()
+        };
+        let branch = forced_response(&model, &options, &sweep, &mut Hooks::default()).unwrap();
+        assert_eq!(branch.peaks().len(), count, "{ratio}");
+        for (found, (omega, amplitude)) in branch.peaks().iter().zip(known) {
+            let off = (
+                (found.omega / omega - 1.0).abs(),
+                (found.amplitude / amplitude - 1.0).abs(),
+            );
+            assert!(off.0 < 1e-9 && off.1 < 1e-9, "{ratio}: {omega} {off:?}");
+        }
+    }
+}
+
+/// Equal masses on equal springs.
+fn chain_between_walls(n: usize) -> Model {
+    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        mass[i * (n + 1)] = 1.0;
+        stiffness[i * (n + 1)] = 2.0;
+        if i > 0 {
+            stiffness[i * n + i - 1] = -1.0;
+            stiffness[(i - 1) * n + i] = -1.0;
+        }
+    }
+    let mut model = Model::new(n).unwrap();
+    for (kind, values) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
+        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
+    }
+    model
 }
