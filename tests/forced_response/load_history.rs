@@ -197,7 +197,10 @@ fn integration_in_time_leaves_the_slider_where_the_vibration_has_dragged_it() {
 fn without_contacts_the_states_are_those_of_the_stiffness() {
     let stiffness = [3.0, -1.0, -1.0, 2.0];
     let mut model = Model::new(2).unwrap();
-    for (which, values) in [(MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]), (MatrixKind::Stiffness, stiffness)] {
+    for (which, values) in [
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
+        (MatrixKind::Stiffness, stiffness),
+    ] {
         model.set_matrix(which, &MatrixView::dense(2, &values)).unwrap();
     }
     model.add_force(1, 0, Complex64::new(0.7, 0.0)).unwrap();
@@ -219,7 +222,13 @@ fn without_contacts_the_states_are_those_of_the_stiffness() {
             for (x, right) in step.motion.iter().zip(right) {
                 assert!((x - factor * right).abs() < 1e-14, "{:?} {factor} {right}", step.motion);
             }
-            assert!(step.forces.iter().all(|f| (f[0] - spring * step.motion[1]).abs() < 1e-14), "{:?}", step.forces);
+            assert!(
+                step.forces
+                    .iter()
+                    .all(|f| (f[0] - spring * step.motion[1]).abs() < 1e-14),
+                "{:?}",
+                step.forces
+            );
         }
     }
 }

@@ -234,9 +234,9 @@ fn a_long_chain_has_the_peaks_of_its_closed_form_and_no_others() {
                 while high - low > 4.0 * f64::EPSILON * high {
                     let middle = 0.5 * (low + high);
                     if exact(middle).1 > 0.0 {
-                        low = middle
+                        low = middle;
                     } else {
-                        high = middle
+                        high = middle;
                     }
                 }
                 known.push((low, exact(low).0));
