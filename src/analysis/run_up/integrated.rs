@@ -44,7 +44,7 @@ const RUN_UP_PERTURBED: f64 = 0.01;
 
 const CONTEXT: &str = "the integrated part of a run-up";
 
-/// What the integration in time tells.
+/// Result of the integration in time.
 pub(super) struct Integrated {
     /// Turns that the last lead and what follows it took; 0: they differ from the slow flow so that all turns were needed, which are too
     /// many, and the rest is the slow flow with that difference as its error.
