@@ -17,16 +17,11 @@ const HARMONIC_LEVELS_RATIO: f64 = 1.25;
 /// Degrees of freedom above which a structure without modes of its waves is large.
 const HARMONIC_LEVELS_LARGE: usize = 32;
 
-/// Unknowns above which no level is refined: Newton's matrix takes few factors where it is large, but every contact has a dense
-/// block.
-const MOST_UNKNOWNS: usize = 6000;
+/// Unknowns above which no level is refined: Newton's method factors dense matrices.
+const MOST_UNKNOWNS: usize = 3000;
 
 /// Unknowns up to which the work of a point hardly depends on their number.
 const HARMONIC_LEVELS_SMALL: usize = 32;
-
-/// Unknowns above which Newton's matrix is not factored as a whole: each harmonic then costs factors of its own and a share of
-/// every product.
-const HARMONIC_LEVELS_DIRECT: usize = 240;
 
 /// Samples per harmonic where laws are sampled and the tolerance decides.
 const SAMPLES_PER_HARMONIC: usize = 8;
@@ -81,21 +76,10 @@ impl<'m> HarmonicLevels<'m> {
         self.automatic
     }
 
-    /// Whether a harmonic costs much: many factorisations, with exchanged motions, which need a hundred and more, full matrices,
-    /// and where the contacts are so many that the first levels have matrices which are not factored as a whole.
+    /// Whether a harmonic costs much: many factorisations, or with exchanged motions, which need a hundred and more, full matrices.
     pub fn are_costly(&self) -> bool {
-        let many = |known: &Resolution| affordable(&known.condensed, HARMONIC_LEVELS_DIRECT) < self.third();
         let known = self.models.any();
-        self.costly || known.is_some_and(|known| known.condensed.has_exchanges() || many(known))
-    }
-
-    /// The highest harmonic of the third level, 0 where there are fewer.
-    fn third(&self) -> usize {
-        if self.is_automatic() && self.count() > 2 {
-            self.models.highest(2)
-        } else {
-            0
-        }
+        self.costly || known.is_some_and(|known| known.condensed.has_exchanges())
     }
 
     /// Number of levels.

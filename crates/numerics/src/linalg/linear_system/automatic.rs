@@ -25,9 +25,6 @@ const MOST_PRODUCTS: usize = 240;
 /// Least relative residual that is asked of an iteration: a tangent of this error predicts as well.
 const FINEST: f64 = 1e-10;
 
-/// Unknowns above which no matrix is factored as a whole after an iteration that did not converge: a shorter step may do.
-const DIRECT_AT_MOST: usize = 3000;
-
 /// Updates for which the solution is direct after an iteration that did not converge.
 const PATIENCE: usize = 16;
 
@@ -176,7 +173,7 @@ impl LinearSystem for AutomaticSystem {
     }
 
     fn solve_directly(&mut self) -> bool {
-        if !self.iterates || self.n > DIRECT_AT_MOST {
+        if !self.iterates {
             return false;
         }
         self.direct = PATIENCE;
