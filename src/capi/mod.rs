@@ -95,6 +95,7 @@ pub use band_curves::*;
 pub use batch::*;
 pub use caller_laws::*;
 pub use caller_laws_check::*;
+pub use campbell_response::*;
 pub use complex_sensitivities::*;
 pub use contacts::*;
 pub use contacts_batch::*;
