@@ -297,6 +297,9 @@ fn steps_end_where_a_contact_begins_to_slip() {
     }
 }
 
+/// A life: its name, loads when new, rates of wear, stiffness of the loads, the vibrations, and the last cycle.
+type Case<'a> = (&'a str, &'a [f64], &'a [f64], &'a [f64], LifeFollow<'a>, f64);
+
 /// At an accuracy of 1e-4 a life takes at most thirty steady vibrations, also where a contact begins to slip, and with three contacts;
 /// sixty cycles in the peak, until all loads are worn off, take twice as many. Loads keep about the accuracy.
 #[test]
@@ -309,7 +312,7 @@ fn a_life_takes_thirty_vibrations() {
     };
     let steady = at(0.82);
     let separate = [1.0, 0.0, 0.0, 1.0];
-    let cases: [(&str, &[f64], &[f64], &[f64], LifeFollow<'_>, f64); 4] = [
+    let cases: [Case<'_>; 4] = [
         (
             "an event",
             &[1.6, 0.3],
