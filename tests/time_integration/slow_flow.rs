@@ -242,7 +242,7 @@ fn random_model(random: &mut Random) -> Model {
         .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
         .unwrap();
     model.set_rayleigh(0.0, random.next(0.01, 0.05)).unwrap();
-    for _ in 0..1 + random.next(0.0, 3.0) as usize {
+    for _ in 0..=random.next(0.0, 3.0) as usize {
         let dof = random.next(0.0, n as f64) as usize;
         let other = random.next(0.0, n as f64) as usize;
         let (kt, limit) = (random.next(0.05, 0.3), random.next(0.02, 0.1));
