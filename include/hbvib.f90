@@ -5155,9 +5155,10 @@ contains
       if (present(acceleration)) options%acceleration = acceleration
       if (present(added_damping)) options%damping_ratio = added_damping
       if (present(model_damping)) options%model_damping = merge(1_i32, 0_i32, model_damping)
-      factors = [1._dp]
-      if (present(force_factors)) factors = force_factors
-      n = size(factors, kind=i64)
+      n = 1
+      if (present(force_factors)) n = size(force_factors, kind=i64)
+      allocate (factors(n), source=1._dp)
+      if (present(force_factors)) factors(:) = force_factors
       allocate (rows(n, 6))
       status = hbvib_campbell_response(self%handle, model%handle, options, hooks, n, factors, rows(:, 1), rows(:, 2), rows(:, 3), &
                                        rows(:, 4), rows(:, 5), rows(:, 6))

@@ -361,3 +361,77 @@ fn bad_run_ups_are_refused() {
     let error = run_up(&branch, &model, &options, &interrupt).unwrap_err();
     assert_eq!(error.status, Status::StoppedByCaller);
 }
+
+/// A run-up that ends short of the resonance of the stuck structure, whose slow flow is largest at a place where the motion is not: the
+/// largest displacement is that of all turns.
+#[test]
+fn a_false_place_of_the_slow_flow_is_not_that_of_the_result() {
+    for (kt, range, rate) in [(1.0, (0.6, 1.372), 1e-3), (2.0, (1.68, 0.6), 1e-3)] {
+        let mut model = Model::new(1).unwrap();
+        for (which, value) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Stiffness, 1.0),
+            (MatrixKind::Damping, 0.002),
+        ] {
+            model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
+        }
+        model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
+        model.add_force(0, 1, 0.003.into()).unwrap();
+        let all = compared((&model, &mode(&model, 5)), range, (rate, 10_000));
+        println!(
+            "{:e} off, {:e} told, {} turns",
+            all.error, all.found.error, all.found.integrated
+        );
+        assert!(all.error <= all.found.error, "{} {}", all.error, all.found.error);
+    }
+}
+
+/// A damping ratio that is added to that of the mode acts as viscous damping 2dω₀ of the mode: of the linear oscillator, whose natural
+/// frequency stays, the run-up is that with this damping.
+#[test]
+fn an_added_damping_ratio_is_that_of_the_mode() {
+    let with = |damping: f64| {
+        let mut model = Model::new(1).unwrap();
+        for (which, value) in [
+            (MatrixKind::Mass, 1.0),
+            (MatrixKind::Stiffness, 1.0),
+            (MatrixKind::Damping, damping),
+        ] {
+            model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
+        }
+        // Never slips: the natural frequency is that of both springs.
+        model.add_contact(&Contact::jenkins(0, None, 0.44, 1.0, 1e6)).unwrap();
+        model.add_force(0, 1, 0.05.into()).unwrap();
+        model
+    };
+    let (light, damped) = (with(0.02), with(0.02 + 2.0 * 0.03 * 1.2));
+    let options = RunUpOptions {
+        omega_start: 1.0,
+        omega_stop: 1.4,
+        rate: 1e-3,
+        synthesis: hbvib::SynthesisOptions {
+            damping_ratio: 0.03,
+            ..hbvib::SynthesisOptions::default()
+        },
+        ..RunUpOptions::default()
+    };
+    let found = run_up(&mode(&light, 3), &light, &options, &Interrupt::none()).unwrap();
+    let truth = sweep(
+        &damped,
+        &SweepOptions {
+            omega_start: 1.0,
+            omega_stop: 1.4,
+            rate: 1e-3,
+            ..SweepOptions::default()
+        },
+        &mut Hooks::default(),
+    )
+    .unwrap();
+    println!("{} {}", found.largest, truth.largest);
+    assert!(
+        (found.largest / truth.largest - 1.0).abs() < 1e-4,
+        "{} {}",
+        found.largest,
+        truth.largest
+    );
+}

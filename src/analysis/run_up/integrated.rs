@@ -139,10 +139,12 @@ impl Leads<'_> {
         let last = seen.turns.iter().rposition(|turn| is_near(turn.amplitude)).unwrap_or(0);
         let flow = seen.largest;
         let mut found = self.leads((first, last), flow)?;
+        let count = seen.turns.len();
         let close = |found: &Option<(Swept, f64)>| {
-            found
-                .as_ref()
-                .is_some_and(|(swept, _)| swept.from == 0 || (swept.largest - flow).abs() <= 0.5 * RUN_UP_AROUND * flow)
+            found.as_ref().is_some_and(|(swept, _)| {
+                let whole = swept.from == 0 && swept.sweep.turns.len() >= count;
+                whole || (swept.largest - flow).abs() <= 0.5 * RUN_UP_AROUND * flow
+            })
         };
         let mut kept = first;
         if !close(&found) {
@@ -252,7 +254,9 @@ impl Leads<'_> {
             Err(e) if e.status == Status::OutOfMemory => return Err(e),
             _ => return Ok(None),
         };
-        let wanted = sweep.turns.iter().skip(first - from);
+        // From the begin on all turns are those of the run-up; those of another lead are not.
+        let skipped = if from == 0 { 0 } else { first - from };
+        let wanted = sweep.turns.iter().skip(skipped);
         let Some(top) = wanted.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)) else {
             return Ok(None);
         };

@@ -38,6 +38,8 @@ pub(crate) struct Load {
 pub(crate) struct State {
     pub omega: f64,
     pub damping: f64,
+    /// Damping ratio of the mode alone, without what the load adds: that with which its motion was computed.
+    pub own_damping: f64,
     /// Square of the modal amplitude.
     pub square: f64,
     /// X₁ᴴ F
@@ -61,6 +63,7 @@ impl Load {
         State {
             omega,
             damping,
+            own_damping: point.damping_ratio,
             square,
             work: inner(x, &self.force) + inner(x, &self.unbalance) * (omega * omega),
             response: self.response.along(x),

@@ -138,7 +138,7 @@ impl<'a> Refinement<'a> {
     /// The motion of all degrees of freedom in the state solved last, turned in phase.
     pub fn harmonics(&self, state: &State, turn: Complex64) -> Result<Vec<Complex64>> {
         let resolution = self.branch.numbered_resolution(self.solver.resolution);
-        let solution = (&self.motion[..], state.omega, state.damping);
+        let solution = (&self.motion[..], state.omega, state.own_damping);
         let highest = self.solver.condensed.set().numbers().last().copied().unwrap_or(0);
         let mut x = Recovery::of(resolution, solution, self.interrupt)?.all(highest)?;
         let ndof = self.branch.ndof().max(1);

@@ -346,7 +346,7 @@ mode_of_moded = moded.nonlinear_mode((-2, 0.8), harmonics=3, tolerance=0)
 def run_through(**o):
     options, info = new("hbvib_run_up_options", **{**dict(omega_start=0.8, omega_stop=1.3, rate=5e-3), **o}), new("hbvib_run_up_info")
     call("hbvib_branch_run_up", mode_of_moded.handle, moded.handle, options, None, 0, None, None, None, None, None, info)
-    return bits(info.largest, info.largest_omega, info.error)
+    return bits(info.largest, info.largest_omega, info.error, info.slow_flow)
 
 
 def pictured(**o):
