@@ -38,10 +38,16 @@ pub fn check(job: &Job, built: &Built) -> Outcome<()> {
     let Some(part) = job.solutions.as_ref().and_then(|part| part.kick.as_ref()) else {
         return Ok(());
     };
-    built
+    let dof = built
         .nodes
         .dof(&part.dof)
         .map_err(|e| format!("[solutions] kick: dof: {e}"))?;
+    if dof >= built.model.ndof() {
+        return Err(format!(
+            "[solutions] kick: dof = {dof}, needs 0 .. {}",
+            built.model.ndof()
+        ));
+    }
     if job.forced.as_ref().is_none_or(|forced| forced.at_hz.is_empty()) {
         return Err("[solutions] kick needs at_hz in [forced], the frequencies at which the machine runs".into());
     }

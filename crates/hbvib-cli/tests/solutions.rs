@@ -135,8 +135,17 @@ fn the_kicks_between_two_motions_are_those_of_the_library() {
         assert!(row[12] > 0.5 && row[6].abs() < row[5].abs(), "{row:?}");
     }
     assert_eq!(screen.matches("leads across").count(), 2, "{screen}");
-    let without = "[solutions]\nkick = { dof = 0 }\n";
-    let (output, _) = crate::common::hbvib("run", ("solutions", "kicks_nowhere"), &job(without));
-    let failure = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && failure.contains("needs at_hz"), "{failure}");
+    let without = "[solutions]\nkick = { dof = 0 }\n".to_owned();
+    for (name, part, words) in [
+        ("kicks_nowhere", without, "needs at_hz"),
+        (
+            "kicks_outside",
+            whole.replace("dof = 0", "dof = 7"),
+            "dof = 7, needs 0 .. 1",
+        ),
+    ] {
+        let (output, _) = crate::common::hbvib("run", ("solutions", name), &job(&part));
+        let failure = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && failure.contains(words), "{failure}");
+    }
 }
