@@ -146,12 +146,10 @@ impl Leads<'_> {
                 whole || (swept.largest - flow).abs() <= 0.5 * RUN_UP_AROUND * flow
             })
         };
-        let mut kept = first;
         if !close(&found) {
             // The slow flow is no guide: the whole run-up.
             if let Some(swept) = self.sweep(0, (0, seen.turns.len() - 1))? {
                 found = Some((swept, 0.0));
-                kept = 0;
             } else {
                 return Ok(found.map(|(swept, left)| Integrated {
                     turns: 0,
@@ -163,14 +161,13 @@ impl Leads<'_> {
             }
         }
         let Some((swept, left)) = found else { return Ok(None) };
-        for (k, turn) in swept.sweep.turns.iter().enumerate() {
-            if let Some(own) = seen
-                .turns
-                .get_mut(swept.from + k)
-                .filter(|_| swept.from == 0 || swept.from + k >= kept)
-            {
-                own.amplitude = turn.amplitude;
-            }
+        // Turns of a lead are not those of the run-up, unless it goes back to the begin.
+        let kept = if swept.from == 0 { 0 } else { first };
+        for (own, turn) in seen.turns[kept..]
+            .iter_mut()
+            .zip(&swept.sweep.turns[kept - swept.from..])
+        {
+            own.amplitude = turn.amplitude;
         }
         Ok(Some(Integrated {
             turns: swept.sweep.turns.len(),
