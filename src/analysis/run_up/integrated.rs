@@ -163,10 +163,8 @@ impl Leads<'_> {
         let Some((swept, left)) = found else { return Ok(None) };
         // Turns of a lead are not those of the run-up, unless it goes back to the begin.
         let kept = if swept.from == 0 { 0 } else { first };
-        for (own, turn) in seen.turns[kept..]
-            .iter_mut()
-            .zip(&swept.sweep.turns[kept - swept.from..])
-        {
+        let integrated = swept.sweep.turns.iter().skip(kept - swept.from);
+        for (own, turn) in seen.turns.iter_mut().skip(kept).zip(integrated) {
             own.amplitude = turn.amplitude;
         }
         Ok(Some(Integrated {
