@@ -35,8 +35,14 @@ pub(super) fn lies_on(
         let before = i.checked_sub(1).map(|before| omega[i] - omega[before]);
         let after = omega.get(i + 2).map(|after| after - omega[i + 1]);
         let step = omega[i + 1] - omega[i];
-        let turns = [before, after].iter().flatten().any(|other| other * step < 0.0);
-        if !reaches((omega[i], omega[i + 1]), point.parameter(), turns) {
+        let beside = [before, after].into_iter().flatten();
+        // Beyond its points a fold reaches no further than the steps around it.
+        let beyond = if beside.clone().any(|other| other * step <= 0.0) {
+            beside.fold(step.abs(), |most, other| most.max(other.abs()))
+        } else {
+            0.0
+        };
+        if !reaches((omega[i], omega[i + 1]), point.parameter(), beyond) {
             continue;
         }
         interrupt.check()?;
@@ -53,16 +59,15 @@ pub(super) fn lies_on(
             periods,
             set: to.set(),
         };
-        if segment.has(response, (&moved(i)?, &moved(i + 1)?), (HALVINGS, turns), interrupt)? {
+        if segment.has(response, (&moved(i)?, &moved(i + 1)?), (HALVINGS, beyond), interrupt)? {
             return Ok(true);
         }
     }
     Ok(false)
 }
 
-/// Whether the line between two frequencies, or a fold of the curve beside its end, reaches another one.
-fn reaches((a, b): (f64, f64), omega: f64, turns: bool) -> bool {
-    let beyond = if turns { (b - a).abs() } else { 0.0 };
+/// Whether the line between two frequencies, or a fold of the curve beside it, reaches another one.
+fn reaches((a, b): (f64, f64), omega: f64, beyond: f64) -> bool {
     omega >= a.min(b) - beyond && omega <= a.max(b) + beyond
 }
 
@@ -80,7 +85,7 @@ impl Segment<'_> {
         &self,
         response: &mut ForcedDiscretised<'_>,
         (a, b): (&[f64], &[f64]),
-        (halvings, turns): (usize, bool),
+        (halvings, beyond): (usize, f64),
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let n = self.point.unknowns().len();
@@ -100,7 +105,7 @@ impl Segment<'_> {
             let pairs = found.unknowns().iter().zip(near.unknowns());
             pairs.fold(0.0_f64, |s, (x, y)| s.hypot(x - y)) <= BESIDE * length
         };
-        if reaches((a[n], b[n]), omega, false) {
+        if reaches((a[n], b[n]), omega, 0.0) {
             let step = b[n] - a[n];
             let mut near = on_line(if step.abs() > 0.0 { (omega - a[n]) / step } else { 0.5 })?;
             near.v[n] = omega;
@@ -108,7 +113,7 @@ impl Segment<'_> {
                 if is_one(&found, self.point, self.set, self.periods) {
                     return Ok(true);
                 }
-                if !turns && is_near(&found, &near) {
+                if beyond == 0.0 && is_near(&found, &near) {
                     return Ok(false);
                 }
             }
@@ -122,7 +127,9 @@ impl Segment<'_> {
             _ => return Ok(false),
         };
         for (a, b) in [(a, &middle.v[..]), (&middle.v[..], b)] {
-            if reaches((a[n], b[n]), omega, turns) && self.has(response, (a, b), (halvings - 1, turns), interrupt)? {
+            // A fold is at most as far away as the line is long.
+            let beyond = 0.5 * beyond;
+            if reaches((a[n], b[n]), omega, beyond) && self.has(response, (a, b), (halvings - 1, beyond), interrupt)? {
                 return Ok(true);
             }
         }
