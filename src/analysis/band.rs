@@ -144,6 +144,7 @@ pub fn band(
         samples: branch.samples_at(point),
         response_dof: Some(branch.response_dof()),
         stability: None,
+        freedom: false,
         ..*solver
     };
     let highest = condensed.set().numbers().last().copied().unwrap_or(1);

@@ -14,6 +14,7 @@ mod direct_solutions;
 mod duffing;
 mod duffing_folds;
 mod folds;
+mod freedom_of_points;
 mod full_wheel;
 mod load_history;
 mod many_contacts;
