@@ -6,6 +6,7 @@ pub mod band_curve;
 mod band_growth;
 mod band_line;
 mod band_search;
+mod band_starts;
 pub mod batch;
 mod branch_stability;
 mod branch_switching;

@@ -6,6 +6,7 @@ mod common;
 
 mod backward_waves;
 mod bands_of_many_sliders;
+mod bands_of_two_dampers;
 mod capacity;
 mod continuation;
 mod dampers;
