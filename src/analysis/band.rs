@@ -39,6 +39,9 @@ const BAND_STATES_PER_START: usize = 2;
 /// Shares of the distances of the sliders by which those that are not at their limits go on beyond an end.
 const BAND_BEYOND: [f64; 2] = [0.05, 0.3];
 
+/// Senses of the searches of both ends.
+const BAND_SENSES: [f64; 2] = [-1.0, 1.0];
+
 /// Relative gain with which a search from another state betters an end.
 const BAND_BETTER: f64 = 1e-9;
 
@@ -242,7 +245,6 @@ fn from_other_states<'a>(
     (bases, ends): ([&HeldState; 2], &mut [Reached<'a>; 2]),
     interrupt: &'a Interrupt<'a>,
 ) -> Result<usize> {
-    const SIGNS: [f64; 2] = [-1.0, 1.0];
     let mut solved = 0;
     let mut starts = Starts::new(held, (branch, point), options.contacts, interrupt)?;
     if starts.sliders() == held.sliders.len() && held.sliders.len() == 1 {
@@ -260,7 +262,7 @@ fn from_other_states<'a>(
             let (k, share) = (k / BAND_BEYOND.len(), BAND_BEYOND[k % BAND_BEYOND.len()]);
             let own = ends[k].own.as_ref();
             let end = own.map_or((held, bases[k]), |own| (&*own.held, &own.state));
-            starts.beyond(end, (SIGNS[k], share))?
+            starts.beyond(end, (BAND_SENSES[k], share))?
         } else {
             starts.state(number)?
         };
@@ -281,7 +283,7 @@ fn from_other_states<'a>(
         let Some((own, first)) = within_limits(held, (&branch, sliders), interrupt)? else {
             continue;
         };
-        for (best, sign) in ends.iter_mut().zip(SIGNS) {
+        for (best, sign) in ends.iter_mut().zip(BAND_SENSES) {
             let found = climbed(&own, &first, sign)?;
             solved += found.solved;
             let gain = sign * (found.state.value - best.end.value);

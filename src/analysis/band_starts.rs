@@ -26,7 +26,7 @@ const BAND_STARTS_AT_LIMIT: f64 = 1e-6;
 
 /// A slider that may be placed: its contact and direction, the middle of its motion, and the reach of its limit.
 #[derive(Clone, Copy)]
-struct Placed {
+struct SliderReach {
     contact: usize,
     direction: usize,
     middle: f64,
@@ -40,7 +40,7 @@ pub(super) struct Starts<'a> {
     response: Option<Response<'a>>,
     omega: f64,
     guess: Vec<Complex64>,
-    sliders: Vec<Placed>,
+    sliders: Vec<SliderReach>,
     interrupt: &'a Interrupt<'a>,
     /// Solutions that were computed.
     pub solved: usize,
@@ -67,7 +67,7 @@ impl<'a> Starts<'a> {
             }
             let summary = branch.contact_summary_with(point, number, interrupt)?;
             for direction in 0..contact.sliders() {
-                let one = Placed {
+                let one = SliderReach {
                     contact: number,
                     direction,
                     middle: 0.5 * (summary.motion_min[direction] + summary.motion_max[direction]),

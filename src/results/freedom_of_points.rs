@@ -1,7 +1,6 @@
 //! The free sliders of the stored points of a forced response: their number and the derivatives of the amplitude by their places.
 
-use crate::error::{Result, Status, try_vec};
-use crate::results::Branch;
+use crate::error::{Result, try_vec};
 
 const CONTEXT: &str = "the freedom of the points";
 
@@ -41,41 +40,13 @@ impl FreedomOfPoints {
         &self.count
     }
 
+    /// Derivatives of one point, for each contact and direction.
+    pub fn of_point(&self, point: usize) -> Option<&[[f64; 2]]> {
+        self.by_place.get(point * self.contacts..(point + 1) * self.contacts)
+    }
+
     /// Derivatives for each point, contact and direction; NaN where a slider is not free.
     pub fn by_place(&self) -> &[[f64; 2]] {
         &self.by_place
-    }
-}
-
-impl Branch {
-    /// Whether freedom was requested.
-    #[must_use]
-    pub fn tells_freedom(&self) -> bool {
-        self.freedom.is_some()
-    }
-
-    /// Number of free sliders at each point of the curve, as [`crate::freedom()`] lists them; NaN where it is unknown, and none without
-    /// the solver option `freedom`.
-    #[must_use]
-    pub fn free_sliders(&self) -> &[f64] {
-        let all = self.freedom.as_ref().map_or(&[][..], |freedom| freedom.count());
-        &all[..self.points().min(all.len())]
-    }
-
-    /// Derivatives of the amplitude of a stored point by the places of sliders at a fixed frequency, along t1 and t2 of each contact;
-    /// NaN where a slider is not free. `None` for an unknown point, and without the solver option `freedom`.
-    #[must_use]
-    pub fn d_amplitude_by_place_at(&self, point: usize) -> Option<&[[f64; 2]]> {
-        let freedom = self.freedom.as_ref()?;
-        let n = freedom.contacts;
-        freedom.by_place.get(point * n..(point + 1) * n)
-    }
-
-    /// Stores the freedom of all points; `stopped` if the caller stopped its computation.
-    pub(crate) fn set_freedom(&mut self, freedom: Box<FreedomOfPoints>, stopped: bool) {
-        self.freedom = Some(freedom);
-        if stopped && self.status == Status::Ok {
-            self.status = Status::StoppedByCaller;
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! Results: the stored points of a branch, and the quantities derived from them.
 
 mod branch;
+mod branch_freedom;
 mod branch_recording;
 mod children;
 pub mod contact_loops;

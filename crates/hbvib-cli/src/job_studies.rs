@@ -149,7 +149,7 @@ pub struct BandPart {
     pub harmonics: Option<usize>,
     pub tolerance: Option<f64>,
     pub response_dof: Option<DofName>,
-    /// What is bounded: the amplitude at each frequency, amplitude and frequency of the highest peak.
+    /// Results that are bounded: the amplitude at each frequency, amplitude and frequency of the highest peak.
     #[serde(default = "curves_and_peak")]
     pub of: Vec<BandName>,
     /// Numbers of the contacts whose force is free, from 0; all unless given.
