@@ -1,11 +1,11 @@
 //! The freedom of all points of a sweep, as columns of its branch: that of the call for each point, at hardly any work where nothing is
 //! free.
 
-use crate::common::{harmonics, sweep};
+use crate::common::{harmonics, solve_at, sweep};
 use crate::residual_band::{across, peak_wedge, wedge};
 use hbvib::{
     Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Phase, PhaseReport, SolverOptions,
-    Status, forced_response, freedom,
+    Speed, Status, forced_response, freedom,
 };
 use num_complex::Complex64;
 
@@ -135,4 +135,28 @@ fn a_stop_in_the_freedom_leaves_the_curve() {
     let known = branch.free_sliders().iter().take_while(|count| !count.is_nan()).count();
     assert!(known > 0 && known < branch.points());
     assert!(branch.free_sliders()[known..].iter().all(|count| count.is_nan()));
+}
+
+/// A contact whose load follows the frequency has the freedom that it has under the load of its speed.
+#[test]
+fn freedom_under_a_load_that_follows_the_frequency_is_that_of_its_speed() {
+    let omega = 1.3;
+    let solver = SolverOptions {
+        freedom: true,
+        ..harmonics(7)
+    };
+    let found = [Speed::PerOmega(0.5), Speed::Fixed(0.5 * omega)].map(|speed| {
+        let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+        model.set_preload_at_speed(0, 0.05, 0.1).unwrap();
+        model.set_speed(speed).unwrap();
+        let branch = solve_at(&model, &solver, omega);
+        let free = freedom(&model, &branch, 0).unwrap();
+        assert_eq!(free.len(), 1);
+        let column = branch.d_amplitude_by_place_at(0).unwrap()[0][0];
+        [free[0].place, free[0].derivative, column]
+    });
+    println!("{found:?}");
+    for (tied, fixed) in found[0].iter().zip(found[1]) {
+        assert!((tied - fixed).abs() < 1e-8, "{found:?}");
+    }
 }
