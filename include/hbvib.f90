@@ -91,7 +91,7 @@ module hbvib
       HBVIB_HARMONICS_USED = 8, HBVIB_SLIP_FRACTION = 9, HBVIB_LOG10_AMPLITUDE = 10, HBVIB_MODAL_AMPLITUDE = 11, &
       HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15, &
       HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17, HBVIB_PARAMETER_VALUE = 18, HBVIB_D_AMPLITUDE = 19, &
-      HBVIB_D_DAMPING = 20
+      HBVIB_D_DAMPING = 20, HBVIB_FREE_SLIDERS = 21, HBVIB_D_AMPLITUDE_BY_PLACE = 22
    ! hbvib_reading
    integer(c_int32_t), parameter, public :: HBVIB_READING_VALUE = 0, HBVIB_READING_COMPLEX = 1, HBVIB_READING_ERROR = 2, &
       HBVIB_READING_INSTANT = 3
@@ -239,14 +239,14 @@ module hbvib
 
    !> Options that every analysis shares.
    type, bind(c) :: hbvib_solver_options
-      integer(c_int32_t) :: struct_size = 120, num_threads = 0
+      integer(c_int32_t) :: struct_size = 128, num_threads = 0
       real(c_double) :: tolerance = 1e-3_c_double
       integer(c_int64_t) :: harmonics = 9, max_harmonics = 511, samples = 0
       real(c_double) :: step = 0, step_min = 0, step_max = 0, tol_residual = 1e-10_c_double
       integer(c_int64_t) :: max_newton = 25, max_points = 20000, response_dof = -1
       integer(c_int32_t) :: keep_even_harmonics = 0, estimate_error = 0
       integer(c_int64_t) :: memory_limit = 0
-      integer(c_int32_t) :: flexibility = 0, stability = 0
+      integer(c_int32_t) :: flexibility = 0, stability = 0, freedom = 0, reserved = 0
    end type hbvib_solver_options
 
    !> State of a solve, passed to the progress callback.
@@ -2477,8 +2477,8 @@ module hbvib
       procedure :: points => branch_points
       procedure :: stored => branch_stored
       procedure :: status => branch_status
-      procedure, private :: field_1, field_2
-      generic :: field => field_1, field_2
+      procedure, private :: field_1, field_2, field_3
+      generic :: field => field_1, field_2, field_3
       procedure :: harmonics => branch_harmonics
       procedure :: harmonics_into => branch_harmonics_into
       procedure :: slip_fraction => branch_slip_fraction
@@ -2545,7 +2545,8 @@ module hbvib
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
    private :: model_add_user_force, model_check_jacobian, model_forced_response, model_nonlinear_mode, model_time_response
-   private :: model_forced_residual, branch_free, branch_points, branch_status, branch_stored, requested_count, field_1, field_2
+   private :: model_forced_residual, branch_free, branch_points, branch_status, branch_stored, requested_count
+   private :: field_1, field_2, field_3
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
@@ -2555,7 +2556,7 @@ module hbvib
    private :: turns_between, model_time_sweep, life_options, model_life, model_best_load_for_life, branch_run_up, branch_mission, &
       branch_campbell_response
    private :: model_parameter_response, branch_optima, branch_turns, branch_higher_peaks
-   real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
+   real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0), nothing_3(0, 0, 0)
 
 contains
 
@@ -4612,6 +4613,21 @@ contains
       call c_f_pointer(view%data, memory, [view%stride(1), view%shape(1)])
       x => memory(1:view%shape(2)*view%stride(2):view%stride(2), :)
    end function field_2
+
+   !> The same of HBVIB_D_AMPLITUDE_BY_PLACE: x(direction, contact, point).
+   function field_3(self, field, x) result(status)
+      class(hbvib_branch), intent(in) :: self
+      integer(i32), intent(in) :: field
+      real(dp), pointer, intent(out) :: x(:, :, :)
+      integer(i32) :: status
+      type(hbvib_view) :: view
+      nullify (x)
+      status = view_of(self, field, 3, view)
+      if (status /= HBVIB_OK) return
+      x => nothing_3
+      if (product(view%shape) == 0) return
+      call c_f_pointer(view%data, x, [view%shape(3), view%shape(2), view%shape(1)])
+   end function field_3
 
    function view_of(self, field, rank, view) result(status)
       class(hbvib_branch), intent(in) :: self

@@ -1672,6 +1672,13 @@ typedef struct {
   /// HBVIB_UNSTABLE_DIRECTIONS and hbvib_branch_bifurcations. A nonlinear mode refuses any but
   /// HBVIB_STABILITY_NONE, the default.
   int32_t stability;
+  /// 1: the free sliders of each stored point of a forced response, as hbvib_branch_freedom has
+  /// them for one point: for HBVIB_FREE_SLIDERS and HBVIB_D_AMPLITUDE_BY_PLACE. Hardly any work
+  /// where nothing is free, else about that of one more Newton iteration a point. 0 (default):
+  /// none. A nonlinear mode and a parameter response refuse it.
+  int32_t freedom;
+  /// Must be 0.
+  int32_t reserved;
 } hbvib_solver_options;
 
 /// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow,
@@ -2084,7 +2091,7 @@ HBVIB_NODISCARD
 hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector. All are
-/// finite, except for errors and stability that are unknown: those are NaN.
+/// finite, except for errors, stability and freedom that are unknown, or not there: those are NaN.
 typedef enum {
   /// Angular frequency.
   HBVIB_OMEGA = 0,
@@ -2143,6 +2150,12 @@ typedef enum {
   /// Parameter responses of the largest damping ratio of a mode only: total derivative of that
   /// ratio by the parameter.
   HBVIB_D_DAMPING = 20,
+  /// Forced responses with the solver option `freedom` only: number of free sliders, as
+  /// hbvib_branch_freedom lists them; 0 where the motion is unique. NaN where it is unknown.
+  HBVIB_FREE_SLIDERS = 21,
+  /// The same: derivative of the amplitude by the place of each slider at a fixed frequency,
+  /// points x contacts x 2 for t1 and t2. NaN where the slider is not free.
+  HBVIB_D_AMPLITUDE_BY_PLACE = 22,
 } hbvib_field;
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -2174,9 +2187,10 @@ hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
-///        points x contacts, 0 for a contact that never slips. A forced response does not have the
-///        fields of nonlinear modes, and those of stability with that option only; parameter
-///        responses alone have those of a parameter.
+///        points x contacts, 0 for a contact that never slips, and HBVIB_D_AMPLITUDE_BY_PLACE
+///        points x contacts x 2. A forced response does not have the fields of nonlinear modes, and
+///        those of stability and freedom with these options only; parameter responses alone have
+///        those of a parameter.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -4503,7 +4517,7 @@ typedef struct {
   /// Last angular frequency: below the first for downward sweeps.
   double omega_stop;
   /// 1: the branch of each design is kept, for hbvib_batch_branch; 0 (default): it is not, and the
-  /// solver options estimate_error and stability have no effect.
+  /// solver options estimate_error, stability and freedom have no effect.
   int32_t keep;
   /// Must be 0.
   int32_t reserved;

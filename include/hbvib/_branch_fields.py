@@ -45,7 +45,8 @@ class _BranchFields(_Owner):
     _leases: Any
 
     def field(self, field: Fields) -> FloatArray:
-        """A field, by Field or name, in the library's memory: (points), slip_fraction (points, contacts).
+        """A field, by Field or name, in the library's memory: (points), slip_fraction (points, contacts),
+        d_amplitude_by_place (points, contacts, 2).
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
@@ -95,6 +96,10 @@ class _BranchFields(_Owner):
                                      " multipliers; NaN where unknown.")
     unstable_directions = _FieldProperty(Field.UNSTABLE_DIRECTIONS, "With `stability`: number of those outside the unit"
                                           " circle, as float64; 0 for a stable motion.")
+    free_sliders = _FieldProperty(Field.FREE_SLIDERS, "With `freedom`: number of free sliders, as float64, as Model.freedom"
+                                   " lists them for one point; NaN where unknown.")
+    d_amplitude_by_place = _FieldProperty(Field.D_AMPLITUDE_BY_PLACE, "With `freedom`: derivative of the amplitude by the place"
+                                           " of each slider at a fixed frequency (points, contacts, 2); NaN where not free.")
     damping_error_estimate = _FieldProperty(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, NaN as error_estimate.")
     damping_ratio = _FieldProperty(Field.DAMPING_RATIO, "Modes: damping ratio D.")
     mode_energy = _FieldProperty(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")

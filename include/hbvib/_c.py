@@ -444,6 +444,10 @@ class Field(enum.IntEnum):
         and in those of a mode.
     D_DAMPING   Parameter responses of the largest damping ratio of a mode only: total derivative of that ratio by the
         parameter.
+    FREE_SLIDERS   Forced responses with the solver option `freedom` only: number of free sliders, as
+        hbvib_branch_freedom lists them; 0 where the motion is unique.
+    D_AMPLITUDE_BY_PLACE   The same: derivative of the amplitude by the place of each slider at a fixed frequency,
+        points x contacts x 2 for t1 and t2.
 
     >>> import hbvib
     >>> hbvib.Field(0)
@@ -470,6 +474,8 @@ class Field(enum.IntEnum):
     PARAMETER_VALUE = 18
     D_AMPLITUDE = 19
     D_DAMPING = 20
+    FREE_SLIDERS = 21
+    D_AMPLITUDE_BY_PLACE = 22
 
 
 class Reading(enum.IntEnum):
@@ -942,7 +948,7 @@ user_force: uint32 struct_size; int32 uses_velocity is_odd reserved; pointer dof
 jacobian_gap: uint32 struct_size; int32 tangent; double gap; int64 sample row column; double given difference
 solver_options: uint32 struct_size; int32 num_threads; double tolerance; int64 harmonics max_harmonics samples; double
     step step_min step_max tol_residual; int64 max_newton max_points response_dof; int32 keep_even_harmonics
-    estimate_error; int64 memory_limit; int32 flexibility stability
+    estimate_error; int64 memory_limit; int32 flexibility stability freedom reserved
 progress: uint32 struct_size; int32 newton_iterations; int64 point; double parameter amplitude residual step
     fraction_done
 phase_report: uint32 struct_size; int32 phase; double share

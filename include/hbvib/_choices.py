@@ -19,7 +19,7 @@ Fields = Union[
     Literal["omega", "amplitude", "damping_ratio", "energy", "dissipation", "residual", "newton_iterations", "error_estimate",
             "harmonics_used", "slip_fraction", "log10_amplitude", "modal_amplitude", "structural_loss", "modal_assurance",
             "sampling_error", "damping_error_estimate", "floquet_radius", "unstable_directions", "parameter_value",
-            "d_amplitude", "d_damping"],
+            "d_amplitude", "d_damping", "free_sliders", "d_amplitude_by_place"],
     int]
 Follows = Union[Follow, Literal["omega", "peak", "fold", "mode_max_damping", "peak_through_folds"], int]
 LogLevels = Union[LogLevel, Literal["none", "warn", "info", "debug"], int]

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 
 def fields(branch: Branch) -> dict[str, np.ndarray]:
-    """The fields that a branch has, by name, copied: (points), slip_fraction (points, contacts)."""
+    """The fields that a branch has, by name, copied: (points), slip_fraction (points, contacts) and d_amplitude_by_place
+    (points, contacts, 2)."""
     found = {}
     for field in Field:
         with contextlib.suppress(ArgumentError):
@@ -37,8 +38,10 @@ def dataframe(branch: Branch) -> Any:
     for name, values in fields(branch).items():
         if values.ndim == 1:
             columns[name] = values
-        else:
+        elif values.ndim == 2:
             columns.update({f"{name}_{k}": values[:, k] for k in range(values.shape[1])})
+        else:
+            columns.update({f"{name}_{k}_t{d + 1}": values[:, k, d] for k in range(values.shape[1]) for d in range(2)})
     columns.update({f"response_{r}": found.amplitude for r, found in enumerate(branch.responses)})
     table = pandas.DataFrame(columns)
     table.index.name = "point"
@@ -54,7 +57,7 @@ def dataset(branch: Branch) -> Any:
         raise ImportError("to_xarray needs xarray: pip install xarray") from None
     found = fields(branch)
     coordinate = "log10_amplitude" if branch.is_mode else "omega"
-    dims = {1: ("point",), 2: ("point", "contact")}
+    dims = {1: ("point",), 2: ("point", "contact"), 3: ("point", "contact", "direction")}
     variables = {name: (dims[values.ndim], values) for name, values in found.items() if name != coordinate}
     if watched := branch.responses:
         variables["response"] = (("watched", "point"), np.array([found.amplitude for found in watched]))

@@ -51,6 +51,10 @@ class SolverOptions(TypedDict, total=False):
     stability   Perturbations whose Floquet multipliers are computed at each point of the curve of a forced response, a
         value of enum Stability: for Field.FLOQUET_RADIUS, Field.UNSTABLE_DIRECTIONS and hbvib_branch_bifurcations. A
         nonlinear mode refuses any but Stability.NONE, the default. Default: 0.
+    freedom   1: the free sliders of each stored point of a forced response, as hbvib_branch_freedom has them for one
+        point: for Field.FREE_SLIDERS and Field.D_AMPLITUDE_BY_PLACE. Hardly any work where nothing is free, else about
+        that of one more Newton iteration a point. 0 (default): none. A nonlinear mode and a parameter response refuse
+        it. Default: 0.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -77,6 +81,7 @@ class SolverOptions(TypedDict, total=False):
     memory_limit: int
     flexibility: Union[Flexibility, Literal["automatic", "direct", "krylov"], int]
     stability: Union[Stability, Literal["none", "wave", "wheel"], int]
+    freedom: int
 
 
 class TimeOptions(TypedDict, total=False):

@@ -3,9 +3,11 @@
 use crate::analysis::band_growth::{Grown, grown};
 use crate::analysis::band_line::line;
 use crate::analysis::band_search::Search;
+use crate::analysis::band_starts::{Starts, climbed, within_limits};
 use crate::analysis::forced_response::forced_response;
 use crate::analysis::freedom::free_sliders;
 use crate::analysis::held_sliders::{HeldSliders, HeldState};
+use crate::analysis::stuck_contacts::StuckSlider;
 use crate::condense::{Condensed, Reference, Resolution};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
@@ -30,6 +32,21 @@ const BAND_FORETOLD: f64 = 1e-4;
 
 /// Times that contacts which stick at an end, but not at the state before, are set free.
 const BAND_GROWTHS: usize = 8;
+
+/// Other states of the model for each start, from which the search begins where other contacts stick in them.
+const BAND_STATES_PER_START: usize = 2;
+
+/// Shares of the distances of the sliders by which those that are not at their limits go on beyond an end.
+const BAND_BEYOND: [f64; 2] = [0.05, 0.3];
+
+/// Senses of the searches of both ends.
+const BAND_SENSES: [f64; 2] = [-1.0, 1.0];
+
+/// Relative gain with which a search from another state betters an end.
+const BAND_BETTER: f64 = 1e-9;
+
+/// Relative difference of an end from the solution of the model with its places.
+const BAND_SAME: f64 = 1e-6;
 
 /// Options of a band.
 #[derive(Clone, Copy, Debug)]
@@ -144,6 +161,7 @@ pub fn band(
         samples: branch.samples_at(point),
         response_dof: Some(branch.response_dof()),
         stability: None,
+        freedom: false,
         ..*solver
     };
     let highest = condensed.set().numbers().last().copied().unwrap_or(1);
@@ -165,58 +183,175 @@ pub fn band(
     } else {
         searched(&held, first, options.starts)?
     };
-    with_ends(&held, found, options, &interrupt)
+    with_ends(&held, found, (branch, point), options, &interrupt)
+}
+
+/// An end with the sliders that are free there.
+struct Reached<'a> {
+    end: BandEnd,
+    /// Where its free sliders are not those of the point.
+    own: Option<Grown<'a>>,
+    is_settled: bool,
+}
+
+/// The end that is reached from a state with the contacts free, too, that stick there; the state is `own`, or one of the sliders of
+/// the point with what its search has foretold.
+fn reached<'a>(
+    base: (&HeldSliders<'a>, &HeldState, f64),
+    mut own: Option<Grown<'a>>,
+    free: (&[usize], f64),
+    interrupt: &'a Interrupt<'a>,
+    solved: &mut usize,
+) -> Result<Reached<'a>> {
+    let mut end = match &own {
+        Some(own) => attained(&own.held, &own.state, own.gain, interrupt)?,
+        None => attained(base.0, base.1, base.2, interrupt)?,
+    };
+    let mut grew = true;
+    for _ in 0..BAND_GROWTHS {
+        let (held, at) = own.as_ref().map_or((base.0, base.1), |own| (&*own.held, &own.state));
+        let more = match &end.branch {
+            Some(branch) => grown(held, (at, branch), free, interrupt)?,
+            None => None,
+        };
+        grew = more.is_some();
+        let Some(more) = more else { break };
+        *solved += more.solved;
+        let next = attained(&more.held, &more.state, more.gain, interrupt)?;
+        if !is_solution(&next) {
+            break;
+        }
+        end = next;
+        own = Some(more);
+    }
+    Ok(Reached {
+        is_settled: !grew && end.gain < BAND_FORETOLD && is_solution(&end),
+        end,
+        own,
+    })
+}
+
+/// Whether an end was found again as a solution of the model.
+fn is_solution(end: &BandEnd) -> bool {
+    let found = end.branch.as_ref().map(|branch| branch.stored_amplitude(0));
+    found.is_some_and(|amplitude| (amplitude - end.amplitude).abs() <= BAND_SAME * end.amplitude)
+}
+
+/// Betters both ends by searches from other states of the model, in which other contacts may stick.
+fn from_other_states<'a>(
+    held: &HeldSliders<'a>,
+    (branch, point): (&Branch, usize),
+    options: &BandOptions<'_>,
+    (bases, ends): ([&HeldState; 2], &mut [Reached<'a>; 2]),
+    interrupt: &'a Interrupt<'a>,
+) -> Result<usize> {
+    let mut solved = 0;
+    let mut starts = Starts::new(held, (branch, point), options.contacts, interrupt)?;
+    if starts.sliders() == held.sliders.len() && held.sliders.len() == 1 {
+        // All of its states are known.
+        return Ok(0);
+    }
+    let mut known: Vec<Vec<(usize, usize)>> = Vec::new();
+    try_push(&mut known, pairs(&held.sliders)?, CONTEXT)?;
+    for own in ends.iter().filter_map(|end| end.own.as_ref()) {
+        try_push(&mut known, pairs(&own.held.sliders)?, CONTEXT)?;
+    }
+    let placed = BAND_STATES_PER_START * options.starts;
+    for number in 0..placed + 2 * BAND_BEYOND.len() {
+        let found = if let Some(k) = number.checked_sub(placed) {
+            let (k, share) = (k / BAND_BEYOND.len(), BAND_BEYOND[k % BAND_BEYOND.len()]);
+            let own = ends[k].own.as_ref();
+            let end = own.map_or((held, bases[k]), |own| (&*own.held, &own.state));
+            starts.beyond(end, (BAND_SENSES[k], share))?
+        } else {
+            starts.state(number)?
+        };
+        let Some((branch, sliders)) = found else { continue };
+        if sliders.is_empty() {
+            continue;
+        }
+        let free = pairs(&sliders)?;
+        let is_new = !known.contains(&free);
+        let value = branch.stored_amplitude(0);
+        let is_beyond = held.of == BandOf::Amplitude && !(ends[0].end.value..=ends[1].end.value).contains(&value);
+        if !(is_new || is_beyond) {
+            continue;
+        }
+        if is_new {
+            try_push(&mut known, free, CONTEXT)?;
+        }
+        let Some((own, first)) = within_limits(held, (&branch, sliders), interrupt)? else {
+            continue;
+        };
+        for (best, sign) in ends.iter_mut().zip(BAND_SENSES) {
+            let found = climbed(&own, &first, sign)?;
+            solved += found.solved;
+            let gain = sign * (found.state.value - best.end.value);
+            if gain > BAND_BETTER * best.end.value.abs() {
+                let base = (&*own, &first, 0.0);
+                let next = reached(base, Some(found), (options.contacts, sign), interrupt, &mut solved)?;
+                if is_solution(&next.end) {
+                    *best = next;
+                }
+            }
+        }
+    }
+    Ok(solved + starts.solved)
+}
+
+/// (contact, direction) of sliders.
+fn pairs(sliders: &[StuckSlider]) -> Result<Vec<(usize, usize)>> {
+    let mut pairs = Vec::new();
+    for slider in sliders {
+        try_push(&mut pairs, (slider.contact, slider.direction), CONTEXT)?;
+    }
+    Ok(pairs)
 }
 
 /// The ends as solutions of the model, each with the contacts free that stick there.
 fn with_ends<'a>(
     held: &HeldSliders<'a>,
     (mut band, lower, upper): (Band, HeldState, HeldState),
+    at: (&Branch, usize),
     options: &BandOptions<'_>,
     interrupt: &'a Interrupt<'a>,
 ) -> Result<Band> {
-    for (sign, state) in [(-1.0, lower), (1.0, upper)] {
-        let foretold = if sign < 0.0 { band.lower.gain } else { band.upper.gain };
-        let mut end = attained(held, &state, foretold, interrupt)?;
-        let mut grew = true;
-        let mut last: Option<Grown<'a>> = None;
-        for _ in 0..BAND_GROWTHS {
-            let (own, at) = last.as_ref().map_or((held, &state), |last| (&last.held, &last.state));
-            let more = match &end.branch {
-                Some(branch) => grown(own, (at, branch), (options.contacts, sign), interrupt)?,
-                None => None,
-            };
-            grew = more.is_some();
-            let Some(more) = more else { break };
-            band.solved += more.solved;
-            end = attained(&more.held, &more.state, more.gain, interrupt)?;
-            last = Some(more);
-        }
-        band.is_complete &= !grew && (last.is_none() || end.gain < BAND_FORETOLD);
-        let own = last.as_ref().map_or(&held.sliders, |last| &last.held.sliders);
-        for slider in own {
-            let pair = (slider.contact, slider.direction);
+    let mut solved = 0;
+    let gains = [band.lower.gain, band.upper.gain];
+    let mut end = |state: &HeldState, k: usize| {
+        let sign = if k == 0 { -1.0 } else { 1.0 };
+        let base = (held, state, gains[k]);
+        reached(base, None, (options.contacts, sign), interrupt, &mut solved)
+    };
+    let mut ends = [end(&lower, 0)?, end(&upper, 1)?];
+    solved += from_other_states(held, at, options, ([&lower, &upper], &mut ends), interrupt)?;
+    band.solved += solved;
+    band.is_complete &= ends.iter().all(|end| end.is_settled);
+    // The sliders of the point, and those that are free at an end alone.
+    for own in ends.iter().filter_map(|end| end.own.as_ref()) {
+        for pair in pairs(&own.held.sliders)? {
             if !band.sliders.contains(&pair) {
                 try_push(&mut band.sliders, pair, CONTEXT)?;
             }
         }
+    }
+    for reached in &mut ends {
+        let own = reached.own.as_ref().map_or(&held.sliders, |own| &own.held.sliders);
         // A slider that slips at an end forgets its place, which is that of the model.
         let mut places = Vec::new();
         for &(contact, direction) in &band.sliders {
             let found = own
                 .iter()
                 .position(|s| (s.contact, s.direction) == (contact, direction));
-            let place = found.map_or(held.model.contacts()[contact].slider[direction], |j| end.places[j]);
+            let place = found.map_or(held.model.contacts()[contact].slider[direction], |j| {
+                reached.end.places[j]
+            });
             try_push(&mut places, place, CONTEXT)?;
         }
-        end.places = places;
-        *if sign < 0.0 { &mut band.lower } else { &mut band.upper } = end;
+        reached.end.places = places;
     }
-    // The upper end may have more sliders than the lower one.
-    for &(contact, direction) in &band.sliders[band.lower.places.len()..] {
-        let place = held.model.contacts()[contact].slider[direction];
-        try_push(&mut band.lower.places, place, CONTEXT)?;
-    }
+    let [lower, upper] = ends;
+    (band.lower, band.upper) = (lower.end, upper.end);
     Ok(band)
 }
 
@@ -298,7 +433,6 @@ fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<(
     let mut search = Search { held, units, solved: 0 };
     let (mut low, mut high): (HeldState, HeldState) = (first.clone(), first.clone());
     let mut gains = [f64::INFINITY; 2];
-    let mut is_complete = true;
     let Some(within) = search.within(first)? else {
         let band = begun(held, false, search.solved)?;
         return Ok((band, low, high));
@@ -328,8 +462,7 @@ fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<(
             }
         }
     }
-    is_complete &= gains.iter().all(|gain| *gain < BAND_FORETOLD);
-    let mut band = begun(held, is_complete, search.solved)?;
+    let mut band = begun(held, true, search.solved)?;
     (band.lower.gain, band.upper.gain) = (gains[0], gains[1]);
     Ok((band, low, high))
 }

@@ -8,12 +8,13 @@ use crate::analysis::stuck_contacts::StuckSlider;
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
 use crate::results::Branch;
+use std::sync::Arc;
 
 const CONTEXT: &str = "contacts that stick at an end of a band";
 
 /// An end with more free sliders than the state of the branch has.
 pub(super) struct Grown<'a> {
-    pub held: HeldSliders<'a>,
+    pub held: Arc<HeldSliders<'a>>,
     pub state: HeldState,
     /// Relative gain that the linear model still foretells, as in [`Found::gain`](crate::analysis::band_search::Found::gain).
     pub gain: f64,
@@ -74,6 +75,6 @@ pub(super) fn grown<'a>(
         state: found.state,
         gain: found.gain,
         solved,
-        held: more,
+        held: Arc::new(more),
     }))
 }

@@ -97,6 +97,10 @@ pub(super) fn solve_design(
 ) -> Solved {
     // A branch that is kept draws its curve, and the peaks of responses are sought between close points.
     let is_curve = options.keep || options.responses.iter().any(|one| !one.is_plain()) || options.responses.len() > 1;
+    let solver = &SolverOptions {
+        freedom: solver.freedom && options.keep,
+        ..*solver
+    };
     let solve = if is_curve { forced_response } else { special_points };
     let solved: Result<Branch> =
         design(model, parameters, values).and_then(|model| solve(&model, solver, &options.range(), hooks));

@@ -2,6 +2,7 @@
 
 use crate::analysis::all_solutions;
 use crate::analysis::forced_curve::alone;
+use crate::analysis::freedom_columns::record_freedom;
 use crate::analysis::freedom_warning::warn_of_freedom;
 use crate::error::Result;
 use crate::hooks::Hooks;
@@ -26,12 +27,15 @@ pub fn forced_response(
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
     // One result, made where the caller wants it: copies would lie on the stack under every response.
-    let found = if range.branches == 0 {
+    let mut found = if range.branches == 0 {
         alone(model, solver, range, hooks)
     } else {
         all_solutions::forced_response(model, solver, range, hooks)
     };
-    if let Ok(branch) = &found {
+    if let Ok(branch) = &mut found {
+        if solver.freedom {
+            record_freedom(model, branch, (solver, range), hooks)?;
+        }
         warn_of_freedom(model, branch, hooks);
     }
     found

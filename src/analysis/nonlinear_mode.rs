@@ -78,6 +78,12 @@ pub fn nonlinear_mode(
             "stability: only a forced response has it along its curve; a nonlinear mode has Floquet multipliers at its limit cycles"
         );
     }
+    if solver.freedom {
+        return fail!(
+            Argument,
+            "freedom: only a forced response has it along its curve; a nonlinear mode has hbvib_mode_band"
+        );
+    }
     if solver.flexibility != Flexibility::Automatic {
         return fail!(
             Argument,

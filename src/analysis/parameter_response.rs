@@ -61,6 +61,12 @@ pub fn parameter_response(
             "stability: only a forced response has it along its curve; points over a parameter belong to different models"
         );
     }
+    if solver.freedom {
+        return fail!(
+            Argument,
+            "freedom: only a forced response has it along its curve; points over a parameter belong to different models"
+        );
+    }
     if solver.estimate_error && solver.tolerance == 0.0 {
         return fail!(
             Argument,

@@ -35,7 +35,7 @@ pub(super) struct Stuck {
 }
 
 /// Whether a contact keeps a force where it sticks.
-fn keeps_force(contact: &Contact) -> bool {
+pub(super) fn keeps_force(contact: &Contact) -> bool {
     contact.sliders() > 0 && contact.role() == Role::Active && contact.kt > 0.0 && contact.mu > 0.0
 }
 

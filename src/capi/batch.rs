@@ -61,7 +61,7 @@ pub struct hbvib_batch_options {
     /// Last angular frequency: below the first for downward sweeps.
     pub omega_stop: f64,
     /// 1: the branch of each design is kept, for hbvib_batch_branch; 0 (default): it is not, and the
-    /// solver options estimate_error and stability have no effect.
+    /// solver options estimate_error, stability and freedom have no effect.
     pub keep: i32,
     /// Must be 0.
     pub reserved: i32,

@@ -75,7 +75,7 @@ pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbv
 }
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector. All are
-/// finite, except for errors and stability that are unknown: those are NaN.
+/// finite, except for errors, stability and freedom that are unknown, or not there: those are NaN.
 #[repr(C)]
 pub enum hbvib_field {
     /// Angular frequency.
@@ -135,6 +135,12 @@ pub enum hbvib_field {
     /// Parameter responses of the largest damping ratio of a mode only: total derivative of that
     /// ratio by the parameter.
     HBVIB_D_DAMPING = 20,
+    /// Forced responses with the solver option `freedom` only: number of free sliders, as
+    /// hbvib_branch_freedom lists them; 0 where the motion is unique. NaN where it is unknown.
+    HBVIB_FREE_SLIDERS = 21,
+    /// The same: derivative of the amplitude by the place of each slider at a fixed frequency,
+    /// points x contacts x 2 for t1 and t2. NaN where the slider is not free.
+    HBVIB_D_AMPLITUDE_BY_PLACE = 22,
 }
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -187,9 +193,10 @@ pub unsafe extern "C" fn hbvib_view_init(v: *mut hbvib_view, size_of_v: usize) -
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
-///        points x contacts, 0 for a contact that never slips. A forced response does not have the
-///        fields of nonlinear modes, and those of stability with that option only; parameter
-///        responses alone have those of a parameter.
+///        points x contacts, 0 for a contact that never slips, and HBVIB_D_AMPLITUDE_BY_PLACE
+///        points x contacts x 2. A forced response does not have the fields of nonlinear modes, and
+///        those of stability and freedom with these options only; parameter responses alone have
+///        those of a parameter.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -257,6 +264,11 @@ unsafe fn lend(
         view.shape[1] = contacts;
         view.stride[0] = contacts;
     }
+    if known == PointField::ByPlace {
+        let contacts = branch.contacts() as i64;
+        view.rank = 3;
+        (view.shape, view.stride) = ([points, contacts, 2], [2 * contacts, 2, 1]);
+    }
     unsafe { fill_out(out, view) };
     Ok(Status::Ok)
 }
@@ -267,6 +279,7 @@ fn owner(field: PointField) -> &'static str {
         PointField::FloquetRadius | PointField::UnstableDirections => {
             "only a forced response with the solver option stability has it"
         }
+        PointField::FreeSliders | PointField::ByPlace => "only a forced response with the solver option freedom has it",
         PointField::Parameter | PointField::DAmplitude | PointField::DDamping => {
             "only a parameter response has it, the derivative of damping one of a mode"
         }
@@ -289,6 +302,8 @@ fn point_field(field: i32) -> Option<PointField> {
         (f::HBVIB_DAMPING_ERROR_ESTIMATE, PointField::DampingErrorEstimate),
         (f::HBVIB_FLOQUET_RADIUS, PointField::FloquetRadius),
         (f::HBVIB_UNSTABLE_DIRECTIONS, PointField::UnstableDirections),
+        (f::HBVIB_FREE_SLIDERS, PointField::FreeSliders),
+        (f::HBVIB_D_AMPLITUDE_BY_PLACE, PointField::ByPlace),
         (f::HBVIB_PARAMETER_VALUE, PointField::Parameter),
         (f::HBVIB_D_AMPLITUDE, PointField::DAmplitude),
         (f::HBVIB_D_DAMPING, PointField::DDamping),

@@ -5,7 +5,7 @@
 use super::boundary::{WithArgument, call};
 use super::indices::number;
 use super::version_and_errors::hbvib_status;
-use super::versioned_struct::{VersionedStruct, init, load};
+use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::error::{Result, fail};
 use crate::options::{Flexibility, SolverOptions, Waves};
 
@@ -99,6 +99,13 @@ pub struct hbvib_solver_options {
     /// HBVIB_UNSTABLE_DIRECTIONS and hbvib_branch_bifurcations. A nonlinear mode refuses any but
     /// HBVIB_STABILITY_NONE, the default.
     pub stability: i32,
+    /// 1: the free sliders of each stored point of a forced response, as hbvib_branch_freedom has
+    /// them for one point: for HBVIB_FREE_SLIDERS and HBVIB_D_AMPLITUDE_BY_PLACE. Hardly any work
+    /// where nothing is free, else about that of one more Newton iteration a point. 0 (default):
+    /// none. A nonlinear mode and a parameter response refuse it.
+    pub freedom: i32,
+    /// Must be 0.
+    pub reserved: i32,
 }
 
 unsafe impl VersionedStruct for hbvib_solver_options {
@@ -126,6 +133,8 @@ unsafe impl VersionedStruct for hbvib_solver_options {
             memory_limit: 0,
             flexibility: hbvib_flexibility::HBVIB_FLEXIBILITY_AUTOMATIC as i32,
             stability: hbvib_stability::HBVIB_STABILITY_NONE as i32,
+            freedom: 0,
+            reserved: 0,
         }
     }
 }
@@ -204,6 +213,7 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
     if !matches!(o.num_threads, 0 | 1) {
         return fail!(Argument, "num_threads = {}, needs 0 or 1 (reserved)", o.num_threads);
     }
+    check_reserved(o.reserved, 2, "hbvib_solver_options")?;
     let response_dof = match o.response_dof {
         -1 => None,
         dof if (0..ndof as i64).contains(&dof) => Some(dof as usize),
@@ -235,6 +245,7 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         certificate: SolverOptions::default().certificate,
         memory_limit: number(o.memory_limit, "memory_limit")?,
         stability: stability(o.stability)?,
+        freedom: flag(o.freedom, "freedom")?,
         exchange: false,
         content: SolverOptions::default().content,
     };

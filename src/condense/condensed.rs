@@ -5,9 +5,10 @@ use crate::condense::exchange::Exchange;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::condense::tied_load::{LoadedLaw, TiedLoad};
 use crate::contact::Law;
-use crate::error::{Result, try_copy, try_vec};
+use crate::error::{Result, fail, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::sparse::Csc;
+use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::model::reduced_wave::MotionRow;
 use crate::model::sector_motion::MOTION_TERMS;
@@ -121,6 +122,22 @@ impl Condensed {
             structure: self.structure.as_ref().map(Structure::try_clone).transpose()?,
             ..*self
         })
+    }
+
+    /// Takes the laws of some contacts from a model that differs from the condensed one in their friction coefficients and the places
+    /// of their sliders alone: no matrix depends on these.
+    ///
+    /// # Errors
+    /// Those of the laws; `Internal` where another condensed model shares them.
+    pub fn renew_laws(&mut self, model: &Model, contacts: &[usize]) -> Result<()> {
+        let length = self.length;
+        let Some(laws) = Arc::get_mut(&mut self.laws) else {
+            return fail!(Internal, "the laws of a condensed model are shared");
+        };
+        for own in laws.iter_mut().filter(|own| contacts.contains(&own.contact)) {
+            own.law = model.contacts()[own.contact].law(length)?;
+        }
+        Ok(())
     }
 
     /// The carried harmonics.

@@ -71,6 +71,9 @@ pub struct SolverOptions {
     /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
     /// point; `None`: none. A nonlinear mode refuses it.
     pub stability: Option<Waves>,
+    /// Free sliders of each stored point of a forced response, with the derivatives of its amplitude by their places (see
+    /// [`freedom`](crate::freedom())). A nonlinear mode refuses it.
+    pub freedom: bool,
     /// Whether near-rigid sliders have exchanged motions, see [`crate::condense::exchange`]; an analysis sets it.
     pub exchange: bool,
     /// Harmonics that are carried beyond those which forces and laws excite by themselves; an analysis with a guess sets it.
@@ -98,6 +101,7 @@ impl Default for SolverOptions {
             certificate: 1e-8,
             memory_limit: 0,
             stability: None,
+            freedom: false,
             exchange: false,
             content: Content::default(),
         }

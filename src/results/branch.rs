@@ -5,6 +5,7 @@ use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
 use crate::results::descent::{Descent, Searched};
+use crate::results::freedom_of_points::FreedomOfPoints;
 use crate::results::mode_branch::ModeData;
 use crate::results::origin::Origin;
 use crate::results::parameter_branch::ParameterData;
@@ -52,6 +53,8 @@ pub struct Branch {
     pub(super) tells_stability: bool,
     pub(super) floquet_radius: Vec<f64>,
     pub(super) unstable_directions: Vec<f64>,
+    /// With the solver option `freedom`.
+    pub(super) freedom: Option<Box<FreedomOfPoints>>,
     pub(super) at: Vec<Vec<Special>>,
     pub(super) mode: Option<ModeData>,
     pub(super) parameter: Option<ParameterData>,

@@ -115,6 +115,7 @@ impl Branch {
             tells_stability: false,
             floquet_radius: Vec::new(),
             unstable_directions: Vec::new(),
+            freedom: None,
             at: Vec::new(),
             mode: None,
             parameter: None,

@@ -1,6 +1,7 @@
 //! Results: the stored points of a branch, and the quantities derived from them.
 
 mod branch;
+mod branch_freedom;
 mod branch_recording;
 mod children;
 pub mod contact_loops;
@@ -8,6 +9,7 @@ mod descent;
 pub mod energy;
 mod floquet_multiplier;
 mod floquet_stability;
+mod freedom_of_points;
 mod limit_cycles;
 pub mod mode_branch;
 mod mode_fields;
@@ -36,6 +38,7 @@ pub(crate) use branch_recording::SpecialKind;
 pub use descent::{Descent, Searched};
 pub use floquet_multiplier::{Multiplier, MultiplierClass};
 pub use floquet_stability::Floquet;
+pub(crate) use freedom_of_points::FreedomOfPoints;
 pub use limit_cycles::LimitCycle;
 pub(crate) use parameter_branch::ParameterData;
 pub use parameter_branch::{HigherPeak, Optimum, Turn};

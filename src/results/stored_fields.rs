@@ -29,6 +29,10 @@ pub enum PointField {
     FloquetRadius,
     /// Number of ordinary multipliers outside the unit circle; NaN beside the curve.
     UnstableDirections,
+    /// Number of free sliders.
+    FreeSliders,
+    /// Derivatives of the amplitude by the places of free sliders, for each contact and direction.
+    ByPlace,
     /// Value of the parameter.
     Parameter,
     /// Total derivative of the amplitude by the parameter.
@@ -56,6 +60,8 @@ impl Branch {
             PointField::DampingErrorEstimate => is_mode.then_some(&self.damping_error_estimate[..]),
             PointField::FloquetRadius => self.tells_stability.then_some(&self.floquet_radius[..]),
             PointField::UnstableDirections => self.tells_stability.then_some(&self.unstable_directions[..]),
+            PointField::FreeSliders => self.freedom.as_ref().map(|freedom| freedom.count()),
+            PointField::ByPlace => self.freedom.as_ref().map(|freedom| freedom.by_place().as_flattened()),
             PointField::Parameter => self.parameter.as_ref().map(|data| &data.parameter[..]),
             PointField::DAmplitude => self.parameter.as_ref().map(|data| &data.d_amplitude[..]),
             PointField::DDamping => self

@@ -66,6 +66,8 @@ static void solver(void)
     BAD("68", flexibility, 3, HBVIB_E_ARGUMENT, "flexibility = 3");
     BAD("68", memory_limit, -1, HBVIB_E_ARGUMENT, "memory_limit = -1");
     BAD("68", stability, 3, HBVIB_E_ARGUMENT, "stability = 3, needs a value of enum hbvib_stability");
+    BAD("68", freedom, 2, HBVIB_E_ARGUMENT, "freedom = 2, needs 0 or 1");
+    BAD("68", reserved, 1, HBVIB_E_ARGUMENT, "reserved = 1, needs 0");
     BAD("83", num_threads, -1, HBVIB_E_ARGUMENT, "num_threads = -1, needs 0 or 1");
     BAD("83", num_threads, 2, HBVIB_E_ARGUMENT, "num_threads = 2, needs 0 or 1");
     s = solver_options();

@@ -74,6 +74,27 @@ int main(void)
     EXPECT("freedom", contact[0] == 0 && direction[0] == 0 && contact[1] == 7 && fabs(place[0] - 0.134) < 2e-3);
     EXPECT("freedom", derivative[0] > 0.1 && derivative[0] < 0.2);
 
+    /* The freedom of all points with the branch. */
+    {
+        hbvib_branch *all = NULL;
+        hbvib_view count_of, by_place, amplitudes;
+        hbvib_solver_options with = s;
+        WORKS("view", hbvib_view_init(&count_of, sizeof count_of));
+        WORKS("view", hbvib_view_init(&by_place, sizeof by_place));
+        WORKS("view", hbvib_view_init(&amplitudes, sizeof amplitudes));
+        REFUSED("field", hbvib_branch_field(branch, HBVIB_FREE_SLIDERS, &count_of), HBVIB_E_ARGUMENT, 2, "freedom");
+        with.freedom = 1;
+        WORKS("solve", hbvib_forced_response(model, &with, &o, NULL, &all));
+        WORKS("field", hbvib_branch_stored_field(all, HBVIB_FREE_SLIDERS, &count_of));
+        WORKS("field", hbvib_branch_stored_field(all, HBVIB_D_AMPLITUDE_BY_PLACE, &by_place));
+        WORKS("field", hbvib_branch_stored_field(branch, HBVIB_AMPLITUDE, &amplitudes));
+        EXPECT("shape", count_of.rank == 1 && count_of.shape[0] == amplitudes.shape[0]);
+        EXPECT("shape", by_place.rank == 3 && by_place.shape[0] == count_of.shape[0] && by_place.shape[1] == 2 && by_place.shape[2] == 2);
+        EXPECT("columns", count_of.data[peak[0]] == 1 && fabs(by_place.data[4 * peak[0]] - derivative[0]) < 1e-9);
+        EXPECT("not free", isnan(by_place.data[4 * peak[0] + 1]) && isnan(by_place.data[4 * peak[0] + 2]));
+        WORKS("free", hbvib_branch_free(all));
+    }
+
     WORKS("init", hbvib_band_options_init(&b, sizeof b));
     EXPECT("init", b.of == HBVIB_BAND_AMPLITUDE && b.starts == 3);
     WORKS("init", hbvib_band_info_init(&info, sizeof info));

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use std::cell::Cell;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
+pub fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
     let n = values.len();
     let mut full = vec![0.0; n * n];
     for (i, x) in values.iter().enumerate() {

@@ -6,6 +6,7 @@ mod common;
 
 mod backward_waves;
 mod bands_of_many_sliders;
+mod bands_of_two_dampers;
 mod capacity;
 mod continuation;
 mod dampers;
@@ -14,6 +15,7 @@ mod direct_solutions;
 mod duffing;
 mod duffing_folds;
 mod folds;
+mod freedom_of_points;
 mod full_wheel;
 mod load_history;
 mod many_contacts;

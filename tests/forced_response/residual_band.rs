@@ -36,14 +36,14 @@ fn structure(force: f64, across: usize) -> Model {
 }
 
 /// The damper in wedges of 45 degrees; friction coefficients of platform and blade.
-fn wedge(mu: [f64; 2], force: f64, kind: ContactKind) -> Model {
+pub fn wedge(mu: [f64; 2], force: f64, kind: ContactKind) -> Model {
     let mut model = structure(force, 0);
     add_faces(&mut model, mu, [kind.clone(), kind], None);
     model
 }
 
 /// The same with friction in a plane at the platform, and a motion of the damper across.
-fn across(force: f64) -> Model {
+pub fn across(force: f64) -> Model {
     let mut model = structure(force, 1);
     add_faces(
         &mut model,
@@ -73,7 +73,7 @@ fn add_faces(model: &mut Model, mu: [f64; 2], kinds: [ContactKind; 2], third: Op
     }
 }
 
-fn peak_wedge() -> Model {
+pub fn peak_wedge() -> Model {
     wedge([0.6, 0.15], 0.02, ContactKind::Friction2d)
 }
 
@@ -256,8 +256,9 @@ fn dragged_in_time(omega: f64, place: f64) -> (f64, f64) {
     (found.harmonics[3].norm(), (found.places[PLATFORM] - place).abs())
 }
 
-/// Angular frequency, place and amplitude of the ends at both limits: by an integration with exact events that is none of the library
-/// (matrix exponentials, 1,000 steps a period, the platform's slider held, the least margin over the period at 0 to 1e-13). At 1.1 the
+/// Angular frequency, place and amplitude of the ends at both limits: by an integration with exact events that is none of the library,
+/// tests/reference/residual_band.py (matrix exponentials, 1,000 steps a period, the platform's slider held, the least margin over the
+/// period at 0 to 1e-13). At 1.1 the
 /// blade's contact sticks as well near the upper end, the amplitude is that of the stuck structure, and the place depends on where the
 /// other slider lies: a virgin one has been dragged to its limit there.
 ///
@@ -569,25 +570,7 @@ fn the_ends_with_friction_in_a_plane_are_motions_in_time() {
 /// Work is counted by the questions whether to stop: a point without band costs less than a twentieth of its branch.
 #[test]
 fn a_point_without_band_costs_hardly_any_work() {
-    let slipping = || {
-        let mut model = Model::new(2).unwrap();
-        for (which, d) in [
-            (MatrixKind::Mass, 1.0),
-            (MatrixKind::Damping, 0.05),
-            (MatrixKind::Stiffness, 1.0),
-        ] {
-            model
-                .set_matrix(which, &MatrixView::dense(2, &[d, 0.0, 0.0, d]))
-                .unwrap();
-        }
-        model.add_contact(&Contact::jenkins(0, None, 1.0, 0.2, 1.0)).unwrap();
-        model.add_contact(&Contact::jenkins(0, Some(1), 0.5, 0.2, 0.5)).unwrap();
-        model.add_force(0, 1, Complex64::new(0.6, 0.0)).unwrap();
-        model
-    };
-    let ring = crate::common::BASE.sector();
-    let turn = std::f64::consts::TAU;
-    for (model, from, to) in [(slipping(), 0.8, 1.8), (ring, turn * 207.0, turn * 211.0)] {
+    for (model, from, to) in crate::freedom_of_points::without_freedom() {
         let asked = std::cell::Cell::new(0_u64);
         let count = || {
             asked.set(asked.get() + 1);

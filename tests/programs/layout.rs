@@ -42,7 +42,7 @@ fn in_rust() -> String {
         hbvib_force_call { struct_size, reserved, omega, samples, n, states, u, v, z0, f, df_du, df_dv, z, dz_dz, dz_du_before, dz_du, dz_dv_before, dz_dv, dz_domega, df_dz }
         hbvib_user_force { struct_size, uses_velocity, is_odd, reserved, dofs, n, states, samples, force, user }
         hbvib_jacobian_gap { struct_size, tangent, gap, sample, row, column, given, difference }
-        hbvib_solver_options { struct_size, num_threads, tolerance, harmonics, max_harmonics, samples, step, step_min, step_max, tol_residual, max_newton, max_points, response_dof, keep_even_harmonics, estimate_error, memory_limit, flexibility, stability }
+        hbvib_solver_options { struct_size, num_threads, tolerance, harmonics, max_harmonics, samples, step, step_min, step_max, tol_residual, max_newton, max_points, response_dof, keep_even_harmonics, estimate_error, memory_limit, flexibility, stability, freedom, reserved }
         hbvib_progress { struct_size, newton_iterations, point, parameter, amplitude, residual, step, fraction_done }
         hbvib_phase_report { struct_size, phase, share }
         hbvib_hooks { struct_size, log_level, user, progress, log, cancel, phase }

@@ -5,8 +5,10 @@ use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
-use crate::job_studies::BandPart;
+use crate::job_studies::{BandName, BandPart};
 use crate::map::Written;
+use crate::mode_band::of_model;
+use crate::residual_state::write_places;
 use crate::solver::solver;
 use hbvib::{Band, BandOf, BandOptions, Branch, ForcedOptions, Hooks, Special, Status, band, forced_response};
 use plotters::prelude::{ChartBuilder, LineSeries, Polygon};
@@ -33,6 +35,33 @@ pub fn check(part: &BandPart, built: &Built) -> Outcome<()> {
     if part.starts == Some(0) {
         return Err("[band]: starts = 0, needs at least 1".into());
     }
+    if part.of.is_empty() {
+        return Err("[band]: of is empty, needs amplitude, peak_amplitude or peak_hz".into());
+    }
+    let has = |name| part.of.contains(&name);
+    let of_peak = has(BandName::PeakAmplitude) || has(BandName::PeakHz);
+    for (file, name, fits, needs) in [
+        (&part.csv, "csv", has(BandName::Amplitude), "amplitude"),
+        (&part.figure, "figure", has(BandName::Amplitude), "amplitude"),
+        (&part.ends_csv, "ends_csv", of_peak, "peak_amplitude or peak_hz"),
+        (
+            &part.lower_npz,
+            "lower_npz",
+            has(BandName::PeakAmplitude),
+            "peak_amplitude",
+        ),
+        (
+            &part.upper_npz,
+            "upper_npz",
+            has(BandName::PeakAmplitude),
+            "peak_amplitude",
+        ),
+    ] {
+        if file.is_some() && !fits {
+            return Err(format!("[band]: {name} needs {needs} in of"));
+        }
+    }
+    of_model("band", &part.contacts, built)?;
     solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built)
         .map(|_| ())
         .map_err(|e| format!("[band]: {e}"))
@@ -58,11 +87,17 @@ pub fn write(part: &BandPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut 
     }
     let options = BandOptions {
         starts: part.starts.unwrap_or(BandOptions::default().starts),
+        contacts: &part.contacts,
         ..BandOptions::default()
     };
     let mut rows = Vec::new();
     let mut incomplete = 0;
-    for point in 0..branch.points() {
+    let points = if part.of.contains(&BandName::Amplitude) {
+        branch.points()
+    } else {
+        0
+    };
+    for point in 0..points {
         let found = band(&built.model, &branch, point, &solver, &options, hooks).map_err(|e| said(&e))?;
         incomplete += usize::from(!found.is_complete);
         rows.push(Row {
@@ -73,29 +108,85 @@ pub fn write(part: &BandPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut 
             sliders: found.sliders.len(),
         });
     }
-    let peak = of_peak(built, &branch, (&solver, &options), hooks).map_err(|e| said(&e))?;
+    let peaks = of_peak(part, built, &branch, (&solver, &options), hooks).map_err(|e| said(&e))?;
     files.write(part.csv.as_deref(), &|path| {
         fs::write(path, table(&rows)).map_err(|e| e.to_string())
     });
     files.write(part.figure.as_deref(), &|path| figure(path, &rows));
-    Ok((summary(&rows, peak.as_ref(), incomplete), false))
+    files.write(part.ends_csv.as_deref(), &|path| {
+        fs::write(path, ends(&peaks)).map_err(|e| e.to_string())
+    });
+    let amplitude = peaks.iter().find(|peak| peak.of == BandName::PeakAmplitude);
+    let written = [
+        (&part.lower_npz, amplitude.map(|peak| &peak.band.lower)),
+        (&part.upper_npz, amplitude.map(|peak| &peak.band.upper)),
+    ];
+    for (path, end) in written {
+        let (Some(path), Some(end), Some(peak)) = (path, end, amplitude) else {
+            continue;
+        };
+        let mut places: Vec<[f64; 2]> = built.model.contacts().iter().map(|contact| contact.slider).collect();
+        for (&(contact, direction), place) in peak.band.sliders.iter().zip(&end.places) {
+            places[contact][direction] = *place;
+        }
+        files.write(Some(path), &|path| write_places(path, &places));
+    }
+    Ok((summary(&rows, &peaks, incomplete), false))
 }
 
-/// The band of the highest peak, if there is one.
+/// The band of a result of the highest peak.
+struct PeakBand {
+    of: BandName,
+    peak: Special,
+    band: Band,
+}
+
+/// The bands of the highest peak that are asked for, if there is one.
 fn of_peak(
+    part: &BandPart,
     built: &Built,
     branch: &Branch,
     (solver, options): (&hbvib::SolverOptions, &BandOptions<'_>),
     hooks: &mut Hooks<'_>,
-) -> hbvib::Result<Option<(Special, Band)>> {
+) -> hbvib::Result<Vec<PeakBand>> {
+    let mut found = Vec::new();
     let highest = branch.peaks().iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-    let Some(&peak) = highest else { return Ok(None) };
-    let options = BandOptions {
-        of: BandOf::PeakAmplitude,
-        ..*options
-    };
-    let found = band(&built.model, branch, peak.point, solver, &options, hooks)?;
-    Ok(Some((peak, found)))
+    let Some(&peak) = highest else { return Ok(found) };
+    for (name, of) in [
+        (BandName::PeakAmplitude, BandOf::PeakAmplitude),
+        (BandName::PeakHz, BandOf::PeakOmega),
+    ] {
+        if part.of.contains(&name) {
+            let options = BandOptions { of, ..*options };
+            let band = band(&built.model, branch, peak.point, solver, &options, hooks)?;
+            found.push(PeakBand { of: name, peak, band });
+        }
+    }
+    Ok(found)
+}
+
+/// A row for each free slider of both ends of each band of the peak.
+fn ends(peaks: &[PeakBand]) -> String {
+    let mut text = String::from("of,end,hz,amplitude,contact,direction,place\n");
+    for found in peaks {
+        let of = match found.of {
+            BandName::Amplitude => "amplitude",
+            BandName::PeakAmplitude => "peak_amplitude",
+            BandName::PeakHz => "peak_hz",
+        };
+        for (name, end) in [("lower", &found.band.lower), ("upper", &found.band.upper)] {
+            for (&(contact, direction), place) in found.band.sliders.iter().zip(&end.places) {
+                let _ = writeln!(
+                    text,
+                    "{of},{name},{:.16e},{:.16e},{contact},t{},{place:.16e}",
+                    end.omega / TAU,
+                    end.amplitude,
+                    direction + 1
+                );
+            }
+        }
+    }
+    text
 }
 
 fn table(rows: &[Row]) -> String {
@@ -114,20 +205,36 @@ fn table(rows: &[Row]) -> String {
     text
 }
 
-fn summary(rows: &[Row], peak: Option<&(Special, Band)>, incomplete: usize) -> String {
+fn summary(rows: &[Row], peaks: &[PeakBand], incomplete: usize) -> String {
     let free = rows.iter().filter(|row| row.sliders > 0).count();
-    let mut text = format!("band: {free} of {} with free sliders\n", counted(rows.len(), "point"));
-    if let Some((peak, found)) = peak {
+    let mut text = String::new();
+    if !rows.is_empty() {
         let _ = writeln!(
             text,
-            "peak {:.6e} at {:.6} Hz; band of it from {:.6e} at {:.6} Hz to {:.6e} at {:.6} Hz, {} free",
+            "band: {free} of {} with free sliders",
+            counted(rows.len(), "point")
+        );
+    }
+    for PeakBand { of, peak, band } in peaks {
+        let named = match of {
+            BandName::PeakHz => "band of its frequency",
+            _ => "band of it",
+        };
+        let _ = writeln!(
+            text,
+            "peak {:.6e} at {:.6} Hz; {named} from {:.6e} at {:.6} Hz to {:.6e} at {:.6} Hz, {} free{}",
             peak.amplitude,
             peak.omega / TAU,
-            found.lower.value,
-            found.lower.omega / TAU,
-            found.upper.value,
-            found.upper.omega / TAU,
-            counted(found.sliders.len(), "slider")
+            band.lower.amplitude,
+            band.lower.omega / TAU,
+            band.upper.amplitude,
+            band.upper.omega / TAU,
+            counted(band.sliders.len(), "slider"),
+            if band.is_complete {
+                ""
+            } else {
+                "; others may lie beyond"
+            }
         );
     }
     if incomplete > 0 {

@@ -5,7 +5,8 @@ use crate::counted::counted;
 use crate::job::Job;
 use crate::model_report::ModelReport;
 use crate::{
-    band_curve, campbell, fit_run, kicks, life, map, motion_files, passages, print, study, tornado, wheel_response,
+    band_curve, campbell, fit_run, kicks, life, map, mode_band, motion_files, passages, print, residual_state, study,
+    tornado, wheel_response,
 };
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
@@ -96,6 +97,12 @@ pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     }
     if let Some(part) = &job.band {
         band_curve::check(part, built)?;
+    }
+    if let Some(part) = &job.residual {
+        residual_state::check(job, part, built)?;
+    }
+    if let Some(part) = &job.mode_band {
+        mode_band::check(part, built)?;
     }
     if let Some(part) = &job.wheel {
         wheel_response::check(part, built)?;

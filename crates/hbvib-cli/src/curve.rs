@@ -69,6 +69,25 @@ impl<'a> Curve<'a> {
         self.joined(|stored| &stored.unstable_directions, self.branch.unstable_directions())
     }
 
+    /// Number of free sliders at each point.
+    pub fn free_sliders(&self) -> Vec<f64> {
+        self.joined(|stored| &stored.free_sliders, self.branch.free_sliders())
+    }
+
+    /// Derivatives of the amplitude at a point by the places of sliders, two for each contact; empty where they are not known.
+    pub fn by_place(&self, point: usize) -> &[f64] {
+        match self.before {
+            Some(before) if point < before.kept => {
+                let n = 2 * before.stored.contacts;
+                before.stored.by_place.get(point * n..(point + 1) * n).unwrap_or(&[])
+            }
+            _ => {
+                let own = self.branch.d_amplitude_by_place_at(point - self.kept());
+                own.map_or(&[], <[[f64; 2]]>::as_flattened)
+            }
+        }
+    }
+
     /// Slip fraction of each contact at a point; empty where it is not known.
     pub fn slip(&self, point: usize) -> &[f64] {
         match self.before {

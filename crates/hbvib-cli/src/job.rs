@@ -6,6 +6,7 @@ use crate::job_fit::{DataPart, FitPart};
 use crate::job_life::LifePart;
 use crate::job_motion::{MotionPart, UnitsPart};
 use crate::job_passages::{MissionPart, RunUpPart};
+use crate::job_residual::{ModeBandPart, ResidualPart};
 use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
 use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart, WheelPart};
@@ -42,6 +43,8 @@ pub struct Job {
     pub map: Option<MapPart>,
     pub tornado: Option<TornadoPart>,
     pub band: Option<BandPart>,
+    pub residual: Option<ResidualPart>,
+    pub mode_band: Option<ModeBandPart>,
     pub wheel: Option<WheelPart>,
     pub life: Option<LifePart>,
     pub run_up: Option<RunUpPart>,
@@ -313,6 +316,10 @@ pub struct ForcedPart {
     pub together: bool,
     /// Stability of each point: unstable stretches are dashed in figures.
     pub stability: Option<WavesName>,
+    /// Free sliders of each point: contacts that stick through the period and change the response, with its derivatives by their
+    /// places.
+    #[serde(default)]
+    pub freedom: bool,
 }
 
 /// Perturbations of which stability is told.
@@ -502,6 +509,8 @@ impl Job {
             self.map.is_some(),
             self.tornado.is_some(),
             self.band.is_some(),
+            self.residual.is_some(),
+            self.mode_band.is_some(),
             self.wheel.is_some(),
             self.life.is_some(),
             self.run_up.is_some(),
@@ -510,8 +519,8 @@ impl Job {
         ];
         if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band], [wheel], [life], [run_up], \
-                 [mission] or [fit]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map], [tornado], [band], [residual], \
+                 [mode_band], [wheel], [life], [run_up], [mission] or [fit]",
                 path.display()
             ));
         }

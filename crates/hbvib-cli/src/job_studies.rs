@@ -149,11 +149,35 @@ pub struct BandPart {
     pub harmonics: Option<usize>,
     pub tolerance: Option<f64>,
     pub response_dof: Option<DofName>,
+    /// Results that are bounded: the amplitude at each frequency, amplitude and frequency of the highest peak.
+    #[serde(default = "curves_and_peak")]
+    pub of: Vec<BandName>,
+    /// Numbers of the contacts whose force is free, from 0; all unless given.
+    #[serde(default)]
+    pub contacts: Vec<usize>,
     /// Starts of the search where several sliders are free.
     pub starts: Option<usize>,
     pub csv: Option<PathBuf>,
     /// SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,
+    /// Both ends of the bands of the peak: places of the free sliders.
+    pub ends_csv: Option<PathBuf>,
+    /// All places at the least amplitude of the peak, for npz of [residual].
+    pub lower_npz: Option<PathBuf>,
+    /// Those at the largest one.
+    pub upper_npz: Option<PathBuf>,
+}
+
+/// Result that a band bounds.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum BandName {
+    /// The amplitude at each frequency of the range: the lower and the upper curve.
+    Amplitude,
+    /// The amplitude of the highest peak.
+    PeakAmplitude,
+    /// The frequency of the highest peak.
+    PeakHz,
 }
 
 /// Quantity that differs between the blades of a wheel.
@@ -229,6 +253,10 @@ pub struct SpreadPart {
     pub spread: f64,
     /// Value that changes by this share; that of the model unless given. With dofs it is needed.
     pub value: Option<f64>,
+}
+
+fn curves_and_peak() -> Vec<BandName> {
+    vec![BandName::Amplitude, BandName::PeakAmplitude]
 }
 
 fn speeds() -> usize {

@@ -41,6 +41,9 @@ fn rows(curve: &Curve<'_>) -> String {
     if branch.tells_stability() {
         text += ",floquet_radius,unstable_directions";
     }
+    if branch.tells_freedom() {
+        text += ",free_sliders,least_by_place,largest_by_place";
+    }
     let responses: Vec<Vec<f64>> = (0..branch.responses().len())
         .map(|r| curve.response(r, false))
         .collect();
@@ -50,6 +53,7 @@ fn rows(curve: &Curve<'_>) -> String {
     text += "\n";
     let (omega, amplitude, used) = (curve.omega(), curve.amplitude(), curve.harmonics_used());
     let (radius, count) = (curve.floquet_radius(), curve.unstable_directions());
+    let free = curve.free_sliders();
     for point in 0..curve.points() {
         let _ = write!(
             text,
@@ -65,12 +69,23 @@ fn rows(curve: &Curve<'_>) -> String {
         if branch.tells_stability() {
             let _ = write!(text, ",{:.16e},{}", radius[point], count[point]);
         }
+        if branch.tells_freedom() {
+            let [least, largest] = range(curve.by_place(point));
+            let _ = write!(text, ",{},{least:.16e},{largest:.16e}", free[point]);
+        }
         for of in &responses {
             let _ = write!(text, ",{:.16e}", of[point]);
         }
         text += "\n";
     }
     text
+}
+
+/// The least and the largest of the derivatives by the places of free sliders; 0 where none is free.
+fn range(by_place: &[f64]) -> [f64; 2] {
+    let mut free = by_place.iter().copied().filter(|x| !x.is_nan());
+    let first = free.next().unwrap_or(0.0);
+    free.fold([first; 2], |[least, largest], x| [least.min(x), largest.max(x)])
 }
 
 fn npz(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
@@ -104,6 +119,13 @@ fn npz(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
     if branch.tells_stability() {
         real("floquet_radius", &[points], &curve.floquet_radius())?;
         real("unstable_directions", &[points], &curve.unstable_directions())?;
+    }
+    if branch.tells_freedom() {
+        real("free_sliders", &[points], &curve.free_sliders())?;
+        let by_place: Vec<f64> = (0..points).flat_map(|p| curve.by_place(p)).copied().collect();
+        if by_place.len() == 2 * points * contacts {
+            real("d_amplitude_by_place", &[points, contacts, 2], &by_place)?;
+        }
     }
     if branch.mode().is_some() {
         let mode: Vec<_> = (0..points).filter_map(|p| curve.mode_at(p)).collect();
@@ -184,6 +206,19 @@ fn stability(text: &mut String, branch: &Branch) {
     );
 }
 
+/// Points at which contacts that stick leave the response free.
+fn freedom(text: &mut String, curve: &Curve<'_>) {
+    if curve.branch.tells_freedom() {
+        let free = curve.free_sliders();
+        let _ = writeln!(
+            text,
+            "{} of {} with free sliders",
+            free.iter().filter(|n| **n > 0.0).count(),
+            counted(free.len(), "point")
+        );
+    }
+}
+
 /// Summary of a branch.
 pub fn summary(curve: &Curve<'_>) -> String {
     let (branch, omega) = (curve.branch, curve.omega());
@@ -204,6 +239,7 @@ pub fn summary(curve: &Curve<'_>) -> String {
     list(&mut text, "peak", &curve.special(false));
     list(&mut text, "fold", &curve.special(true));
     stability(&mut text, branch);
+    freedom(&mut text, curve);
     // The first solution of each request.
     let mut requested = curve.requested();
     requested.dedup_by_key(|row| row[0]);

@@ -12,8 +12,8 @@ use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
-    band_curve, campbell, check, contact_tables, fit_run, html_report, kicks, life, map, motion_files, output,
-    passages, solutions, study, tornado, verification, wheel_response,
+    band_curve, campbell, check, contact_tables, fit_run, html_report, kicks, life, map, mode_band, motion_files,
+    output, passages, residual_state, solutions, study, tornado, verification, wheel_response,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -31,13 +31,14 @@ pub fn run(path: &Path, strict: bool) -> Outcome<u8> {
     let stop = end::stop_flag()?;
     let job = Job::read(path)?;
     job.needs_analysis(path)?;
-    let built = built(&job)?;
+    let mut built = built(&job)?;
     // A mistake in one part is told before another has taken its time.
     check::parts(&job, &built)?;
     let stored = restart::stored(&job, &built)?;
     built.warn(strict)?;
     let mut files = Files::of(&job);
     let mut end = End::default();
+    residual(&job, &mut built, &stop, &mut files)?;
     over_quantities(&job, &built, &stop, &mut files, &mut end);
     if (job.forced.is_some() || job.mode.is_some()) && end.goes_on(&stop) {
         let solved = solve(&job, &built, stored, &stop);
@@ -68,13 +69,23 @@ pub fn fit(path: &Path, strict: bool) -> Outcome<u8> {
     let Some(part) = &job.fit else {
         return Err(format!("{}: names no fit: needs [fit]", path.display()));
     };
-    let built = built(&job)?;
+    let mut built = built(&job)?;
     fit_run::check(&job, part, &built)?;
     built.warn(strict)?;
     let mut files = Files::of(&job);
     let mut end = End::default();
+    residual(&job, &mut built, &stop, &mut files)?;
     fitted(&job, &built, &stop, &mut files, &mut end);
     Ok(end.code(&files))
+}
+
+/// Gives the model the state in which earlier loads have left it.
+fn residual(job: &Job, built: &mut Built, stop: &AtomicBool, files: &mut Files<'_>) -> Outcome<()> {
+    if let Some(part) = &job.residual {
+        let text = watched(stop, |hooks| residual_state::set(job, part, built, hooks, files))?;
+        files.tell(&text);
+    }
+    Ok(())
 }
 
 fn fitted(job: &Job, built: &Built, stop: &AtomicBool, files: &mut Files<'_>, end: &mut End) {
@@ -131,6 +142,10 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut File
     if let Some(part) = job.band.as_ref().filter(|_| end.goes_on(stop)) {
         let outcome = watched(stop, |hooks| band_curve::write(part, built, hooks, files));
         ended(outcome, "band", stop, files, end);
+    }
+    if let Some(part) = job.mode_band.as_ref().filter(|_| end.goes_on(stop)) {
+        let outcome = watched(stop, |hooks| mode_band::write(part, built, hooks, files));
+        ended(outcome, "mode_band", stop, files, end);
     }
     if let Some(part) = job.wheel.as_ref().filter(|_| end.goes_on(stop)) {
         let outcome = watched(stop, |hooks| wheel_response::write(part, built, hooks, files));
@@ -226,6 +241,7 @@ fn forced(
             WavesName::Wave => Waves::Wave,
             WavesName::Wheel => Waves::Wheel,
         }),
+        freedom: part.freedom,
         ..named.map_err(|e| format!("[forced]: {e}"))?
     };
     forced_response(&built.model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))

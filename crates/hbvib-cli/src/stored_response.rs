@@ -14,6 +14,9 @@ pub struct Stored {
     pub harmonics_used: Vec<f64>,
     pub floquet_radius: Vec<f64>,
     pub unstable_directions: Vec<f64>,
+    pub free_sliders: Vec<f64>,
+    /// Derivatives by the places of sliders, two for each contact in a row for each point.
+    pub by_place: Vec<f64>,
     /// Slip fractions, a row for each point, and their number in a row.
     pub slip: Vec<f64>,
     pub contacts: usize,
@@ -85,6 +88,8 @@ impl Stored {
             harmonics_used: of_points("harmonics_used")?,
             floquet_radius: of_points("floquet_radius")?,
             unstable_directions: of_points("unstable_directions")?,
+            free_sliders: of_points("free_sliders")?,
+            by_place: per_response("d_amplitude_by_place"),
             damping_ratio: of_points("damping_ratio")?,
             log10_amplitude: of_points("log10_amplitude")?,
             contacts: slip.1,

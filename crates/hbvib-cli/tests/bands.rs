@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::fs;
 
 /// A wedge damper between a platform and a blade, and a part of the job.
-fn run(name: &str, part: &str) -> (std::process::Output, std::path::PathBuf) {
+pub fn run(name: &str, part: &str) -> (std::process::Output, std::path::PathBuf) {
     let matrices = crate::common::empty_folder("bands", &format!("{name}_matrices"));
     let mut job = String::new();
     for (key, blade, damper) in [("mass", 1.0, 0.01), ("damping", 0.04, 0.004), ("stiffness", 1.0, 1e-3)] {

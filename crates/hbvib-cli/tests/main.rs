@@ -25,6 +25,7 @@ mod plots;
 mod prestressed_models;
 mod projected_faces;
 mod reductions;
+mod residual_states;
 mod response_tables;
 mod restarted_runs;
 mod rotation;

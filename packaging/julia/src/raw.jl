@@ -130,6 +130,8 @@ const HBVIB_UNSTABLE_DIRECTIONS = Int32(17)
 const HBVIB_PARAMETER_VALUE = Int32(18)
 const HBVIB_D_AMPLITUDE = Int32(19)
 const HBVIB_D_DAMPING = Int32(20)
+const HBVIB_FREE_SLIDERS = Int32(21)
+const HBVIB_D_AMPLITUDE_BY_PLACE = Int32(22)
 const HBVIB_READING_VALUE = Int32(0)
 const HBVIB_READING_COMPLEX = Int32(1)
 const HBVIB_READING_ERROR = Int32(2)
@@ -398,6 +400,8 @@ struct hbvib_solver_options
     memory_limit::Int64
     flexibility::Int32
     stability::Int32
+    freedom::Int32
+    reserved::Int32
 end
 hbvib_solver_options() = initialised(hbvib_solver_options, dlsym_(:hbvib_solver_options_init))
 

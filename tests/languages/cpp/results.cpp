@@ -409,6 +409,13 @@ void residual_forces() {
   const auto branch = model.forced_response(s, {1.25, 1.25});
   const auto free = model.freedom(branch, 0);
   claim(free.size() == 1 && free[0].contact == 0 && free[0].direction == 0, "one slider is free");
+  s.freedom = 1;
+  const auto with_freedom = model.forced_response(s, {1.25, 1.25});
+  s.freedom = 0;
+  const auto slope = with_freedom.field(HBVIB_D_AMPLITUDE_BY_PLACE);
+  claim(slope.rank() == 3 && slope.shape()[1] == 2 && slope.shape()[2] == 2 && std::isnan(slope(0, 1, 0)), "points x contacts x 2");
+  near(slope(0, 0, 0), free[0].derivative, 1e-9, "the branch has the freedom of its points");
+  near(with_freedom.field(HBVIB_FREE_SLIDERS)[0], 1, 0, "and their number");
   const auto band = model.band(branch, 0);
   claim(band.info.sliders == 1 && band.info.upper > 1.05 * band.info.lower && band.lower_place.size() == 1, "the response is a band");
   const auto curve = model.band_curve(branch);

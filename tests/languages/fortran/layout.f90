@@ -245,6 +245,8 @@ contains
       call field('memory_limit', c_loc(s), c_loc(s%memory_limit), c_sizeof(s%memory_limit))
       call field('flexibility', c_loc(s), c_loc(s%flexibility), c_sizeof(s%flexibility))
       call field('stability', c_loc(s), c_loc(s%stability), c_sizeof(s%stability))
+      call field('freedom', c_loc(s), c_loc(s%freedom), c_sizeof(s%freedom))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
    end subroutine solver_options
 
    subroutine progress()

@@ -287,6 +287,7 @@ contains
       integer :: first_dof, first_contact, most
       integer, allocatable :: contact(:), direction(:), sliders(:)
       real(dp), allocatable :: place(:), slope(:), lower(:), upper(:), omega(:)
+      real(dp), pointer :: counts(:), slopes(:, :, :)
       logical, allocatable :: complete(:)
       call works(blade%new(1), 'a blade')
       call works(blade%set_matrix(HBVIB_MASS, reshape([1._dp], [1, 1])), 'mass')
@@ -313,6 +314,13 @@ contains
       call works(blade%freedom(branch, 1, contact, direction, place, slope), 'freedom')
       call expect('its contact with the ground is free', size(contact) == 1 .and. contact(1) == 1 .and. direction(1) == 1 .and. &
                   size(place) == 1 .and. abs(slope(1)) > 0)
+      call works(blade%forced_response(branch, 1.25_dp, 1.25_dp, hbvib_solver_options(tolerance=0._dp, harmonics=5, freedom=1)), &
+                 'a point with its freedom')
+      call works(branch%field(HBVIB_FREE_SLIDERS, counts), 'the number of free sliders')
+      call works(branch%field(HBVIB_D_AMPLITUDE_BY_PLACE, slopes), 'the derivatives by their places')
+      call expect('the branch has the freedom of its point', close(counts(1), 1._dp, 1e-14_dp) .and. &
+                  all(shape(slopes) == [2, 2, 1]) .and. close(slopes(1, 1, 1), slope(1), 1e-9_dp) .and. &
+                  slopes(1, 2, 1) /= slopes(1, 2, 1))
       call works(blade%band(branch, 1, bounds), 'its band')
       call works(blade%band_curve(branch, lower, upper, omega, sliders, complete), 'the curves of a band')
       call expect('the curves are its ends', close(lower(1), bounds%lower, 1e-12_dp) .and. close(upper(1), bounds%upper, 1e-12_dp) &

@@ -18,8 +18,8 @@ for field in hbvib.Field:
         array = branch.field(field)
     except hbvib.ArgumentError:
         check(
-            f"{field.name} is missing from a forced response only if it is of modes, of stability or of a parameter response",
-            field in (2, 3, 4, 10, 11, 12, 13, 15, 16, 17, 18, 19, 20),
+            f"{field.name} is missing from a forced response only if it is of modes, stability, freedom or a parameter response",
+            field in (2, 3, 4, 10, 11, 12, 13, 15, 16, 17, 18, 19, 20, 21, 22),
             field,
         )
         continue

@@ -82,6 +82,7 @@ LINEAR = same("have no effect on its response")
 ONE = same("A single frequency needs no step: the steps and max_points have no effect there.")
 SMALL = same("A basis for large structures where it holds, factors otherwise.")
 NOT_OF_MODES = refused("flexibility: only a forced response has a choice of it")
+NO_FREEDOM = refused("freedom: only a forced response has it along its curve")
 NO_STABILITY = refused("stability: only a forced response has it along its curve")
 NO_ESTIMATE = refused("estimate_error with tolerance = 0")
 BELOW = refused("max_harmonics = 3 is below harmonics")
@@ -107,14 +108,16 @@ OPTIONS = {
     "keep_even_harmonics": row(1, stop=same("carry the mean and the even harmonics also where symmetry makes them zero")),
     "estimate_error": row(1, linear=LINEAR, point=same("do so only with a tolerance"), fixed_parameter=NO_ESTIMATE, peak=NO_ESTIMATE,
                           damping=NO_ESTIMATE, parameter=same("do so only with a tolerance"),
-                          batch=same("the solver options estimate_error and stability have no effect")),
+                          batch=same("the solver options estimate_error, stability and freedom have no effect")),
     "memory_limit": row(1, **{name: MEMORY for name in SITUATIONS if name not in ("batch", "kept")}),
     "flexibility": row("direct", **{**dict.fromkeys(SITUATIONS, SMALL),
                                     **dict.fromkeys(("mode", "fixed_mode", "damping"), NOT_OF_MODES)}),
-    "stability": row("wave", batch=same("the solver options estimate_error and stability have no effect"),
+    "freedom": row(1, batch=same("the solver options estimate_error, stability and freedom have no effect"),
+                   **dict.fromkeys(("mode", "fixed_mode", "parameter", "fixed_parameter", "peak", "damping"), NO_FREEDOM)),
+    "stability": row("wave", batch=same("the solver options estimate_error, stability and freedom have no effect"),
                      **dict.fromkeys(("mode", "fixed_mode", "parameter", "fixed_parameter", "peak", "damping"), NO_STABILITY)),
 }
-fields = {name for name, _ in hbvib.structs["hbvib_solver_options"]._fields_} - {"struct_size"}
+fields = {name for name, _ in hbvib.structs["hbvib_solver_options"]._fields_} - {"struct_size", "reserved"}
 check("the table has every option of the solver, and no other", fields == set(OPTIONS), fields ^ set(OPTIONS))
 references = {situation: outcome(call) for situation, call in SITUATIONS.items()}
 for situation, call in SITUATIONS.items():
@@ -138,7 +141,7 @@ WRONG = {
     "num_threads": 2, "tolerance": 1.0, "harmonics": -1, "max_harmonics": -1, "samples": 3, "step": -1.0, "step_min": -1.0,
     "step_max": -1.0,
     "tol_residual": 0.0, "max_newton": 0, "max_points": 0, "response_dof": 3, "keep_even_harmonics": 2, "estimate_error": 2,
-    "memory_limit": -1, "flexibility": 3, "stability": 3,
+    "memory_limit": -1, "flexibility": 3, "stability": 3, "freedom": 2,
 }
 check("each option has a value that is none", set(WRONG) == set(OPTIONS))
 for option, value in WRONG.items():
