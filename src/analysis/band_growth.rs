@@ -8,13 +8,13 @@ use crate::analysis::stuck_contacts::StuckSlider;
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
 use crate::results::Branch;
-use std::sync::Arc;
+use std::rc::Rc;
 
 const CONTEXT: &str = "contacts that stick at an end of a band";
 
 /// An end with more free sliders than the state of the branch has.
 pub(super) struct Grown<'a> {
-    pub held: Arc<HeldSliders<'a>>,
+    pub held: Rc<HeldSliders<'a>>,
     pub state: HeldState,
     /// Relative gain that the linear model still foretells, as in [`Found::gain`](crate::analysis::band_search::Found::gain).
     pub gain: f64,
@@ -75,6 +75,6 @@ pub(super) fn grown<'a>(
         state: found.state,
         gain: found.gain,
         solved,
-        held: Arc::new(more),
+        held: Rc::new(more),
     }))
 }

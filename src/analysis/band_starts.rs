@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::options::{ForcedOptions, Response, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
-use std::sync::Arc;
+use std::rc::Rc;
 
 const CONTEXT: &str = "the starts of a band";
 
@@ -193,7 +193,7 @@ pub(super) fn within_limits<'a>(
     own: &HeldSliders<'a>,
     (branch, sliders): (&Branch, Vec<StuckSlider>),
     interrupt: &'a Interrupt<'a>,
-) -> Result<Option<(Arc<HeldSliders<'a>>, HeldState)>> {
+) -> Result<Option<(Rc<HeldSliders<'a>>, HeldState)>> {
     let held = HeldSliders::new(
         own.model,
         (&own.solver, own.solver.harmonics),
@@ -219,23 +219,23 @@ pub(super) fn within_limits<'a>(
         solved: 0,
     };
     let within = search.within(first)?;
-    Ok(within.map(|first| (Arc::new(held), first)))
+    Ok(within.map(|first| (Rc::new(held), first)))
 }
 
 /// The end that a search reaches from a state within the limits, the least result (`sign` −1) or the largest one (1).
 ///
 /// # Errors
 /// As [`HeldSliders::find`].
-pub(super) fn climbed<'a>(held: &Arc<HeldSliders<'a>>, first: &HeldState, sign: f64) -> Result<Grown<'a>> {
+pub(super) fn climbed<'a>(held: &Rc<HeldSliders<'a>>, first: &HeldState, sign: f64) -> Result<Grown<'a>> {
     let mut search = Search {
         held,
         units: held.distances(first)?,
         solved: 0,
     };
-    let found = search.climb(Arc::clone(first), sign)?;
+    let found = search.climb(first.clone(), sign)?;
     let solved = search.solved;
     Ok(Grown {
-        held: Arc::clone(held),
+        held: Rc::clone(held),
         state: found.state,
         gain: found.gain,
         solved,

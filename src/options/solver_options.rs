@@ -18,6 +18,7 @@ pub enum Flexibility {
 
 /// Options that every analysis shares.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct SolverOptions {
     /// Requested relative error, from which the harmonics of each point are chosen. It applies to the complex
     /// fundamental of the response degree of freedom; in a nonlinear mode to the frequency and to the damping
