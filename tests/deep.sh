@@ -2,6 +2,15 @@
 # Checks that take too long for every change, on one thread. Run after tests/run.sh has passed.
 set -eu
 cd "$(dirname "$0")/.."
+# pyright, which runs on node, beside what tests/run.sh has installed.
+python=python3
+[ ! -e .venv ] || python=.venv/bin/python
+if ! $python -c 'import pyright' >/dev/null 2>&1; then
+    package=pyright
+    command -v node >/dev/null 2>&1 || package='pyright[nodejs]'
+    $python -m pip install --quiet --disable-pip-version-check "$package"
+fi
+
 # All cases of each test, and the tests that take minutes.
 HBVIB_THOROUGH=1 cargo test --release --tests -- --include-ignored --test-threads=1
 cargo test --release --lib -p hbvib-unit-tests -p hbvib-numerics-unit-tests -- --ignored

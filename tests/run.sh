@@ -40,18 +40,15 @@ need locales test -e /usr/share/i18n/locales/de_DE
 need codespell codespell --version
 need calculix-ccx sh -c 'command -v ccx'
 
-# Python with numpy, what builds the wheel, what tables and figures need, and type checkers: the system's, or one of our own.
+# Python with numpy, what builds the wheel, what tables and figures need, and a type checker: the system's, or one of our own.
 # All that comes from the network comes here; the tests work without it.
-modules="numpy scipy matplotlib distributed pip hatchling pandas xarray tqdm mypy pyright typing_extensions pycparser meshio pyuff"
+modules="numpy scipy matplotlib distributed pip hatchling pandas xarray tqdm mypy typing_extensions pycparser meshio pyuff"
 complete() { "$1" -c "import $(echo $modules | sed 's/ /, /g')" >/dev/null 2>&1; }
 if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
     need python3-venv python3 -c 'import venv, ensurepip'
-    # pyright runs on node.
-    pyright=pyright
-    command -v node >/dev/null 2>&1 || pyright='pyright[nodejs]'
-    echo "installing numpy, scipy, matplotlib, distributed, pandas, xarray, tqdm, hatchling, type checkers and readers of result files in .venv"
+    echo "installing numpy, scipy, matplotlib, distributed, pandas, xarray, tqdm, hatchling, a type checker and readers of result files in .venv"
     python3 -m venv .venv
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check $(echo $modules | sed 's/pip //; s/pyright//') "$pyright" || {
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check $(echo $modules | sed 's/pip //') || {
         echo "tests/run.sh: could not install $modules; install them for python3 (pip or apt) and run again" >&2
         exit 1
     }

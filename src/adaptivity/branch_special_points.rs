@@ -19,10 +19,8 @@ impl BranchTracer<'_> {
     ) -> Result<()> {
         analysis.select(a.1.max(b.1))?;
         let interrupt = self.interrupt;
-        if analysis.observes_peaks() && SpecialPoint::Peak.between(a.0, b.0) {
-            self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
-            })?;
+        if analysis.observes_peaks() {
+            self.find_peaks_between(analysis, a, b)?;
         }
         self.find_peaks_of_responses(analysis, a, b)?;
         self.find_kinks_of_responses(analysis, a, b)?;

@@ -22,6 +22,9 @@ const INNER_ENDS_LEAST: usize = 4;
 const INNER_ENDS_CLOSE: f64 = 0.1;
 const INNER_ENDS_ALONG: f64 = 0.5;
 
+/// Share of a motion in the directions of its own that a curve does not have where it has run onto that branch.
+const INNER_ENDS_MERGED: f64 = 1e-6;
+
 /// Corrections of the place on an arc.
 const INNER_ENDS_CORRECTIONS: usize = 8;
 
@@ -92,6 +95,18 @@ impl InnerEnds {
             if across < 0.0 {
                 let share = before.sqrt() / (before.sqrt() + after.sqrt());
                 let at = last.parameter() + share * (point.parameter() - last.parameter());
+                return Ok(Some(InnerEnd::Merged(at)));
+            }
+            if after.sqrt() <= INNER_ENDS_MERGED * norm(point.unknowns()) {
+                // Up to the branch the square of that part falls in proportion to the parameter.
+                let slope = 2.0 * dropped.dot(set, last.unknowns(), &last.tangent[..n]);
+                let at = last.parameter() - before * last.tangent[n] / slope;
+                let (a, b) = (last.parameter(), point.parameter());
+                let at = if at.is_finite() {
+                    at.clamp(a.min(b), a.max(b))
+                } else {
+                    a
+                };
                 return Ok(Some(InnerEnd::Merged(at)));
             }
         }

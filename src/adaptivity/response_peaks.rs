@@ -1,6 +1,6 @@
-//! Peaks of further responses between two neighbours of a branch.
+//! Peaks of responses between two neighbours of a branch.
 //!
-//! The steps follow the motion, not each response: one of them may have a maximum and a minimum within a step. The cubic
+//! The steps follow the motion, not each response: any of them may have a maximum and a minimum within a step. The cubic
 //! through the response at both ends and its derivatives tells where to look; solutions there decide.
 
 use crate::adaptivity::branch_tracer::BranchTracer;
@@ -20,6 +20,45 @@ const NODES_BEFORE: usize = 3;
 const PARTS_OF_ARC: usize = 16;
 
 impl BranchTracer<'_> {
+    /// Records the peaks of the observed response between two neighbours.
+    pub(super) fn find_peaks_between(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        a: PointAt<'_>,
+        b: PointAt<'_>,
+    ) -> Result<()> {
+        let resolution = analysis.resolution();
+        let (first, last) = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
+        let brackets = self.predicted_brackets(&first, &last)?;
+        let interrupt = self.interrupt;
+        let find = |tracer: &mut Self, analysis: &mut dyn Traceable, a: PointAt<'_>, b: PointAt<'_>| {
+            let found = tracer.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
+                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
+            });
+            found.map(|_| ())
+        };
+        if SpecialPoint::Peak.between(a.0, b.0) && brackets.len() <= 1 {
+            return find(self, analysis, a, b);
+        }
+        for (low, high) in brackets {
+            analysis.select(resolution)?;
+            let mut locator = Locator::new(first.unknowns().len(), self.course.settings)?;
+            let mut solved = |s: f64, end: &Point, at: f64| {
+                if s.to_bits() == at.to_bits() {
+                    return end.try_clone().map(Some);
+                }
+                locator.between(analysis.problem(), (&first, &last), s, interrupt)
+            };
+            let (Some(low), Some(high)) = (solved(low, &first, 0.0)?, solved(high, &last, 1.0)?) else {
+                continue;
+            };
+            if SpecialPoint::Peak.between(&low, &high) {
+                find(self, analysis, (&low, resolution), (&high, resolution))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Records the peaks of all further responses between two neighbours. Each that is found divides the arc for the next ones:
     /// the responses of a structure have their peaks near each other.
     pub(super) fn find_peaks_of_responses(

@@ -108,15 +108,17 @@ impl Tree<'_> {
                     }
                 };
                 self.left -= 1;
-                let merges_at = child.descent().map_or(f64::NAN, |descent| descent.merges_at);
+                let came_back = child.descent().map_or(f64::NAN, |descent| descent.merges_at);
+                let other = self.end_of(parent, (number, &bifurcation), came_back * factor as f64, at)?;
                 child.set_descent(Descent {
                     bifurcation: Some(number),
                     kind: Some(bifurcation.kind),
                     periods: factor,
-                    merges_at,
+                    // The bifurcation is more exact than the place between two points of the child.
+                    merges_at: other.map_or(came_back, |(_, omega)| omega / factor as f64),
                     ..Descent::default()
                 });
-                if let Some(other) = self.end_of(parent, (number, &bifurcation), merges_at * factor as f64, at)? {
+                if let Some((other, _)) = other {
                     try_push(&mut taken, other, CONTEXT)?;
                 }
                 if child.status() == Status::StoppedByCaller {
@@ -140,14 +142,14 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The bifurcation at which a child ends that came back to its parent at a frequency.
+    /// The bifurcation at which a child ends that came back to its parent at a frequency, and its own frequency.
     fn end_of(
         &self,
         parent: &Branch,
         (own, from): (usize, &Bifurcation),
         omega: f64,
         at: &Place<'_>,
-    ) -> Result<Option<usize>> {
+    ) -> Result<Option<(usize, f64)>> {
         if omega.is_nan() {
             return Ok(None);
         }
@@ -158,7 +160,7 @@ impl Tree<'_> {
         let nearest = others.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
         Ok(nearest
             .filter(|(_, b)| distance(b) <= BRANCH_SWITCHING_SAME * width)
-            .map(|(i, _)| i))
+            .map(|(i, b)| (i, b.omega)))
     }
 
     /// The child at a bifurcation.

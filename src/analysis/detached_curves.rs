@@ -12,6 +12,7 @@ use crate::analysis::nonlinear_mode;
 use crate::analysis::synthesis::{ForceExtremum, ModeMotion, Motions, with_motions};
 use crate::error::{Error, Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes};
 use crate::options::{Content, Flexibility, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
@@ -32,6 +33,9 @@ const DETACHED_CURVES_AMPLITUDES: (f64, f64) = (2.0, 2.0);
 /// Harmonics of the modes, which are starts alone, and most of their points.
 const HARMONICS: usize = 5;
 const DETACHED_CURVES_MOST_POINTS: usize = 2_000;
+
+/// Distance of two motions that are one at an end of the range, over their size, where no tolerance is given.
+const ONE_END: f64 = 1e-6;
 
 impl Tree<'_> {
     /// Adds the detached curves beside a branch, with their children down to `depth`.
@@ -198,10 +202,45 @@ impl Tree<'_> {
         let Found::Curve(curve, dropped) = found else {
             return Ok(found);
         };
-        match self.whole(self.model, &curve, 1, hooks)? {
-            Some(whole) => Ok(Found::Curve(whole, dropped)),
-            None => Ok(Found::Curve(curve, dropped)),
+        let curve = self.whole(self.model, &curve, 1, hooks)?.unwrap_or(curve);
+        for known in &known {
+            if self.shares_an_end(&curve, known, &hooks.interrupt())? {
+                return Ok(Found::Known);
+            }
         }
+        Ok(Found::Curve(curve, dropped))
+    }
+
+    /// Whether two curves leave the range in one motion: then they are one.
+    fn shares_an_end(&self, a: &Branch, b: &Branch, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let (low, high) = self.ends();
+        let ends = |branch: &Branch| [0, branch.points().saturating_sub(1)];
+        let bound = ONE_END.max(2.0 * self.solver.tolerance);
+        for i in ends(a) {
+            let Some(omega) = a.omega().get(i).copied() else {
+                continue;
+            };
+            if omega.to_bits() != low.to_bits() && omega.to_bits() != high.to_bits() {
+                continue;
+            }
+            for j in ends(b) {
+                if b.omega().get(j).is_none_or(|other| other.to_bits() != omega.to_bits()) {
+                    continue;
+                }
+                let highest = |branch: &Branch, i| branch.carried_at(i).and_then(|carried| carried.last().copied());
+                let highest = highest(a, i).max(highest(b, j)).unwrap_or(1);
+                let (x, y) = (
+                    Recovery::at(a, i, interrupt)?.all(highest)?,
+                    Recovery::at(b, j, interrupt)?.all(highest)?,
+                );
+                let size = y.iter().fold(0.0_f64, |s, y| s.hypot(y.norm()));
+                let gap = x.iter().zip(&y).fold(0.0_f64, |s, (x, y)| s.hypot((x - y).norm()));
+                if gap <= bound * size {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
     }
 
     /// A curve that left the range, followed from that end once more, through its start to its other end; `None` where it did not

@@ -118,11 +118,18 @@ impl Inside<'_> {
             let point = net.first_solution(response, &start, (self.known, self.periods), interrupt)?;
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
-        let Some(sense) = self.leaves else {
-            let point = response.resolve(&start, true, interrupt)?;
-            return Ok(point.map(|point| Entered { point, dropped: None }));
-        };
         let level = response.resolution();
+        let Some(sense) = self.leaves else {
+            let mut point = response.resolve(&start, true, interrupt)?;
+            if point.is_none() {
+                let set = response.levels().at(level)?.condensed.set();
+                start.tangent = phase_direction(set, guess)?;
+                point = response.resolve(&start, false, interrupt)?;
+            }
+            let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
+            let inside = point.filter(|point| point.parameter() >= low && point.parameter() <= high);
+            return Ok(inside.map(|point| Entered { point, dropped: None }));
+        };
         let dropped = dropped(response.levels().at(level)?.condensed.set(), guess);
         let set = response.levels().at(level)?.condensed.set();
         let first = start_vector(set, n, dropped)?;
@@ -154,6 +161,22 @@ impl Inside<'_> {
         }
         Ok(None)
     }
+}
+
+/// The direction in which the phase of a motion changes, of a point with its frequency. Past a resonance the phase turns, while the
+/// frequency of a folded curve turns back there: across this direction a point of resonance is found where at its frequency alone
+/// it may not be.
+fn phase_direction(set: &HarmonicSet, motion: &[f64]) -> Result<Vec<f64>> {
+    let mut direction = try_vec(motion.len() + 1, 0.0, CONTEXT)?;
+    let m = set.packed_len().max(1);
+    for (to, from) in direction.chunks_exact_mut(m).zip(motion.chunks_exact(m)) {
+        for (i, h) in set.numbers().iter().enumerate() {
+            if *h > 0 {
+                set.set(to, i, set.get(from, i) * Complex64::new(0.0, *h as f64));
+            }
+        }
+    }
+    Ok(direction)
 }
 
 /// The settings in the sense of a point.

@@ -4,7 +4,7 @@ use crate::adaptivity::discretised::Discretised;
 use crate::adaptivity::transfer::transferred;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::continuation::Point;
-use crate::error::Result;
+use crate::error::{Error, Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
@@ -15,6 +15,12 @@ use std::sync::Arc;
 /// Distance of two solutions that are one, over their size.
 const ONE: f64 = 1e-6;
 
+/// Most halvings of the line between two points of a branch.
+const HALVINGS: usize = 8;
+
+/// Distance to that line, over its length, beyond which a solution found from it may lie on another curve.
+const BESIDE: f64 = 0.5;
+
 /// Whether a point lies on a branch, or its mirror image does: the solutions at its frequency between neighbours of the branch
 /// decide.
 pub(super) fn lies_on(
@@ -23,12 +29,20 @@ pub(super) fn lies_on(
     (point, periods): (&Point, usize),
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
-    let n = point.unknowns().len();
     let level = response.resolution();
-    for (i, pair) in known.omega().windows(2).enumerate() {
-        let (a, b) = (pair[0], pair[1]);
-        let omega = point.parameter();
-        if omega < a.min(b) || omega > a.max(b) {
+    let omega = known.omega();
+    for i in 0..omega.len().saturating_sub(1) {
+        let before = i.checked_sub(1).map(|before| omega[i] - omega[before]);
+        let after = omega.get(i + 2).map(|after| after - omega[i + 1]);
+        let step = omega[i + 1] - omega[i];
+        let beside = [before, after].into_iter().flatten();
+        // Beyond its points a fold reaches no further than the steps around it.
+        let beyond = if beside.clone().any(|other| other * step <= 0.0) {
+            beside.fold(step.abs(), |most, other| most.max(other.abs()))
+        } else {
+            0.0
+        };
+        if !reaches((omega[i], omega[i + 1]), point.parameter(), beyond) {
             continue;
         }
         interrupt.check()?;
@@ -36,26 +50,91 @@ pub(super) fn lies_on(
         let moved = |i: usize| {
             let from = known.condensed_at(i);
             let motion = known.motion_at(i).unwrap_or(&[]);
-            transferred(from, &to, motion, 0, from.length() / to.length())
+            let mut v = transferred(from, &to, motion, 0, from.length() / to.length())?;
+            try_push(&mut v, omega[i], "a point of a known curve")?;
+            Ok::<_, Error>(v)
         };
-        let (first, second) = (moved(i)?, moved(i + 1)?);
-        let share = if (b - a).abs() > 0.0 {
-            (omega - a) / (b - a)
-        } else {
-            0.5
+        let segment = Segment {
+            point,
+            periods,
+            set: to.set(),
         };
-        let mut near = point.try_clone()?;
-        for ((v, a), b) in near.v[..n].iter_mut().zip(&first).zip(&second) {
-            *v = a + share * (b - a);
-        }
-        let Some(found) = response.resolve(&near, true, interrupt)? else {
-            continue;
-        };
-        if is_one(&found, point, to.set(), periods) {
+        if segment.has(response, (&moved(i)?, &moved(i + 1)?), (HALVINGS, beyond), interrupt)? {
             return Ok(true);
         }
     }
     Ok(false)
+}
+
+/// Whether the line between two frequencies, or a fold of the curve beside it, reaches another one.
+fn reaches((a, b): (f64, f64), omega: f64, beyond: f64) -> bool {
+    omega >= a.min(b) - beyond && omega <= a.max(b) + beyond
+}
+
+/// A point that is sought between neighbours of a branch.
+struct Segment<'s> {
+    point: &'s Point,
+    periods: usize,
+    set: &'s HarmonicSet,
+}
+
+impl Segment<'_> {
+    /// Whether the curve between `a` and `b`, unknowns with their frequency, has the point. From a line that is short against the
+    /// curve's bends Newton's method finds the curve; a longer one is halved, in the plane across it.
+    fn has(
+        &self,
+        response: &mut ForcedDiscretised<'_>,
+        (a, b): (&[f64], &[f64]),
+        (halvings, beyond): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let n = self.point.unknowns().len();
+        let omega = self.point.parameter();
+        let length = a[..n].iter().zip(b).fold(0.0_f64, |s, (a, b)| s.hypot(a - b));
+        let on_line = |share: f64| -> Result<Point> {
+            let mut near = self.point.try_clone()?;
+            for ((v, a), b) in near.v.iter_mut().zip(a).zip(b) {
+                *v = a + share * (b - a);
+            }
+            for ((t, a), b) in near.tangent.iter_mut().zip(a).zip(b) {
+                *t = b - a;
+            }
+            Ok(near)
+        };
+        let is_near = |found: &Point, near: &Point| {
+            let pairs = found.unknowns().iter().zip(near.unknowns());
+            pairs.fold(0.0_f64, |s, (x, y)| s.hypot(x - y)) <= BESIDE * length
+        };
+        if reaches((a[n], b[n]), omega, 0.0) {
+            let step = b[n] - a[n];
+            let mut near = on_line(if step.abs() > 0.0 { (omega - a[n]) / step } else { 0.5 })?;
+            near.v[n] = omega;
+            if let Some(found) = response.resolve(&near, true, interrupt)? {
+                if is_one(&found, self.point, self.set, self.periods) {
+                    return Ok(true);
+                }
+                if beyond == 0.0 && is_near(&found, &near) {
+                    return Ok(false);
+                }
+            }
+        }
+        if halvings == 0 || length == 0.0 {
+            return Ok(false);
+        }
+        let near = on_line(0.5)?;
+        let middle = match response.resolve(&near, false, interrupt)? {
+            Some(middle) if is_near(&middle, &near) => middle,
+            _ => return Ok(false),
+        };
+        for (a, b) in [(a, &middle.v[..]), (&middle.v[..], b)] {
+            // A fold is at most as far away as the line is long.
+            let beyond = 0.5 * beyond;
+            if reaches((a[n], b[n]), omega, beyond) && self.has(response, (a, b), (halvings - 1, beyond), interrupt)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
 }
 
 /// Whether two solutions at one frequency are one, but for a shift by whole periods of the force, or by half a period with the

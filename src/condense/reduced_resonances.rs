@@ -6,7 +6,8 @@ use crate::error::{Result, Status, try_copy, try_extend};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::resonances::{Resonance, damped_frequencies};
+use crate::model::quadratic_modes::Quadratic;
+use crate::model::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};
 use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;
 
@@ -48,10 +49,25 @@ pub fn reduced_resonances(
                 }
             }
         }
+        if let Some(structural) = &block.structural {
+            for (k, d) in stiffness.iter_mut().zip(structural.iter()) {
+                *k += Complex64::I * d;
+            }
+        }
         let stiffness = on_pattern(stiffness)?;
         let mass = on_pattern(try_copy(&block.mass, CONTEXT)?)?;
         let damping = || on_pattern(try_copy(&block.damping, CONTEXT)?);
-        match damped_frequencies(block.number, range, (&stiffness, &mass), damping, interrupt) {
+        let own = if model.structure().has_gyroscopic_modes(block.number)? {
+            let problem = Quadratic {
+                mass: &mass,
+                damping: &damping()?,
+                stiffness: &stiffness,
+            };
+            gyroscopic_frequencies(block.number, range, &problem, interrupt)
+        } else {
+            damped_frequencies(block.number, range, (&stiffness, &mass), damping, interrupt)
+        };
+        match own {
             Ok(Some(own)) => try_extend(&mut found, &own, CONTEXT)?,
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
             Ok(None) | Err(_) => return Ok(None),

@@ -10,6 +10,7 @@ use crate::linalg::quadratic::about_quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
+use crate::model::quadratic_modes::Quadratic;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::{DMatrix, Schur};
@@ -49,6 +50,9 @@ const AT_END: f64 = 1e-9;
 
 /// Largest number of modes of a search in the range.
 const RESONANCES_MOST_MODES: usize = 500;
+
+/// The same with gyroscopic forces, counted from zero.
+const RESONANCES_MOST_GYROSCOPIC: usize = 90;
 
 /// Largest number of square matrices that the dense eigensolver holds at a time.
 const EIGEN_COPIES: usize = 8;
@@ -122,10 +126,6 @@ impl Model {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
         let structure = self.structure();
-        if structure.is_gyroscopic() && structure.tied_to_frequency(Wave::Harmonic(h))?.is_none() {
-            // Gyroscopic forces at a fixed speed are no small damping.
-            return Ok(None);
-        }
         let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
         let mass = structure.inertia(Wave::Harmonic(h))?;
         let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
@@ -134,6 +134,14 @@ impl Model {
             (Complex64::I, &structural, Form::Plain),
         ];
         let stiffness = Csc::sum(mass.rows, &terms)?;
+        if self.structure().has_gyroscopic_modes(h)? {
+            let problem = Quadratic {
+                mass: &mass,
+                damping: &structure.wave_matrix(MatrixKind::Damping, h)?,
+                stiffness: &stiffness,
+            };
+            return gyroscopic_frequencies(h, (low, high), &problem, interrupt);
+        }
         damped_frequencies(
             h,
             (low, high),
@@ -141,6 +149,44 @@ impl Model {
             || structure.wave_matrix(MatrixKind::Damping, h),
             interrupt,
         )
+    }
+}
+
+/// The resonances of harmonic `h` where gyroscopic forces act at a fixed speed, which are no small damping: eigenvalues of the
+/// quadratic problem. `None` if there are too many below the range.
+///
+/// # Errors
+/// Those of the eigensolvers.
+pub fn gyroscopic_frequencies(
+    h: usize,
+    (low, high): (f64, f64),
+    problem: &Quadratic<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    let n = problem.mass.rows;
+    let number = h as f64;
+    let mut count = if n > RESONANCES_DENSE_UP_TO { FIRST_MODES } else { n };
+    loop {
+        let modes = problem.lowest(count, interrupt)?;
+        let is_whole = modes.len() < count || count >= n;
+        if !is_whole && modes.last().is_some_and(|(value, _)| value.im <= high * number) {
+            if count >= RESONANCES_MOST_GYROSCOPIC {
+                return Ok(None);
+            }
+            count = (2 * count).min(RESONANCES_MOST_GYROSCOPIC).min(n);
+            continue;
+        }
+        let mut found = Vec::new();
+        for (value, _) in &modes {
+            let resonance = Resonance {
+                omega: value.im / number,
+                half_width: (-value.re).max(0.0) / number,
+            };
+            if resonance.omega > 0.0 && resonance.omega >= low && resonance.omega <= high {
+                try_push(&mut found, resonance, CONTEXT)?;
+            }
+        }
+        return Ok(Some(found));
     }
 }
 

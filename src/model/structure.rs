@@ -11,6 +11,7 @@ use crate::model::influence::{AeroInfluence, FORMS};
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
 use crate::model::speed::Speed;
+use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -135,6 +136,14 @@ impl Structure {
     pub fn is_gyroscopic(&self) -> bool {
         !matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
             && self.parts(MatrixKind::Gyroscopic).any(|a| !a.is_empty())
+    }
+
+    /// Whether gyroscopic forces act at a speed that does not follow the frequency of harmonic `h`.
+    ///
+    /// # Errors
+    /// As [`Self::tied_to_frequency`].
+    pub fn has_gyroscopic_modes(&self, h: usize) -> Result<bool> {
+        Ok(self.is_gyroscopic() && self.tied_to_frequency(Wave::Harmonic(h))?.is_none())
     }
 
     /// Whether damping ratios of modes were given.

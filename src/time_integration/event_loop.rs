@@ -202,6 +202,11 @@ pub(crate) struct EventLoop {
     pub moved: Vec<bool>,
     /// Directions in which they have moved since then: up, down.
     pub directions: Vec<[bool; 2]>,
+    /// Steps of the last lapse, and the most that one may take.
+    pub steps: usize,
+    pub most_steps: usize,
+    /// Displacement and velocity beyond which a lapse is left.
+    pub bounds: (f64, f64),
 }
 
 impl EventLoop {
@@ -223,7 +228,16 @@ impl EventLoop {
             dependent: try_vec(count, None, CONTEXT)?,
             moved: try_vec(count, false, CONTEXT)?,
             directions: try_vec(count, [false; 2], CONTEXT)?,
+            steps: 0,
+            most_steps: EVENT_LOOP_MOST_STEPS,
+            bounds: (f64::INFINITY, f64::INFINITY),
         })
+    }
+
+    /// Lets lapses take as many steps, and motions grow as large, as any may.
+    pub fn without_bounds(&mut self) {
+        self.most_steps = EVENT_LOOP_MOST_STEPS;
+        self.bounds = (f64::INFINITY, f64::INFINITY);
     }
 
     /// Clears the record of sliders that have moved.
@@ -282,7 +296,8 @@ impl EventLoop {
             self.note(i);
         }
         let mut t = 0.0;
-        let (mut steps, mut at_once) = (0, 0);
+        let mut at_once = 0;
+        self.steps = 0;
         while t < end {
             // At most ten reports of a lapse, which may be short.
             system
@@ -290,12 +305,19 @@ impl EventLoop {
                 .phase(Phase::TimeIntegration, 0.1 * (10.0 * t / end).floor())?;
             let work = OPERATIONS_OF_A_LAW * system.elements.len();
             system.interrupt.check_before(work as u64)?;
-            steps += 1;
-            if steps > EVENT_LOOP_MOST_STEPS {
+            self.steps += 1;
+            if self.steps > self.most_steps {
                 return fail!(
                     NoConvergence,
-                    "a period takes more than {EVENT_LOOP_MOST_STEPS} time steps; the structure is too stiff for omega = {}",
+                    "a period takes more than {} time steps; the structure is too stiff for omega = {}",
+                    self.most_steps,
                     system.omega
+                );
+            }
+            if summary.largest.0 > self.bounds.0 || summary.largest.1 > self.bounds.1 {
+                return fail!(
+                    NoBoundedSolution,
+                    "the motion in time leaves the neighbourhood of its point"
                 );
             }
             for (i, e) in system.elements.iter().enumerate() {

@@ -31,6 +31,14 @@ const NEUTRAL: f64 = 1e-9;
 /// marched instead.
 const MOST_BYTES: usize = 100 << 20;
 
+/// A search for the closest motion leaves a lapse whose motion is so many times its first state, or that takes so many times the
+/// steps of its first lapse: from there it would come back to another motion, if at all.
+const SHOOTING_BEYOND: f64 = 1e3;
+const SHOOTING_STEPS: usize = 16;
+
+/// Steps that any lapse of it may take.
+const SHOOTING_LEAST_STEPS: usize = 20_000;
+
 /// Number of periods that are marched after the first failure of Newton's method; each time twice as many.
 const FIRST_MARCH: usize = 8;
 
@@ -80,6 +88,8 @@ pub(crate) struct Search<'a, 'h, 's> {
     most_laps: usize,
     /// Whether the frequency is an unknown, because no force has one.
     free: bool,
+    /// Whether the motion that is sought is near the first state.
+    near: bool,
 }
 
 impl<'a, 'h, 's> Search<'a, 'h, 's> {
@@ -104,6 +114,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             residual: f64::INFINITY,
             laps: 0,
             free: false,
+            near: false,
         })
     }
 
@@ -116,9 +127,19 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
 
     /// Shoots without marching, so that an unstable motion is kept; `None`: Newton's method did not converge.
     pub fn closest(mut self) -> Result<Option<Steady>> {
-        let status = match self.shoot() {
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let size = largest(&self.state.x).max(largest(&self.state.v) / self.system.omega);
+        if size > 0.0 {
+            self.event_loop.bounds = (SHOOTING_BEYOND * size, SHOOTING_BEYOND * size * self.system.omega);
+        }
+        self.near = true;
+        let outcome = self.shoot();
+        self.event_loop.without_bounds();
+        let status = match outcome {
             Ok(Outcome::Found) => Status::Ok,
             Ok(Outcome::Failed) => return Ok(None),
+            // The first lapse went too far.
+            Err(e) if matches!(e.status, Status::NoBoundedSolution) => return Ok(None),
             Ok(Outcome::Stopped) => Status::StoppedByCaller,
             Err(e) if e.status == Status::StoppedByCaller => e.status,
             Err(e) => return Err(e),
@@ -190,6 +211,9 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             };
             self.event_loop.run(self.system, &mut self.image, observers)?
         };
+        if self.near && self.laps == 1 {
+            self.event_loop.most_steps = SHOOTING_LEAST_STEPS.max(SHOOTING_STEPS.saturating_mul(self.event_loop.steps));
+        }
         self.compare(&summary);
         if self.residual.is_nan() {
             return fail!(NoBoundedSolution, "the motion in time grows beyond all bounds");

@@ -10,7 +10,7 @@ use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
 
 /// Three masses in a chain under a force on one of them.
 fn chain(beta: f64, contacts: &[Contact], constant: f64, (dof, force): (usize, f64)) -> Model {
@@ -134,6 +134,65 @@ fn the_error_of_a_synthesised_resonance_is_that_against_the_computed_peak() {
         worst.0, worst.1
     );
     assert!(valid >= 30 && worst.0 < 0.01 && worst.1 < 1e-5);
+}
+
+/// Four masses whose dampings make their resonances overlap at the first one, with a slider that sticks: the computed resonance is the
+/// nearest one, not that of another mode.
+#[test]
+fn the_error_of_overlapping_modes_is_that_against_the_nearest_peak() {
+    let mass = [0.67, 1.97, 0.99, 1.9];
+    let stiffness = [
+        [1.61, -1.06, 0.0, 0.0],
+        [-1.06, 2.32, -1.26, 0.0],
+        [0.0, -1.26, 4.14, -2.88],
+        [0.0, 0.0, -2.88, 2.88],
+    ]
+    .concat();
+    let mut compared = 0;
+    for loss in [0.03, 0.07, 0.1176, 0.15] {
+        let mut model = Model::new(4).unwrap();
+        let diagonal: Vec<f64> = (0..16).map(|k| if k % 5 == 0 { mass[k / 5] } else { 0.0 }).collect();
+        let structural: Vec<f64> = stiffness.iter().map(|k| loss * k).collect();
+        for (kind, values) in [
+            (MatrixKind::Mass, &diagonal),
+            (MatrixKind::Stiffness, &stiffness),
+            (MatrixKind::Structural, &structural),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(4, values)).unwrap();
+        }
+        model.add_contact(&Contact::jenkins(2, None, 0.3, 0.3, 1e3)).unwrap();
+        model.add_force(1, 1, 1.0.into()).unwrap();
+        let solver = SolverOptions {
+            response_dof: Some(0),
+            ..harmonics(1)
+        };
+        let swept = sweep(&model, &solver, 0.1, 4.0, &[]);
+        for mode in 0..3 {
+            let range = ModeOptions {
+                choice: ModeChoice::Index(mode),
+                log10_start: -1.0,
+                log10_stop: 1.5,
+                ..ModeOptions::default()
+            };
+            let branch = follow(&model, &solver, &range);
+            let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
+            for peak in &found.peaks {
+                let distance = |omega: f64| (omega - peak.at.omega).abs();
+                let near = swept
+                    .peaks()
+                    .iter()
+                    .min_by(|a, b| distance(a.omega).total_cmp(&distance(b.omega)));
+                let Some(near) = near.filter(|p| distance(p.omega) < peak.at.damping_ratio * peak.at.omega) else {
+                    continue;
+                };
+                let right = peak.at.response.norm() / near.amplitude - 1.0;
+                println!("{loss} {mode} {} {right} {}", peak.at.omega, peak.validity.error);
+                assert!((peak.validity.error - right).abs() < 1e-6);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 6, "{compared}");
 }
 
 #[test]

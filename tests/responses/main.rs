@@ -8,6 +8,7 @@ mod engine_orders;
 mod everywhere;
 mod kinks;
 mod peaks;
+mod peaks_of_dampings;
 mod readings;
 mod refused;
 mod tolerance;

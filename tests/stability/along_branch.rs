@@ -1,5 +1,6 @@
 //! Stability along a forced response, and the bifurcations located on it.
 
+use crate::common::peers::structure;
 use crate::common::{BASE, harmonics, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
 use hbvib::contact::{Contact, ContactKind};
@@ -151,4 +152,21 @@ fn a_nonlinear_mode_refuses_stability_along_its_curve() {
     };
     let e = nonlinear_mode(&model, &of_wave(9), &range, &mut Hooks::default()).unwrap_err();
     assert_eq!(e.status, Status::Argument);
+}
+
+/// With too few harmonics shooting may begin far from a motion, where a polynomial damper makes steps in time without end: the search
+/// leaves there, and its point has the stability that is known of it.
+#[test]
+#[ignore = "a quarter of a minute"]
+fn a_search_in_time_that_leaves_its_point_ends() {
+    let stiffness = [3.755, -2.537, 0.0, -2.537, 3.368, -0.832, 0.0, -0.832, 0.832];
+    let mass = [1.033, 0.0, 0.0, 0.0, 1.145, 0.0, 0.0, 0.0, 0.869];
+    let mut model = structure(&mass, &mass.map(|m| 0.010_67 * m), &stiffness);
+    let law = Polynomial::scalar(&[0.0, 0.0, 0.3], &[0.0, 0.0, -0.05, 0.0, 0.012]).unwrap();
+    let law = Contact::between(1, None, ContactKind::Polynomial(law));
+    model.add_contact(&law).unwrap();
+    model.add_force(2, 1, 1.849.into()).unwrap();
+    let found = sweep(&model, &of_wave(5), 0.4, 1.001, &[]);
+    assert_eq!(found.status(), Status::Ok);
+    assert!(found.points() > 40, "{}", found.points());
 }

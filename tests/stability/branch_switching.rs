@@ -1,6 +1,7 @@
 //! Branches of the double period and of broken symmetry, found without a guess: against motions that shooting found in time.
 
-use crate::common::{data, harmonics, one_mass};
+use crate::common::peers::structure;
+use crate::common::{all_harmonics, data, harmonics, largest, one_mass};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
@@ -146,4 +147,39 @@ fn the_model_of_a_longer_period_has_the_same_response() {
         assert!((x[h] - y[3 * h]).norm() < 1e-9, "{h}");
     }
     assert!(model.with_longer_period(0).is_err());
+}
+
+/// A child of the double period ends where its odd harmonics vanish, at the other doubling, and does not go on along its parent.
+#[test]
+fn a_doubled_period_ends_where_it_merges() {
+    let stiffness = [2.1435, -0.8997, -0.8997, 1.5991];
+    let mass = [0.5728, 0.0, 0.0, 0.7802];
+    let damping: Vec<f64> = mass
+        .iter()
+        .zip(&stiffness)
+        .map(|(m, k)| 0.002_53 * m + 0.003_407 * k)
+        .collect();
+    let mut model = structure(&mass, &damping, &stiffness);
+    model
+        .add_contact(&Contact::unilateral(Some(1), None, 3.6137, 0.4556))
+        .unwrap();
+    model.add_force(1, 1, 0.0587.into()).unwrap();
+    let found = tree(&model, &harmonics(3), (0.857, 2.008), &[]);
+    let doublings: Vec<f64> = found
+        .bifurcations()
+        .unwrap()
+        .iter()
+        .filter(|b| b.kind == BifurcationKind::PeriodDoubling)
+        .map(|b| b.omega)
+        .collect();
+    println!("{doublings:?}");
+    assert_eq!((doublings.len(), found.children().len()), (2, 1));
+    let child = &found.children()[0];
+    assert_eq!(child.descent().unwrap().merges_at, 0.5 * doublings[1]);
+    for point in 0..child.points() {
+        let x = all_harmonics(child, point);
+        let odd = largest(&x[2..4]).max(largest(&x[6..8]));
+        println!("{} {odd} {}", 2.0 * child.omega()[point], largest(&x));
+        assert!(odd > 1e-3 * largest(&x));
+    }
 }

@@ -1,7 +1,9 @@
 //! Response curves without connection to the sweep, found from nonlinear modes: against shooting, and against one harmonic in
 //! closed form.
 
+use crate::common::peers::structure;
 use crate::common::{data, harmonics, one_mass};
+use core::f64::consts::PI;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -228,5 +230,40 @@ fn a_small_curve_is_found_next_to_its_birth() {
         let found = with_detached(&falling_damping(force), &harmonics(3), (0.95, 1.05), &[]);
         assert_eq!(found.children().len(), 1);
         assert_eq!(found.searched().unwrap().resonances, 3);
+    }
+}
+
+/// Two coupled masses in newtons, millimetres and tonnes with a stiffening spring: their lightly damped peaks lean far over, with long steps
+/// along them. No curve comes back as one that was not shown: at the requested frequencies all solutions differ.
+#[test]
+fn no_curve_is_found_twice() {
+    let at: Vec<f64> = (0..12).map(|i| 1_950.0 + 100.0 * f64::from(i)).collect();
+    for (cubic, forces) in [
+        (1e5, [0.1, 1.0, 3.0]),
+        (1e6, [0.7, 0.9, 2.0]),
+        (3e6, [0.5, 0.9, 1.3]),
+        (1e7, [0.3, 0.7, 3.0]),
+    ] {
+        for force in forces {
+            let mass = [1e-3, 0.0, 0.0, 1e-3];
+            let stiffness = [6_000.0, -1_000.0, -1_000.0, 6_000.0];
+            let mut model = structure(&mass, &mass.map(|m| 10.0 * m), &stiffness);
+            let spring = Contact::cubic(0, None, 0.0, cubic);
+            model.add_contact(&spring).unwrap();
+            model.add_force(0, 1, force.into()).unwrap();
+            let found = with_detached(&model, &harmonics(5), (600.0 * PI, 1_000.0 * PI), &at);
+            let curves: Vec<&Branch> = core::iter::once(&found).chain(found.children()).collect();
+            for (i, omega) in at.iter().enumerate() {
+                let mut all: Vec<f64> = curves.iter().flat_map(|c| c.at(i)).map(|s| s.amplitude).collect();
+                all.sort_by(f64::total_cmp);
+                let differ = all.windows(2).all(|pair| pair[1] - pair[0] > 1e-6 * pair[1]);
+                assert!(differ, "{cubic} {force} at {omega}: {all:?}");
+            }
+            println!(
+                "{cubic} {force}: {} curves, {:?}",
+                curves.len(),
+                found.searched().unwrap()
+            );
+        }
     }
 }

@@ -64,6 +64,8 @@ pub(crate) struct ModeTable {
     motions: Vec<Complex64>,
     /// Whether the first node lies in the linear range.
     is_linear_below: bool,
+    /// Whether the amplitude of the mode falls beyond the last node.
+    turns: bool,
 }
 
 /// Where an amplitude lies: the node below it, and the share of the next one.
@@ -140,12 +142,14 @@ impl ModeTable {
         };
         let linear = data.info.linear_up_to;
         let mut nodes: Vec<Node> = Vec::new();
+        let mut turns = false;
         for k in 0..points.saturating_sub(1) {
             interrupt.part(Phase::Results, k, points)?;
             let at = |i: usize| data.point(i).map_or(f64::NAN, |p| p.log10_amplitude);
             let (low, high) = (at(k), at(k + 1));
             // A NaN ends the table too.
             if high.partial_cmp(&low) != Some(Ordering::Greater) {
+                turns = true;
                 break;
             }
             if nodes.is_empty() {
@@ -165,11 +169,14 @@ impl ModeTable {
         }
         // The amplitude falls beyond a fold.
         let rising = nodes.windows(2).take_while(|n| n[1].amplitude > n[0].amplitude).count();
+        turns |= rising + 1 < nodes.len();
         nodes.truncate(rising + 1);
         if nodes.len() < 2 {
             return fail!(Argument, "the mode has less than two rising amplitudes");
         }
-        Self::of(nodes, &maker, linear)
+        let mut table = Self::of(nodes, &maker, linear)?;
+        table.turns = turns;
+        Ok(table)
     }
 
     fn of(mut nodes: Vec<Node>, maker: &Maker<'_>, linear: f64) -> Result<Self> {
@@ -183,6 +190,7 @@ impl ModeTable {
             slopes: Vec::new(),
             motions: Vec::new(),
             is_linear_below: nodes[0].log10 <= linear,
+            turns: false,
         };
         // The phase of the mode along the amplitude: u₁ᴴ M du₁/da = 0.
         let mass = maker.model.structure().wave_matrix(MatrixKind::Mass, 1)?;
@@ -232,6 +240,15 @@ impl ModeTable {
         self.ln.iter().map(|ln| ln.exp())
     }
 
+    /// What leads to amplitudes beyond the last node.
+    pub fn what_goes_further(&self) -> &'static str {
+        if self.turns {
+            "a mode whose amplitude has a fold there does not describe larger motions: integrate them with a time sweep"
+        } else {
+            "compute it to a larger amplitude"
+        }
+    }
+
     /// Finds an amplitude from the place found last on.
     ///
     /// # Errors
@@ -258,8 +275,10 @@ impl ModeTable {
         if ln.is_nan() || ln > self.ln[top] + 1e-12 {
             return fail!(
                 Argument,
-                "the modal amplitude reaches {amplitude:.3e}, the mode ends at {:.3e}; compute it to a larger amplitude",
-                self.range().1
+                "the modal amplitude reaches {amplitude:.3e}, the mode {} {:.3e}; {}",
+                if self.turns { "turns back at" } else { "ends at" },
+                self.range().1,
+                self.what_goes_further()
             );
         }
         while node > 0 && ln < self.ln[node] {

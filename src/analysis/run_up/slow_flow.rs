@@ -216,8 +216,9 @@ pub(crate) fn steady(table: &ModeTable, omega: f64) -> Result<Complex64> {
     fail!(
         Argument,
         "at omega = {omega} the steady amplitude is beyond the mode, which ends at the modal amplitude {low:.3e} with {:.3e} of the force \
-         not balanced; compute it to a larger amplitude",
-        -value
+         not balanced; {}",
+        -value,
+        table.what_goes_further()
     )
 }
 

@@ -20,11 +20,15 @@ const CONTEXT: &str = "the computed resonance";
 /// Half-power bandwidths on either side of the resonance within which the computed one is sought.
 const BANDWIDTHS: f64 = 8.0;
 
+/// Half-power bandwidths within which the motion with the phase of the resonance is of the same resonance. Several modes may have
+/// a motion of this phase.
+const COMPUTED_PEAK_NEAR: f64 = 0.5;
+
 /// Most points of the response on the way to its peak.
 const COMPUTED_PEAK_MOST_POINTS: usize = 100;
 
-/// Largest step over the range of frequency.
-const COMPUTED_PEAK_STEP: f64 = 0.05;
+/// Largest step over the range of frequency: a third of the bandwidth.
+const COMPUTED_PEAK_STEP: f64 = 0.01;
 
 /// A synthesised resonance with the motion of the mode there.
 pub(crate) struct AtPeak<'a> {
@@ -97,9 +101,11 @@ fn computed(
     let upwards = settings(range);
     let mut corrector = Corrector::new(n, upwards.tolerance, upwards.max_iterations)?;
     let mut first = None;
+    let bandwidth = 2.0 * state.damping * omega;
     for keep_parameter in [false, true] {
         if first.is_none() {
             first = solve(&mut problem, &mut corrector, &upwards, &near, keep_parameter, interrupt)?;
+            first = first.filter(|first| (first.parameter() - omega).abs() <= COMPUTED_PEAK_NEAR * bandwidth);
         }
     }
     let Some(first) = first else { return Ok(None) };

@@ -40,6 +40,10 @@ def raises(claim, kind, function, *arguments, words="", **keywords):
     return None
 
 
+# All cases are asked for, and the tools that take long: tests/deep.sh.
+THOROUGH = "HBVIB_THOROUGH" in os.environ
+
+
 def finish(least):
     """Ends the program: 1 if a check failed or fewer ran than there are."""
     if _checks < least:
