@@ -268,7 +268,7 @@ fn ten_rates_of_random_models() {
         };
         let range = ModeOptions {
             log10_start: -3.0,
-            log10_stop: 1.5,
+            log10_stop: 2.5,
             ..ModeOptions::default()
         };
         let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
