@@ -16,10 +16,10 @@ use std::sync::Arc;
 const ONE: f64 = 1e-6;
 
 /// Most halvings of the line between two points of a branch.
-const HALVINGS: usize = 8;
+const KNOWN_CURVE_HALVINGS: usize = 8;
 
 /// Distance to that line, over its length, beyond which a solution found from it may lie on another curve.
-const BESIDE: f64 = 0.5;
+const KNOWN_CURVE_BESIDE: f64 = 0.5;
 
 /// Whether a point lies on a branch, or its mirror image does: the solutions at its frequency between neighbours of the branch
 /// decide.
@@ -59,7 +59,12 @@ pub(super) fn lies_on(
             periods,
             set: to.set(),
         };
-        if segment.has(response, (&moved(i)?, &moved(i + 1)?), (HALVINGS, beyond), interrupt)? {
+        if segment.has(
+            response,
+            (&moved(i)?, &moved(i + 1)?),
+            (KNOWN_CURVE_HALVINGS, beyond),
+            interrupt,
+        )? {
             return Ok(true);
         }
     }
@@ -103,7 +108,7 @@ impl Segment<'_> {
         };
         let is_near = |found: &Point, near: &Point| {
             let pairs = found.unknowns().iter().zip(near.unknowns());
-            pairs.fold(0.0_f64, |s, (x, y)| s.hypot(x - y)) <= BESIDE * length
+            pairs.fold(0.0_f64, |s, (x, y)| s.hypot(x - y)) <= KNOWN_CURVE_BESIDE * length
         };
         if reaches((a[n], b[n]), omega, 0.0) {
             let step = b[n] - a[n];

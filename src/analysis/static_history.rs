@@ -1,8 +1,9 @@
 //! Static states along a load history: the residual state that assembly, or a speed that rises and falls, leaves in contacts.
 //!
-//! A slider is dragged along a load path that is straight between two steps exactly by its law, as long as each of its limits moves in
-//! one sense between them: the place at the end is that of the play operator from the place at the begin. A step whose halves give
-//! another place is halved, so that contacts that open and close on the way, and those that hold others, are followed.
+//! Where the motion between two loads is a straight line, so are the forces of contacts that press, and the place of a slider at the end
+//! is exactly that of the play operator from the place at the begin. A contact that opens, closes or begins to slip on the way bends
+//! the line: such a step is halved until this lies in a piece that no longer counts. So is one whose halves give another place.
+//! In a plane a slider that slides follows its contact on a curve, to first order in the length of the pieces.
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::analysis::static_solution::{NEEDS_SPEED, linear_static_motion, static_state};
@@ -16,11 +17,21 @@ use crate::options::SolverOptions;
 
 const CONTEXT: &str = "the static states of a load history";
 
-/// Halvings of a step at most.
+/// Most halvings of a step, of one with a bend, and of one in which a slider slides in a plane.
 const STATIC_HISTORY_HALVINGS: usize = 12;
+const STATIC_HISTORY_BENT: usize = 26;
+const STATIC_HISTORY_IN_PLANE: usize = 9;
 
-/// Difference of the places of sliders, over the largest motion of a contact, at which the halves of a step agree.
+/// Difference of the places of sliders, over the largest motion of a contact, at which the halves of a step agree, and of those in
+/// a plane.
 const AGREES: f64 = 1e-11;
+const AGREES_IN_PLANE: f64 = 1e-7;
+
+/// Distance of the middle of a motion to the line between its ends, over the motion, that is rounding.
+const STATIC_HISTORY_STRAIGHT: f64 = 1e-9;
+
+/// Halvings before a step may be a curve.
+const STATIC_HISTORY_CURVE: usize = 3;
 
 /// Most steps of a history.
 const STATIC_HISTORY_MOST_STEPS: usize = 1_000_000;
@@ -80,7 +91,7 @@ pub fn static_history(
         let step = match steps.last() {
             // The first load is reached at once.
             None => walk.state(load(0), &places)?,
-            Some(last) => walk.to((load(i - 1), &last.places), load(i), STATIC_HISTORY_HALVINGS)?,
+            Some(last) => walk.to((load(i - 1), last), load(i), 0)?,
         };
         try_push(&mut steps, step, CONTEXT)?;
     }
@@ -126,6 +137,16 @@ impl Load {
     }
 }
 
+/// Whether the middle of a motion lies on the line between its ends.
+fn is_straight(begin: &[f64], middle: &[f64], end: &[f64]) -> bool {
+    let (mut bend, mut size) = (0.0_f64, 0.0_f64);
+    for ((a, m), b) in begin.iter().zip(middle).zip(end) {
+        bend = bend.max((m - 0.5 * (a + b)).abs());
+        size = size.max(a.abs()).max(b.abs());
+    }
+    bend <= STATIC_HISTORY_STRAIGHT * size
+}
+
 struct Walk<'a> {
     model: &'a Model,
     solver: &'a SolverOptions,
@@ -135,22 +156,63 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// The state at the end of a step from places at its begin.
-    fn to(&mut self, (from, places): (Load, &[[f64; 2]]), to: Load, halvings: usize) -> Result<StaticStep> {
-        let whole = self.state(to, places)?;
-        if halvings == 0 {
+    /// The state at the end of a step from that at its begin.
+    fn to(&mut self, (from, begin): (Load, &StaticStep), to: Load, halvings: usize) -> Result<StaticStep> {
+        let whole = self.state(to, &begin.places)?;
+        if !self.model.contacts().iter().any(|contact| contact.sliders() > 0) {
             return Ok(whole);
         }
         let middle = from.middle(to);
-        let half = self.state(middle, places)?;
+        let half = self.state(middle, &begin.places)?;
         let second = self.state(to, &half.places)?;
-        let pairs = whole.places.iter().flatten().zip(second.places.iter().flatten());
-        let gap = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-        if gap <= AGREES * self.size {
+        let is_line = is_straight(&begin.motion, &half.motion, &second.motion);
+        let is_even = !self.changes(begin, &half, &second) && (is_line || halvings >= STATIC_HISTORY_CURVE);
+        let (on_line, in_plane) = self.gaps(&whole, &second);
+        let agrees = on_line <= AGREES * self.size;
+        let agrees_in_plane = in_plane <= AGREES_IN_PLANE * self.size || halvings >= STATIC_HISTORY_IN_PLANE;
+        let most = if is_even {
+            STATIC_HISTORY_HALVINGS
+        } else {
+            STATIC_HISTORY_BENT
+        };
+        if halvings >= most || (is_even && agrees && agrees_in_plane) {
             return Ok(second);
         }
-        let half = self.to((from, places), middle, halvings - 1)?;
-        self.to((middle, &half.places), to, halvings - 1)
+        let half = self.to((from, begin), middle, halvings + 1)?;
+        self.to((middle, &half), to, halvings + 1)
+    }
+
+    /// Whether a contact opens, closes, begins to slip or to stick between the states of a step.
+    fn changes(&self, begin: &StaticStep, half: &StaticStep, end: &StaticStep) -> bool {
+        let moved = |a: &[f64; 2], b: &[f64; 2]| {
+            let gap = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+            gap > AGREES * self.size
+        };
+        self.model.contacts().iter().enumerate().any(|(id, contact)| {
+            let is_open = |step: &StaticStep| contact.places().contains(&2) && step.forces[id][2] == 0.0;
+            let opens = is_open(begin) != is_open(half) || is_open(half) != is_open(end);
+            let (first, second) = (
+                moved(&begin.places[id], &half.places[id]),
+                moved(&half.places[id], &end.places[id]),
+            );
+            opens || (!is_open(half) && first != second)
+        })
+    }
+
+    /// Largest differences of the places of two states, of sliders on a line and in a plane.
+    fn gaps(&self, a: &StaticStep, b: &StaticStep) -> (f64, f64) {
+        let (mut on_line, mut in_plane) = (0.0_f64, 0.0_f64);
+        for (contact, (a, b)) in self.model.contacts().iter().zip(a.places.iter().zip(&b.places)) {
+            let most = if contact.sliders() > 1 {
+                &mut in_plane
+            } else {
+                &mut on_line
+            };
+            for (a, b) in a.iter().zip(b) {
+                *most = most.max((a - b).abs());
+            }
+        }
+        (on_line, in_plane)
     }
 
     /// The state under a load, with sliders that are dragged from given places.

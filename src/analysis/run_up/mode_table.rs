@@ -240,7 +240,7 @@ impl ModeTable {
         self.ln.iter().map(|ln| ln.exp())
     }
 
-    /// What leads to amplitudes beyond the last node.
+    /// Tells how to reach amplitudes beyond the last node.
     pub fn what_goes_further(&self) -> &'static str {
         if self.turns {
             "a mode whose amplitude has a fold there does not describe larger motions: integrate them with a time sweep"
