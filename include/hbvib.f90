@@ -148,7 +148,7 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_LIFE_DUTIES = 0, HBVIB_LIFE_PEAK = 1
    ! hbvib_life_event
    integer(c_int32_t), parameter, public :: HBVIB_LIFE_SLIPS = 0, HBVIB_LIFE_STICKS = 1, HBVIB_LIFE_LOST = 2, &
-      HBVIB_LIFE_PRESSED = 3, HBVIB_LIFE_LIMIT = 4
+      HBVIB_LIFE_PRESSED = 3, HBVIB_LIFE_LIMIT = 4, HBVIB_LIFE_JUMPS = 5
    ! hbvib_data_kind
    integer(c_int32_t), parameter, public :: HBVIB_DATA_RESPONSE = 0, HBVIB_DATA_AMPLITUDE = 1, HBVIB_DATA_PEAK = 2, &
       HBVIB_DATA_BACKBONE = 3, HBVIB_DATA_LINEAR_MODE = 4

@@ -3590,8 +3590,8 @@ typedef struct {
   double error;
   /// The largest displacement without the memory of sliders.
   double without_memory;
-  /// Amplitude of the highest steady resonance at the degree of freedom, in the fundamental; NaN
-  /// without one.
+  /// Largest displacement of the highest steady resonance at the degree of freedom, with the mean
+  /// and all harmonics as `largest` has it; NaN without one.
   double steady;
   /// The largest displacement by the slow flow alone.
   double slow_flow;
@@ -5008,6 +5008,8 @@ typedef enum {
   HBVIB_LIFE_PRESSED = 3,
   /// The amplitude passes the limit.
   HBVIB_LIFE_LIMIT = 4,
+  /// The motion that was followed ends, as at a fold, or its peak does: the amplitude jumps.
+  HBVIB_LIFE_JUMPS = 5,
 } hbvib_life_event;
 
 /// Options of hbvib_life. Fill it by hbvib_life_options_init, then set contacts and vibration.
@@ -5094,7 +5096,8 @@ hbvib_status hbvib_life_info_init(hbvib_life_info *i, size_t size_of_i);
 /// per cycle by its rate times the work of friction of a cycle over its area, and the loads are
 /// those of the model less stiffness times depths. Rates are those of the steady vibration under
 /// the loads of the time. Steps keep the tolerance, and end where a contact begins or ends to slip
-/// or loses its load.
+/// or loses its load. Where the motion ends, as at a fold, the life tells that and goes on with the
+/// one that is found there.
 ///
 /// model           stays as it is: it has the loads without wear.
 /// solver          options, tolerance 0 or not; NULL: the defaults.

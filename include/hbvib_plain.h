@@ -308,7 +308,8 @@ typedef enum {
   HBVIB_LIFE_STICKS = 1,
   HBVIB_LIFE_LOST = 2,
   HBVIB_LIFE_PRESSED = 3,
-  HBVIB_LIFE_LIMIT = 4
+  HBVIB_LIFE_LIMIT = 4,
+  HBVIB_LIFE_JUMPS = 5
 } hbvib_life_event;
 typedef enum {
   HBVIB_DATA_RESPONSE = 0,

@@ -705,6 +705,7 @@ static const Constant CONSTANTS[] = {
   {"LIFE_LOST", 2},
   {"LIFE_PRESSED", 3},
   {"LIFE_LIMIT", 4},
+  {"LIFE_JUMPS", 5},
   {"DATA_RESPONSE", 0},
   {"DATA_AMPLITUDE", 1},
   {"DATA_PEAK", 2},

@@ -863,6 +863,7 @@ class LifeEvent(enum.IntEnum):
     LOST   A contact loses its load.
     PRESSED   A contact gets load again.
     LIMIT   The amplitude passes the limit.
+    JUMPS   The motion that was followed ends, as at a fold, or its peak does: the amplitude jumps.
 
     >>> import hbvib
     >>> hbvib.LifeEvent(0)
@@ -873,6 +874,7 @@ class LifeEvent(enum.IntEnum):
     LOST = 2
     PRESSED = 3
     LIMIT = 4
+    JUMPS = 5
 
 
 class DataKind(enum.IntEnum):

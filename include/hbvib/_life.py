@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class LifeEvents(NamedTuple):
     """Events of a life, arrays in their order; made by Model.life.
 
-    kind     numbers of LifeEvent: SLIPS, STICKS, LOST, PRESSED, LIMIT.
-    contact  numbers of contacts, -1 for the amplitude that passes the limit.
+    kind     numbers of LifeEvent: SLIPS, STICKS, LOST, PRESSED, LIMIT, JUMPS.
+    contact  numbers of contacts, -1 for the amplitude that passes the limit or jumps.
 
     >>> import hbvib
     >>> import numpy as np

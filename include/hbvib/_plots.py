@@ -122,12 +122,36 @@ def campbell_response(found: CampbellResponse, diagram: Optional[Campbell], ax: 
     size = 30 + 3000 * np.nan_to_num(found.damping_ratio)
     points = ax.scatter(found.speed / unit, found.omega / unit, c=found.amplitude, s=size, cmap="viridis", zorder=3)
     ax.figure.colorbar(points, ax=ax, label="peak amplitude")
-    for speed, omega, damping, factor in zip(found.speed / unit, found.omega / unit, found.damping_ratio, found.factor):
+    several = np.unique(found.force_factor).size > 1
+    labels = []
+    for speed, omega, damping, factor, force in zip(found.speed / unit, found.omega / unit, found.damping_ratio, found.factor,
+                                                    found.force_factor):
         if np.isfinite(omega):
-            text = f"D {100 * damping:.2g} %" + (f", run-up {factor:.2f}" if np.isfinite(factor) else "")
-            ax.annotate(text, (speed, omega), textcoords="offset points", xytext=(8, -10), fontsize=8)
+            text = (f"F x {force:.3g}: " if several else "") + f"D {100 * damping:.2g} %"
+            labels.append((speed, omega, text + (f", run-up {factor:.2f}" if np.isfinite(factor) else "")))
     ax.set(xlabel="speed / Hz" if hertz else "speed Omega", ylabel="frequency / Hz" if hertz else "angular frequency omega")
+    _label_apart(ax, labels)
     return ax
+
+
+def _label_apart(ax: Any, labels: Sequence[tuple[float, float, str]], size: float = 8) -> None:
+    """Writes labels (x, y, text) beside their points, below each other where they would overlap, and left of points near the edge."""
+    if not labels:
+        return
+    points, step = 72 / ax.figure.dpi, 1.3 * size
+    places = ax.transData.transform([label[:2] for label in labels]) * points
+    edge = ax.bbox.x1 * points
+    taken: list[tuple[float, float, float]] = []  # left, right and height of each label, in points of the page
+    for at in np.lexsort((places[:, 0], -places[:, 1])):
+        (x, y), (*of, text) = places[at], labels[at]
+        width = 0.6 * size * len(text)
+        left = x + size if x + size + width <= edge else x - size - width
+        height = y - step
+        while any(left < right and begin < left + width and abs(height - other) < step for begin, right, other in taken):
+            height -= 0.25 * step
+        taken.append((left, left + width, height))
+        line = dict(arrowstyle="-", color="0.7", linewidth=0.5) if height < y - 1.5 * step else None
+        ax.annotate(text, of, textcoords="offset points", xytext=(left - x, height - y), fontsize=size, arrowprops=line)
 
 
 def interference(waves: Interference, speed: float, orders: Sequence[int], ax: Any, hertz: bool,

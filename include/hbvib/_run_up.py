@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Iterable, NamedTuple, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,13 @@ if TYPE_CHECKING:
     from ._results import Campbell, FloatArray
 
 
+def _of(kind: str, name: str, value: Any) -> Any:
+    """The handle of a Model or a Branch; TypeError where `value` is none."""
+    if not isinstance(value, _Owner) or kind not in (base.__name__ for base in type(value).__mro__):
+        raise TypeError(f"{name} is of type {type(value).__name__}, needs a {kind}")
+    return value.handle
+
+
 class RunUp(NamedTuple):
     """A run-up by the slow flow of a mode; made by Branch.run_up.
 
@@ -29,7 +36,7 @@ class RunUp(NamedTuple):
     error          relative error of it, from three leads of the integration in time. Where integrated is 0 it is an estimate that may be
                    too small, NaN where the mode has no steady resonance to compare with.
     without_memory the largest displacement without the memory of sliders.
-    steady         amplitude of the highest steady resonance; factor is largest over it.
+    steady         largest displacement of the highest steady resonance, with the mean and all harmonics; factor is largest over it.
     slow_flow      the largest displacement by the slow flow alone.
     integrated     turns that were integrated in time; 0: none.
 
@@ -56,7 +63,7 @@ class RunUp(NamedTuple):
 
     @property
     def factor(self) -> float:
-        """Largest displacement over the amplitude of the steady resonance.
+        """Largest displacement over that of the steady resonance; what constant forces displace is in both.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.02)
@@ -107,7 +114,9 @@ class CampbellResponse(NamedTuple):
     engine_order, force_factor, speed, omega   of each resonance: omega = engine_order speed.
     amplitude      steady peak of the mode under its force, of the fundamental of its response degree of freedom.
     damping_ratio  there.
-    passed         largest amplitude of a passage at the acceleration; factor is passed over amplitude, NaN without acceleration.
+    passed         largest amplitude of a passage at the acceleration; factor is passed over amplitude, NaN without acceleration. It has no
+                   error told: it leaves out the memory of sliders, an error of the first order in the acceleration. Branch.run_up
+                   tells the error for one rate.
     error          of the steady peak: its amplitude over the computed one, minus 1.
 
     >>> import hbvib
@@ -181,12 +190,19 @@ def campbell_response(resonances: Sequence[tuple[Branch, Model, float]], acceler
     """
     factors = _array("force_factors", force_factors, np.float64, [None])
     blocks = []
-    for mode, model, order in resonances:
+    if not isinstance(resonances, Iterable):
+        raise TypeError(f"resonances is of type {type(resonances).__name__}, needs a list of (mode, model, engine order)")
+    for number, one in enumerate(resonances):
+        try:
+            mode, model, order = one
+        except (TypeError, ValueError):
+            raise ValueError(f"resonances[{number}] is not (mode, model, engine order)") from None
+        branch, loaded = _of("Branch", f"resonances[{number}][0]", mode), _of("Model", f"resonances[{number}][1]", model)
         options = _new("hbvib_campbell_options", engine_order=order, acceleration=acceleration, damping_ratio=damping_ratio,
                        model_damping=model_damping)
         rows = np.empty((8, factors.size))
         rows[0], rows[1] = order, factors
-        _call("hbvib_campbell_response", mode.handle, model.handle, options, None, factors.size, factors, *rows[2:])
+        _call("hbvib_campbell_response", branch, loaded, options, None, factors.size, factors, *rows[2:])
         blocks.append(rows)
     columns: Any = np.concatenate(blocks, axis=1) if blocks else np.empty((8, 0))
     return CampbellResponse(*columns)
@@ -219,6 +235,7 @@ class _RunUps(_Owner):
         >>> abs(up.largest / truth.largest - 1) < up.error < 0.01
         True
         """
+        loaded = _of("Model", "model", model)
         begin, end = _range("omega", omega, "run_up(model, (0.8, 1.3), rate=1e-3)")
         options = _new("hbvib_run_up_options", omega_start=begin, omega_stop=end, rate=rate, dof=dof, force_factor=force_factor,
                        damping_ratio=damping_ratio, model_damping=model_damping, integrated_turns=integrated_turns)
@@ -228,7 +245,7 @@ class _RunUps(_Owner):
         count, info = ctypes.c_int64(), _new("hbvib_run_up_info")
         with _Guard() as guard:
             hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
-            status = _call("hbvib_branch_run_up", self.handle, model.handle, options, hooks, room, *lists, count, info, guard=guard)
+            status = _call("hbvib_branch_run_up", self.handle, loaded, options, hooks, room, *lists, count, info, guard=guard)
         if status == Status.STOPPED_BY_CALLER:
             raise Stopped(_sentence(status), Status(status), 0)
         time, frequency, amplitude, modal = (values[:count.value].copy() for values in lists)
@@ -258,6 +275,7 @@ class _RunUps(_Owner):
         >>> flight.cycles.round(), bool(flight.damage[0] > 0)
         (array([910., 501., 260.]), True)
         """
+        loaded = _of("Model", "model", model)
         times, speeds = _array("time", time, np.float64, [None]), _array("speed", speed, np.float64, [None])
         if times.size != speeds.size:
             raise ValueError(f"speed has {speeds.size} numbers, needs {times.size} as time has")
@@ -275,7 +293,7 @@ class _RunUps(_Owner):
         passages, count, error = np.empty((room, 6)), ctypes.c_int64(), ctypes.c_double()
         with _Guard() as guard:
             hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
-            status = _call("hbvib_branch_mission", self.handle, model.handle, options, hooks, amplitude, cycles, damage, room, passages,
+            status = _call("hbvib_branch_mission", self.handle, loaded, options, hooks, amplitude, cycles, damage, room, passages,
                            count, error, guard=guard)
         if status == Status.STOPPED_BY_CALLER:
             raise Stopped(_sentence(status), Status(status), 0)

@@ -44,8 +44,8 @@ class _StaticHistories(_Owner):
         straight steps. The places of a step are the residual state that the history has left there. Sliders begin at
         those of set_slider; the first load is reached at once.
 
-        factors   of the constant forces, one for each step; None: 1.
-        speeds    fixed speeds of rotation, one for each step; None: that of the model.
+        factors   of the constant forces, one for each step, or a number for one step; None: 1.
+        speeds    fixed speeds of rotation, likewise; None: that of the model.
         phase, cancel   as in forced_response; Stopped is raised where they stop it.
 
         >>> import hbvib
@@ -58,7 +58,8 @@ class _StaticHistories(_Owner):
         >>> model.set_sliders(history.places[-1])
         """
         model = cast("Model", self)
-        given = [None if values is None else _array(name, values) for name, values in (("factors", factors), ("speeds", speeds))]
+        given = [None if values is None else np.atleast_1d(_array(name, values))
+                 for name, values in (("factors", factors), ("speeds", speeds))]
         steps = max([len(values) for values in given if values is not None] or [1])
         for name, values in zip(("factors", "speeds"), given):
             if values is not None and values.shape != (steps,):

@@ -5,7 +5,7 @@
 //! number of cycles; its steps are those of `life_step`, with the exact derivatives of the works by the loads. Where a
 //! contact begins or ends to slip, or loses its load, rates keep their value and change their slope: a step ends there.
 
-use crate::analysis::life_step::{LifeState, LifeStep, ahead};
+use crate::analysis::life_step::{LifeState, LifeStep, Taken, ahead};
 use crate::analysis::worn_state::{WornState, WornStates};
 use crate::error::{Error, Result, Status, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
@@ -24,6 +24,12 @@ const LIFE_APPROACH: f64 = 0.7;
 /// Vibrations that are looked at to find an event. A cap: two or three on the chains of the tests.
 const LIFE_EVENT_TRIES: usize = 12;
 
+/// Error of a step over the tolerance. Chosen: errors of some steps add up to less than the tolerance where they do not grow.
+const LIFE_STEP_SHARE: f64 = 0.5;
+
+/// Half of the change of depths over the tolerance within which a jump is located. Chosen: rates that jump by their own size err by less.
+const LIFE_JUMP: f64 = 0.15;
+
 /// Halvings of a step that fails. A cap.
 const LIFE_HALVINGS: usize = 40;
 
@@ -40,6 +46,9 @@ pub enum LifeEventKind {
     Pressed,
     /// The amplitude passes the limit.
     Limit,
+    /// The motion that was followed ends, as at a fold, or where a peak meets a minimum: amplitude and works jump, and the life goes on with
+    /// the motion that is found there.
+    Jumps,
 }
 
 /// An event of a life.
@@ -119,7 +128,7 @@ pub fn life(model: &Model, solver: &SolverOptions, options: &LifeOptions<'_>, ho
     };
     let first = LifeState {
         n: 0.0,
-        worn: states.at(&depths, hooks)?,
+        worn: states.at(&depths, None, hooks)?,
         depths,
     };
     let mut walk = Walk {
@@ -156,6 +165,17 @@ pub fn life(model: &Model, solver: &SolverOptions, options: &LifeOptions<'_>, ho
     Ok(walk.found)
 }
 
+/// How it is tried whether the motion ends, or a step was only long.
+#[derive(Clone, Copy)]
+enum Doubt {
+    /// A step is tried over half of the way.
+    Half,
+    /// It went on: a step is tried over the rest.
+    Rest,
+    /// The motion ends, and halves lead to the place.
+    None,
+}
+
 struct Walk<'a> {
     states: WornStates<'a>,
     options: &'a LifeOptions<'a>,
@@ -172,8 +192,12 @@ impl Walk<'_> {
         let mut last: Option<LifeStep> = None;
         let mut delta = self.first_length(&at, end);
         let mut halvings = 0;
-        // The event that lies ahead, once a step has met it.
+        // The event that lies ahead, once a step has met it, and the cycles at which the motion seems another one.
         let mut met: Option<f64> = None;
+        let mut broken: Option<(f64, Doubt)> = None;
+        let tolerance = LIFE_STEP_SHARE * self.options.tolerance;
+        // Length and error over the tolerance of the step before.
+        let mut before: Option<(f64, f64)> = None;
         while at.n < end {
             hooks.interrupt().phase(Phase::Continuation, at.n / end)?;
             if self.found.steps >= self.options.most_steps {
@@ -187,29 +211,49 @@ impl Walk<'_> {
                 let (distance, across) = (event - at.n, self.length_across(&at, rest)?);
                 if distance <= across {
                     at = self.across(&at, (event, across), hooks)?;
-                    (last, met) = (None, None);
+                    (last, met, broken, before) = (None, None, None, None);
                     delta = self.first_length(&at, end - at.n);
                     continue;
                 }
                 delta = delta.min(distance - LIFE_APPROACH * across);
             }
+            if let Some((other, doubt)) = broken {
+                // Twice the length of a jump: its half is one, and rounding of the cycles does not matter.
+                if other - at.n <= 2.0 * self.length_of_jump(&at) {
+                    at = self.jump(&at, other, hooks)?;
+                    (last, met, broken, before) = (None, None, None, None);
+                    delta = self.first_length(&at, end - at.n);
+                    continue;
+                }
+                delta = match doubt {
+                    Doubt::Rest => other - at.n,
+                    Doubt::Half | Doubt::None => delta.min(0.5 * (other - at.n)),
+                };
+            }
             // A step of the last hundredth alone would be lost on rounding.
-            let length = if met.is_some() {
+            let length = if met.is_some() || broken.is_some() {
                 delta
             } else if delta >= 0.99 * rest {
                 rest
             } else {
                 delta.min(0.5 * rest).max(0.01 * delta)
             };
-            let step = match LifeStep::take(
-                &mut self.states,
-                (&at, length),
-                last.as_ref(),
-                self.options.tolerance,
-                hooks,
-            ) {
+            let step = match LifeStep::take(&mut self.states, (&at, length), last.as_ref(), tolerance, hooks) {
                 Err(e) if matches!(e.status, Status::StoppedByCaller | Status::OutOfMemory) => return Err(e),
-                Ok(Some(step)) => step,
+                Ok(Taken::Step(step)) => step,
+                Ok(Taken::Refused(share)) => {
+                    delta = length * (0.9 * share.powf(-0.2)).clamp(0.1, 0.9);
+                    broken = self.too_short(&at, length).or(broken);
+                    continue;
+                }
+                Ok(Taken::Broken) => {
+                    let doubt = match broken {
+                        Some((_, Doubt::Rest | Doubt::None)) => Doubt::None,
+                        _ => Doubt::Half,
+                    };
+                    broken = Some((at.n + length, doubt));
+                    continue;
+                }
                 failed => {
                     halvings += 1;
                     if halvings > LIFE_HALVINGS {
@@ -237,19 +281,31 @@ impl Walk<'_> {
                 continue;
             }
             let (error, power) = step.error(&self.states, last.as_ref())?;
-            let share = error / self.options.tolerance;
-            let factor = if share > 0.0 {
+            let share = error / tolerance;
+            let mut factor = if share > 0.0 {
                 0.9 * share.powf(-1.0 / f64::from(power))
             } else {
                 4.0
             };
             if share > 1.0 {
                 delta = length * factor.clamp(0.1, 0.9);
+                broken = self.too_short(&at, length).or(broken);
                 continue;
             }
             halvings = 0;
             self.record(&step, hooks)?;
+            // The constant of the error goes on to change as it did from the step before (Gustafsson 1994, 10.1145/198429.198437).
+            if let (Some((length, earlier)), true) = (before, share > 0.0) {
+                factor = factor.min(0.9 * step.length() / length * (earlier / (share * share)).powf(0.2));
+            }
+            before = (power == 5).then_some((step.length(), share));
             delta = length * factor.clamp(0.2, 4.0);
+            broken = broken
+                .filter(|(other, _)| step.to.n < *other)
+                .map(|(other, doubt)| match doubt {
+                    Doubt::Half => (other, Doubt::Rest),
+                    doubt => (other, doubt),
+                });
             at = step.to.clone();
             last = Some(step);
         }
@@ -264,6 +320,55 @@ impl Walk<'_> {
         } else {
             rest
         }
+    }
+
+    /// Cycles within which a jump is located.
+    fn length_of_jump(&self, at: &LifeState) -> f64 {
+        let speed = at.size_of(&self.states, &at.worn.rate);
+        (LIFE_JUMP * self.options.tolerance / speed.max(f64::MIN_POSITIVE)).max(4.0 * f64::EPSILON * at.n)
+    }
+
+    /// The end of a refused step that is no longer than a jump: rates cannot change so quickly within one motion.
+    fn too_short(&self, at: &LifeState, length: f64) -> Option<(f64, Doubt)> {
+        (length <= self.length_of_jump(at)).then_some((at.n + length, Doubt::None))
+    }
+
+    /// The state at cycles at which the motion is another one, so near that rates are constant up to there. Where a still shorter step shows
+    /// that the motion goes on, there is no event.
+    fn jump(&mut self, at: &LifeState, n: f64, hooks: &mut Hooks<'_>) -> Result<LifeState> {
+        let mut depths = try_copy(&at.depths, CONTEXT)?;
+        for (h, rate) in depths.iter_mut().zip(&at.worn.rate) {
+            *h += (n - at.n) * rate;
+        }
+        let to = LifeState {
+            n,
+            worn: self.states.at(&depths, at.near(), hooks)?,
+            depths,
+        };
+        self.tell(&at.worn, &to.worn, n)?;
+        self.tell_jump(at, &to)?;
+        let step = LifeStep::short(at, to)?;
+        self.record(&step, hooks)?;
+        Ok(step.to)
+    }
+
+    /// Records a jump where two states next to each other are not the same motion.
+    fn tell_jump(&mut self, at: &LifeState, to: &LifeState) -> Result<()> {
+        if at.goes_on_to(to, (&self.states, self.options.tolerance))? {
+            return Ok(());
+        }
+        // Next to a fold the motion may jump to the unstable one, which ends there, too: that is one jump.
+        let near = to.n - 4.0 * self.length_of_jump(at);
+        let told = self.found.events.last();
+        if told.is_some_and(|event| event.kind == LifeEventKind::Jumps && event.cycles >= near) {
+            return Ok(());
+        }
+        let event = LifeEvent {
+            cycles: to.n,
+            kind: LifeEventKind::Jumps,
+            contact: None,
+        };
+        try_push(&mut self.found.events, event, CONTEXT)
     }
 
     /// Cycles before and after an event that a straight step may go: twice these, it errs by the share of the tolerance.
@@ -295,7 +400,7 @@ impl Walk<'_> {
                 let depths = ahead((at, last), n - at.n)?;
                 LifeState {
                     n,
-                    worn: self.states.at(&depths, hooks)?,
+                    worn: self.states.at(&depths, at.near(), hooks)?,
                     depths,
                 }
             };
@@ -354,13 +459,14 @@ impl Walk<'_> {
             }
             let to = LifeState {
                 n: if length < end - at.n { at.n + length } else { end },
-                worn: self.states.at(&depths, hooks)?,
+                worn: self.states.at(&depths, at.near(), hooks)?,
                 depths,
             };
             if at.worn.changes(&to.worn) {
                 // Next to the event the state tells it best.
                 let root = self.estimate(at, &to).unwrap_or(event);
                 self.tell(&at.worn, &to.worn, root.clamp(at.n, to.n))?;
+                self.tell_jump(at, &to)?;
             } else if to.n < end {
                 length = (2.0 * length).min(end - at.n);
                 continue;
@@ -478,15 +584,14 @@ impl Walk<'_> {
                 at.worn.works[j]
             };
         }
-        let share = within.map_or(1.0, |step| (n - step.from.n) / step.length());
-        let before = within.map_or(at.worn.omega, |step| step.from.worn.omega);
+        let omega = within.map_or(at.worn.omega, |step| step.omega(n));
         let point = LifePoint {
             cycles: n,
             depths,
             loads,
             works,
             amplitude: within.map_or(at.worn.amplitude, |step| step.amplitude(n)),
-            omega: before + share * (at.worn.omega - before),
+            omega,
         };
         try_push(&mut self.found.points, point, CONTEXT)
     }

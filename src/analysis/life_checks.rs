@@ -1,8 +1,14 @@
 //! Checks of the options of a life for a model.
 
-use crate::error::{Result, fail};
+use crate::error::{Result, fail, try_copy};
 use crate::model::Model;
 use crate::options::{LifeFollow, LifeOptions, MOST_WORN};
+
+/// Difference of an entry of the static stiffness from its mirrored one, relative to the largest entry. Rounding of condensed stiffnesses.
+const LIFE_SYMMETRY: f64 = 1e-6;
+
+/// Pivot over its diagonal entry that is taken for zero. Rounding: some hundred contacts lose six digits.
+const LIFE_SEMIDEFINITE: f64 = 1e-9;
 
 impl LifeOptions<'_> {
     /// Checks the options for a model.
@@ -32,13 +38,15 @@ impl LifeOptions<'_> {
             }
             last = n;
         }
-        for (name, value, low, high) in [
-            ("tolerance", self.tolerance, 1e-12, 0.1),
-            ("limit", self.limit, 0.0, f64::MAX),
-        ] {
-            if !(value >= low && value <= high) {
-                return fail!(Argument, "{name} = {value}, needs {low} .. {high}");
-            }
+        if !(1e-12..=0.1).contains(&self.tolerance) {
+            return fail!(Argument, "tolerance = {:?}, needs 1e-12 .. 0.1", self.tolerance);
+        }
+        if !(self.limit.is_finite() && self.limit >= 0.0) {
+            return fail!(
+                Argument,
+                "limit = {:?}, needs a finite amplitude > 0, or 0 for none",
+                self.limit
+            );
         }
         if self.most_steps == 0 {
             return fail!(Argument, "most_steps = 0, needs at least 1");
@@ -111,15 +119,24 @@ impl LifeOptions<'_> {
                 self.stiffness[i]
             );
         }
+        let most = self.stiffness.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
         for j in 0..n {
-            if self.stiffness[j * n + j] < 0.0 {
-                return fail!(
-                    Argument,
-                    "stiffness of contact {} is {}, needs a number >= 0",
-                    self.wear[j].contact,
-                    self.stiffness[j * n + j]
-                );
+            for i in 0..j {
+                let (s, mirrored) = (self.stiffness[j * n + i], self.stiffness[i * n + j]);
+                if (s - mirrored).abs() > LIFE_SYMMETRY * most {
+                    return fail!(
+                        Argument,
+                        "stiffness[{i},{j}] = {s:?}, but stiffness[{j},{i}] = {mirrored:?}: a static stiffness is symmetric"
+                    );
+                }
             }
+        }
+        if let Some((j, pivot)) = negative_pivot(self.stiffness, n)? {
+            return fail!(
+                Argument,
+                "stiffness is not positive semidefinite: pivot {j}, contact {}, is {pivot:.3e}; loads would grow by wear",
+                self.wear[j].contact
+            );
         }
         Ok(())
     }
@@ -159,4 +176,36 @@ impl LifeOptions<'_> {
         }
         Ok(())
     }
+}
+
+/// The first pivot of a symmetric matrix without exchange, and its value, that is negative beyond rounding; a pivot of zero whose row is not
+/// zero counts as negative. None where the matrix is positive semidefinite.
+fn negative_pivot(matrix: &[f64], n: usize) -> Result<Option<(usize, f64)>> {
+    let mut a = try_copy(matrix, "the static stiffness of a life")?;
+    for j in 0..n {
+        let (pivot, own) = (a[j * n + j], matrix[j * n + j]);
+        let rounding = LIFE_SEMIDEFINITE * own.abs();
+        if pivot < -rounding || own < 0.0 {
+            return Ok(Some((j, pivot)));
+        }
+        let (left, right) = a.split_at_mut((j + 1) * n);
+        let column = &left[j * n..];
+        if pivot <= rounding {
+            // In a semidefinite matrix what is left of such a row is rounding, too: |a_ij|² <= a_ii a_jj.
+            for i in j + 1..n {
+                let bound = LIFE_SEMIDEFINITE.sqrt() * (own * matrix[i * n + i].abs()).sqrt();
+                if column[i].abs() > bound {
+                    return Ok(Some((j, pivot)));
+                }
+            }
+            continue;
+        }
+        for (k, other) in right.chunks_exact_mut(n).enumerate() {
+            let factor = column[j + 1 + k] / pivot;
+            for (x, l) in other[j + 1..].iter_mut().zip(&column[j + 1..]) {
+                *x -= factor * l;
+            }
+        }
+    }
+    Ok(None)
 }

@@ -6,8 +6,9 @@
 //!
 //! the integral of the cubic that has f and f′ of both ends (the two-point formula of Obreshkov's family, stable for all steps). Newton's
 //! matrix is I − Δ/2 J₁ + Δ²/12 J₁². A last correction δ that is so small that J changes by it less than the tolerance is made by the
-//! derivatives, f₁ + J₁ δ, without another vibration. The error of a step is Δ⁵/720 h⁗′; the fifth derivative follows from the cubics of two neighbours. A first
-//! step is held to Δ⁴/72 h⁗ instead.
+//! derivatives, f₁ + J₁ δ, without another vibration. The error of a step is Δ⁵/720 h⁗′; the fifth derivative follows from the cubics of
+//! two neighbours, and so does the error of the cubic of the amplitude, Δ⁴/384 a⁗. A first step is held to Δ⁴/72 h⁗ instead. A step whose
+//! first vibration shows an error far above the tolerance is refused at once, and so is one whose ends are not the same motion.
 
 use crate::analysis::worn_state::{WornState, WornStates};
 use crate::error::{Result, try_copy, try_vec};
@@ -26,11 +27,28 @@ const LIFE_STEP_RESIDUAL: f64 = 0.05;
 /// the secant of the derivatives takes about half of it away, which leaves the residual above.
 const LIFE_STEP_CORRECTED: f64 = 0.1;
 
+/// Error over the tolerance from which a step is refused at its first vibration. Chosen: iterations change the estimate by less.
+const LIFE_STEP_HOPELESS: f64 = 3.0;
+
+/// Part of the change of the amplitude, or of a work, that derivatives at both ends may leave within one motion. Chosen: it is the square
+/// of the relative change over 12 where that is exponential, and a jump leaves all of it.
+const LIFE_STEP_BREAK: f64 = 0.2;
+
+/// Error over the tolerance that a broken step has at least, as long as its error is above the tolerance: its length is quartered.
+const LIFE_STEP_BROKEN: f64 = 1e3;
+
+/// Smallest part, relative, that counts as a break, over the square root of the tolerance: 1e-3 by default. Chosen: what a kink that is no
+/// event leaves in a step of the wanted error is below.
+const LIFE_STEP_BREAK_FLOOR: f64 = 0.1;
+
 /// Size of a last correction over the tolerance that may not meet the begin of slip: it is told that much too late. Chosen.
 const LIFE_STEP_UNSEEN: f64 = 3.0;
 
-/// Terms of the series by which a step is predicted. Chosen: the last one is 1e-4 where loads halve.
+/// Terms of the series by which a part of a step is predicted, in which rates change at most by their own size: the next one is 3e-6.
 const LIFE_STEP_TERMS: usize = 8;
+
+/// Most parts of a predicted step. A cap on work.
+const LIFE_STEP_PARTS: usize = 64;
 
 /// A state at a number of cycles.
 #[derive(Clone, Debug)]
@@ -51,6 +69,26 @@ fn times(matrix: &[f64], x: &[f64]) -> Result<Vec<f64>> {
 }
 
 impl LifeState {
+    /// The vibration and its depths, from which one nearby goes on.
+    pub fn near(&self) -> Option<(&WornState, &[f64])> {
+        Some((&self.worn, &self.depths))
+    }
+
+    /// Whether another state is the continuation of this one: its amplitude and works follow from the derivatives at both.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn goes_on_to(&self, other: &Self, (states, tolerance): (&WornStates<'_>, f64)) -> Result<bool> {
+        let mut change = try_copy(&other.depths, CONTEXT)?;
+        for (x, before) in change.iter_mut().zip(&self.depths) {
+            *x -= before;
+        }
+        let (left, whole) = self
+            .worn
+            .breaks(&other.worn, &change, states.work_unit(self.worn.amplitude));
+        Ok(left <= LIFE_STEP_BREAK_FLOOR * tolerance.sqrt() || left <= LIFE_STEP_BREAK * whole)
+    }
+
     /// f′ = J f.
     ///
     /// # Errors
@@ -85,12 +123,25 @@ pub(super) struct LifeStep {
     /// The end.
     pub to: LifeState,
     second: [Vec<f64>; 2],
-    /// h⁗ of the cubic of the rates.
+    /// h⁗ of the cubic of the rates, and a‴ of that of the amplitude.
     fourth: Vec<f64>,
+    third: f64,
+}
+
+/// Outcome of a step.
+pub(super) enum Taken {
+    /// It is solved, or a contact changes its state within it.
+    Step(LifeStep),
+    /// Its error over the tolerance is so large that it was not solved.
+    Refused(f64),
+    /// Its ends are not the same motion.
+    Broken,
+    /// Its equations were not solved.
+    Failed,
 }
 
 impl LifeStep {
-    /// Steps from a state by `delta`; `last` is the step before. None where the equations were not solved.
+    /// Steps from a state by `delta`; `last` is the step before.
     ///
     /// # Errors
     /// Those of the states.
@@ -100,29 +151,47 @@ impl LifeStep {
         last: Option<&Self>,
         tolerance: f64,
         hooks: &mut Hooks<'_>,
-    ) -> Result<Option<Self>> {
+    ) -> Result<Taken> {
         let count = from.depths.len();
         let start = from.second()?;
         let mut depths = ahead((from, last), delta)?;
         let mut system = Lu::new(count, 1)?;
+        let mut before: Option<LifeState> = None;
         for _ in 0..LIFE_STEP_ITERATIONS {
             if depths.iter().any(|h| !h.is_finite()) {
-                return Ok(None);
+                return Ok(Taken::Failed);
             }
             let to = LifeState {
                 n: from.n + delta,
-                worn: states.at(&depths, hooks)?,
+                worn: states.at(&depths, before.as_ref().unwrap_or(from).near(), hooks)?,
                 depths: try_copy(&depths, CONTEXT)?,
             };
             let second = to.second()?;
+            let changes = from.worn.changes(&to.worn);
+            if !changes {
+                let fourth = fourth((from, &to), [&start, &second])?;
+                let bends = (&fourth[..], third((from, &to)));
+                let (error, _) = error_of(states, &to, (bends, delta), last)?;
+                let share = error / tolerance;
+                if last.is_some() && share > LIFE_STEP_HOPELESS {
+                    return Ok(Taken::Refused(share));
+                }
+                if !from.goes_on_to(&to, (states, tolerance))? {
+                    return Ok(if share > 1.0 {
+                        Taken::Refused(share.max(LIFE_STEP_BROKEN))
+                    } else {
+                        Taken::Broken
+                    });
+                }
+            }
             let (f0, f1) = (&from.worn.rate, &to.worn.rate);
             let mut gap = try_vec(count, 0.0, CONTEXT)?;
             for (j, gap) in gap.iter_mut().enumerate() {
                 let cubic = delta * (0.5 * (f0[j] + f1[j]) + delta / 12.0 * (start[j] - second[j]));
                 *gap = from.depths[j] + cubic - depths[j];
             }
-            if to.size_of(states, &gap) <= LIFE_STEP_RESIDUAL * tolerance {
-                return Self::whole(from, to, [start, second]).map(Some);
+            if changes || to.size_of(states, &gap) <= LIFE_STEP_RESIDUAL * tolerance {
+                return Self::whole(from, to, [start, second]).map(Taken::Step);
             }
             let jacobian = &to.worn.rate_by_depth;
             for (k, column) in jacobian.chunks_exact(count).enumerate() {
@@ -133,29 +202,26 @@ impl LifeStep {
                 }
             }
             if system.factor(&hooks.interrupt()).is_err() {
-                return Ok(None);
+                return Ok(Taken::Failed);
             }
             system.solve(&mut gap);
             if let Some(to) = corrected(states, (from, &to), &gap, (delta, tolerance))? {
                 let second = to.second()?;
-                return Self::whole(from, to, [start, second]).map(Some);
+                return Self::whole(from, to, [start, second]).map(Taken::Step);
             }
             for (h, gap) in depths.iter_mut().zip(&gap) {
                 *h += gap;
             }
+            before = Some(to);
         }
-        Ok(None)
+        Ok(Taken::Failed)
     }
 
     /// The step between two states that solve its equations, from the derivatives of their rates.
     fn whole(from: &LifeState, to: LifeState, second: [Vec<f64>; 2]) -> Result<Self> {
-        let delta = to.n - from.n;
-        let mut fourth = try_vec(from.depths.len(), 0.0, CONTEXT)?;
-        let (f0, f1) = (&from.worn.rate, &to.worn.rate);
-        for (j, x) in fourth.iter_mut().enumerate() {
-            *x = 6.0 * (2.0 * (f0[j] - f1[j]) / delta + second[0][j] + second[1][j]) / (delta * delta);
-        }
+        let fourth = fourth((from, &to), [&second[0], &second[1]])?;
         Ok(Self {
+            third: third((from, &to)),
             from: from.clone(),
             to,
             second,
@@ -173,21 +239,7 @@ impl LifeStep {
     /// # Errors
     /// `OutOfMemory`.
     pub fn error(&self, states: &WornStates<'_>, last: Option<&Self>) -> Result<(f64, i32)> {
-        let delta = self.length();
-        let mut error = try_copy(&self.fourth, CONTEXT)?;
-        let (factor, power) = match last {
-            Some(last) => {
-                for (x, y) in error.iter_mut().zip(&last.fourth) {
-                    *x -= y;
-                }
-                (delta.powi(5) / 360.0 / (delta + last.length()), 5)
-            }
-            None => (delta.powi(4) / 72.0, 4),
-        };
-        for x in &mut error {
-            *x *= factor;
-        }
-        Ok((self.to.size_of(states, &error), power))
+        error_of(states, &self.to, ((&self.fourth, self.third), self.length()), last)
     }
 
     /// Depths at n cycles, by the integral of the cubic of the rates.
@@ -228,9 +280,24 @@ impl LifeStep {
 
     /// Amplitude at n cycles, by the cubic through values and slopes of both ends.
     pub fn amplitude(&self, n: f64) -> f64 {
+        let [from, to] = [&self.from, &self.to];
+        self.through(
+            n,
+            [from.worn.amplitude, to.worn.amplitude],
+            [from.amplitude_slope(), to.amplitude_slope()],
+        )
+    }
+
+    /// Angular frequency at n cycles, likewise.
+    pub fn omega(&self, n: f64) -> f64 {
+        let [from, to] = [&self.from.worn, &self.to.worn];
+        let slope = |worn: &WornState| crate::linalg::dot(&worn.omega_by_depth, &worn.rate);
+        self.through(n, [from.omega, to.omega], [slope(from), slope(to)])
+    }
+
+    fn through(&self, n: f64, [a0, a1]: [f64; 2], slopes: [f64; 2]) -> f64 {
         let (delta, s) = (self.length(), (n - self.from.n) / self.length());
-        let (a0, a1) = (self.from.worn.amplitude, self.to.worn.amplitude);
-        let (g0, g1) = (delta * self.from.amplitude_slope(), delta * self.to.amplitude_slope());
+        let [g0, g1] = slopes.map(|slope| delta * slope);
         a0 + s * (g0 + s * (3.0 * (a1 - a0) - 2.0 * g0 - g1 + s * (2.0 * (a0 - a1) + g0 + g1)))
     }
 
@@ -243,16 +310,64 @@ impl LifeStep {
         Ok(Self {
             second: [zero()?, zero()?],
             fourth: zero()?,
+            third: 0.0,
             from: from.clone(),
             to,
         })
     }
 }
 
+/// h⁗ of the cubic of the rates between two states, from f′ of both.
+fn fourth((from, to): (&LifeState, &LifeState), second: [&[f64]; 2]) -> Result<Vec<f64>> {
+    let delta = to.n - from.n;
+    let mut fourth = try_vec(from.depths.len(), 0.0, CONTEXT)?;
+    let (f0, f1) = (&from.worn.rate, &to.worn.rate);
+    for (j, x) in fourth.iter_mut().enumerate() {
+        *x = 6.0 * (2.0 * (f0[j] - f1[j]) / delta + second[0][j] + second[1][j]) / (delta * delta);
+    }
+    Ok(fourth)
+}
+
+/// The estimated error of a step to a state, and the power of the length with which it grows.
+fn error_of(
+    states: &WornStates<'_>,
+    to: &LifeState,
+    ((fourth, third), delta): ((&[f64], f64), f64),
+    last: Option<&LifeStep>,
+) -> Result<(f64, i32)> {
+    let mut error = try_copy(fourth, CONTEXT)?;
+    let (factor, power) = match last {
+        Some(last) => {
+            for (x, y) in error.iter_mut().zip(&last.fourth) {
+                *x -= y;
+            }
+            (delta.powi(5) / 360.0 / (delta + last.length()), 5)
+        }
+        None => (delta.powi(4) / 72.0, 4),
+    };
+    for x in &mut error {
+        *x *= factor;
+    }
+    // The cubic of the amplitude errs by Δ⁴/384 a⁗.
+    let amplitude = last.map_or(0.0, |last| {
+        let fourth = (third - last.third) / (0.5 * (delta + last.length()));
+        fourth.abs() * delta.powi(4) / 384.0 / to.worn.amplitude.abs().max(f64::MIN_POSITIVE)
+    });
+    Ok((to.size_of(states, &error).max(amplitude), power))
+}
+
+/// a‴ of the cubic of the amplitude between two states.
+fn third((from, to): (&LifeState, &LifeState)) -> f64 {
+    let delta = to.n - from.n;
+    let (a0, a1) = (from.worn.amplitude, to.worn.amplitude);
+    6.0 * (2.0 * (a0 - a1) / delta + from.amplitude_slope() + to.amplitude_slope()) / (delta * delta)
+}
+
 /// The end of a step moved by a correction of its depths, by derivatives; `None` where these change too much along it, or a contact may
 /// change its state.
 ///
-/// J changes by (J₁ − J₀) t along the correction δ = t (h₁ − h₀), and the equations of the step by Δ/12 (J₁ − J₀) δ of f′ = Jf.
+/// The correction is δ = t (h₁ − h₀) + δ⊥. Along the step J changes by t (J₁ − J₀), which is taken into account and unknown to the second
+/// order in t; across it the change is unknown, and alters the equations of the step by Δ/12 (J₁ − J₀) δ⊥ or so, by f′ = J f.
 fn corrected(
     states: &WornStates<'_>,
     (from, to): (&LifeState, &LifeState),
@@ -267,12 +382,25 @@ fn corrected(
     for (x, before) in turned.iter_mut().zip(&from.worn.rate_by_depth) {
         *x -= before;
     }
-    let mut unknown = times(&turned, correction)?;
-    for x in &mut unknown {
-        *x *= delta / 12.0;
+    let (mut along, mut square) = (0.0, 0.0);
+    for ((c, h), before) in correction.iter().zip(&to.depths).zip(&from.depths) {
+        along += c * (h - before);
+        square += (h - before) * (h - before);
     }
-    if to.size_of(states, &unknown) > LIFE_STEP_CORRECTED * tolerance {
-        return Ok(None);
+    let share = if square > 0.0 { along / square } else { 0.0 };
+    let mut parts = [try_copy(correction, CONTEXT)?, try_copy(correction, CONTEXT)?];
+    for (k, c) in correction.iter().enumerate() {
+        let own = share * (to.depths[k] - from.depths[k]);
+        (parts[0][k], parts[1][k]) = (share.abs() * own, c - own);
+    }
+    for part in &parts {
+        let mut unknown = times(&turned, part)?;
+        for x in &mut unknown {
+            *x *= delta / 12.0;
+        }
+        if to.size_of(states, &unknown) > LIFE_STEP_CORRECTED * tolerance {
+            return Ok(None);
+        }
     }
     let sticks = to
         .worn
@@ -283,12 +411,6 @@ fn corrected(
     if sticks && to.size_of(states, correction) > LIFE_STEP_UNSEEN * tolerance {
         return Ok(None);
     }
-    let (mut along, mut square) = (0.0, 0.0);
-    for ((c, h), before) in correction.iter().zip(&to.depths).zip(&from.depths) {
-        along += c * (h - before);
-        square += (h - before) * (h - before);
-    }
-    let share = if square > 0.0 { along / square } else { 0.0 };
     let mut moved = to.clone();
     let worn = &mut moved.worn;
     for (k, &c) in correction.iter().enumerate() {
@@ -296,8 +418,10 @@ fn corrected(
         worn.amplitude += c * worn.amplitude_by_depth[k];
         worn.omega += c * worn.omega_by_depth[k];
         for j in 0..count {
-            worn.rate[j] += c * to.worn.rate_by_depth[k * count + j];
-            worn.works[j] += c * to.worn.work_by_depth[k * count + j];
+            let at = k * count + j;
+            let bent = to.worn.work_by_depth[at] - from.worn.work_by_depth[at];
+            worn.rate[j] += c * (to.worn.rate_by_depth[at] + 0.5 * share * turned[at]);
+            worn.works[j] += c * (to.worn.work_by_depth[at] + 0.5 * share * bent);
         }
     }
     for (x, change) in worn.rate_by_depth.iter_mut().zip(&turned) {
@@ -330,22 +454,51 @@ pub(super) fn ahead((at, last): (&LifeState, Option<&LifeStep>), delta: f64) -> 
             *x = (j - before) / step.length();
         }
     }
-    // With f = Σ f_k tᵏ: (k + 1) f_{k+1} = J f_k + J′ f_{k−1}, and the depths are the integral.
+    // With f = Σ f_k tᵏ: (k + 1) f_{k+1} = J f_k + J′ f_{k−1}, and the depths are the integral. Where rates change by more than their size
+    // the series is made anew, part by part.
+    let count = at.depths.len();
+    let mut there = try_copy(jacobian, CONTEXT)?;
+    crate::linalg::add_product(delta, &slope, &[1.0], &mut there);
+    let size = largest_row(jacobian, count)?.max(largest_row(&there, count)?) * delta;
+    // A NaN gives one part.
+    let parts = size.min(LIFE_STEP_PARTS as f64).ceil().max(1.0);
+    let length = delta / parts;
+    let mut here = there;
     let mut depths = try_copy(&at.depths, CONTEXT)?;
-    let mut term = try_copy(&at.worn.rate, CONTEXT)?;
-    let mut before = try_vec(term.len(), 0.0, CONTEXT)?;
-    let mut power = delta;
-    for k in 0..LIFE_STEP_TERMS {
-        for (h, f) in depths.iter_mut().zip(&term) {
-            *h += f * power / (k + 1) as f64;
+    let mut rate = try_copy(&at.worn.rate, CONTEXT)?;
+    for part in 0..parts as usize {
+        let distance = part as f64 * length;
+        for (x, (j, by)) in here.iter_mut().zip(jacobian.iter().zip(&slope)) {
+            *x = j + distance * by;
         }
-        let mut next = times(jacobian, &term)?;
-        crate::linalg::add_product(1.0, &slope, &before, &mut next);
-        for x in &mut next {
-            *x /= (k + 1) as f64;
+        let mut term = try_copy(&rate, CONTEXT)?;
+        let mut before = try_vec(count, 0.0, CONTEXT)?;
+        let mut power = 1.0;
+        rate.fill(0.0);
+        for k in 0..LIFE_STEP_TERMS {
+            for ((h, rate), f) in depths.iter_mut().zip(&mut rate).zip(&term) {
+                *h += f * power * length / (k + 1) as f64;
+                *rate += f * power;
+            }
+            let mut next = times(&here, &term)?;
+            crate::linalg::add_product(1.0, &slope, &before, &mut next);
+            for x in &mut next {
+                *x /= (k + 1) as f64;
+            }
+            before = core::mem::replace(&mut term, next);
+            power *= length;
         }
-        before = core::mem::replace(&mut term, next);
-        power *= delta;
     }
     Ok(depths)
+}
+
+/// The largest sum of the moduli of a row.
+fn largest_row(matrix: &[f64], count: usize) -> Result<f64> {
+    let mut sums = try_vec(count, 0.0, CONTEXT)?;
+    for column in matrix.chunks_exact(count.max(1)) {
+        for (sum, x) in sums.iter_mut().zip(column) {
+            *sum += x.abs();
+        }
+    }
+    Ok(sums.iter().fold(0.0, |most, sum| most.max(*sum)))
 }

@@ -11,6 +11,7 @@ pub(super) mod other_modes;
 mod slider_memory;
 pub(super) mod slow_flow;
 mod slow_path;
+mod steady_motion;
 
 use crate::analysis::run_up::chirp::Chirp;
 use crate::analysis::run_up::integrated::integrate;
@@ -20,6 +21,7 @@ use crate::analysis::run_up::slider_memory::{Defect, SliderMemory};
 pub use crate::analysis::run_up::slow_flow::RunUpTurn;
 use crate::analysis::run_up::slow_flow::SlowFlow;
 use crate::analysis::run_up::slow_path::SlowPath;
+use crate::analysis::run_up::steady_motion::largest_steady;
 use crate::analysis::synthesis::{Load, SynthesisPeak, load_of, synthesise_with};
 use crate::error::{Result, fail};
 use crate::interrupt::Interrupt;
@@ -61,12 +63,13 @@ pub struct RunUp {
     pub integrated: usize,
     /// The largest displacement without the memory of sliders.
     pub without_memory: f64,
-    /// Amplitude of the highest steady resonance, with all harmonics of the mode; NaN without one.
+    /// Largest displacement of the highest steady resonance within the mode, in the measure of `largest`: with the mean and all harmonics;
+    /// NaN without one.
     pub steady: f64,
 }
 
 impl RunUp {
-    /// Largest displacement over that of the steady resonance.
+    /// Largest displacement over that of the steady resonance. What constant forces displace is in both.
     #[must_use]
     pub fn factor(&self) -> f64 {
         self.largest / self.steady
@@ -131,7 +134,10 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
             break;
         }
     }
-    let steady = highest.as_ref().map_or(f64::NAN, |peak| peak.at.response.norm());
+    let steady = match &highest {
+        Some(peak) => largest_steady(&table, &others, &peak.at)?,
+        None => f64::NAN,
+    };
     let of_steady = highest
         .as_ref()
         .map_or(f64::NAN, |peak| peak.validity.error.abs() * steady);

@@ -12,6 +12,7 @@ use crate::options::{Duty, ForcedOptions, LifeFollow, LifeOptions, SolverOptions
 use crate::results::{Branch, Special};
 use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, work_at_fixed_motion};
 use num_complex::Complex64;
+use std::rc::Rc;
 
 const CONTEXT: &str = "the state of a life";
 
@@ -43,12 +44,57 @@ pub(super) struct WornState {
     pub slips: Vec<bool>,
     /// Whether each contact has lost its load.
     pub lost: Vec<bool>,
+    /// Harmonics of the vibration of each duty, from which those of a state nearby are sought; empty ones give no guess.
+    motions: Rc<Vec<Vec<Complex64>>>,
 }
 
 impl WornState {
     /// Whether a contact slips or is lost in the one state and not in the other.
     pub fn changes(&self, other: &Self) -> bool {
         self.slips != other.slips || self.lost != other.lost
+    }
+
+    /// Parts of amplitude and works by which another state, at a change of the depths, is not the continuation of this one: what the mean
+    /// of the derivatives at both ends leaves of each change, of the third order in the change of the depths, and the larger of the change
+    /// itself and of the mean of the moduli. Both are relative to the amplitude, or to the largest work, at least `work`.
+    pub fn breaks(&self, other: &Self, change: &[f64], work: f64) -> (f64, f64) {
+        let n = change.len();
+        let mut worst = (0.0_f64, 0.0_f64);
+        let mut part = |[from, to]: [f64; 2], [begin, end]: [f64; 2], unit: f64| {
+            let left = (to - from - 0.5 * (begin + end)).abs() / unit;
+            if unit > 0.0 && left > worst.0 {
+                worst = (left, (to - from).abs().max(0.5 * (begin.abs() + end.abs())) / unit);
+            }
+        };
+        let along = |by_depth: &[f64], j: usize, rows: usize| -> f64 {
+            by_depth
+                .iter()
+                .skip(j)
+                .step_by(rows)
+                .zip(change)
+                .map(|(by, h)| by * h)
+                .sum()
+        };
+        let both = [self, other];
+        let unit = both.iter().fold(0.0_f64, |most, state| most.max(state.amplitude.abs()));
+        part(
+            both.map(|state| state.amplitude),
+            both.map(|state| along(&state.amplitude_by_depth, 0, 1)),
+            unit,
+        );
+        let unit = self
+            .works
+            .iter()
+            .chain(&other.works)
+            .fold(work, |most, work| most.max(*work));
+        for j in 0..n {
+            part(
+                both.map(|state| state.works[j]),
+                both.map(|state| along(&state.work_by_depth, j, n)),
+                unit,
+            );
+        }
+        worst
     }
 }
 
@@ -71,10 +117,6 @@ pub(super) struct WornStates<'a> {
     options: &'a LifeOptions<'a>,
     /// Loads without wear.
     new: Vec<f64>,
-    /// Harmonics of the vibration of each duty, the guess of the next one.
-    guesses: Vec<Vec<Complex64>>,
-    /// Frequency of the peak that is followed, and its derivatives by the loads at these loads.
-    peak: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Number of states so far.
     pub solutions: usize,
     /// Largest friction force of the first state, by its work and amplitude: the scale of loads that are 0 at rest.
@@ -99,17 +141,11 @@ impl<'a> WornStates<'a> {
             }
             try_push(&mut new, model.contacts()[wear.contact].load(), CONTEXT)?;
         }
-        let duties = match options.follow {
-            LifeFollow::Duties(duties) => duties.len(),
-            LifeFollow::Peak { .. } => 0,
-        };
         Ok(Self {
             model,
             solver: *solver,
             options,
             new,
-            guesses: try_vec(duties, Vec::new(), CONTEXT)?,
-            peak: None,
             solutions: 0,
             friction: None,
         })
@@ -141,6 +177,11 @@ impl<'a> WornStates<'a> {
         self.new.iter().fold(friction, |most, n| most.max(n.abs()))
     }
 
+    /// A quarter of the largest work of the first state, at the amplitude of a state: changes of works are seen relative to it.
+    pub fn work_unit(&self, amplitude: f64) -> f64 {
+        self.friction.unwrap_or(0.0) * amplitude.abs()
+    }
+
     /// The load of a contact under depths, which may be negative.
     pub fn raw_load(&self, i: usize, depths: &[f64]) -> f64 {
         let lost: f64 = depths.iter().enumerate().map(|(j, h)| self.stiffness(i, j) * h).sum();
@@ -159,11 +200,16 @@ impl<'a> WornStates<'a> {
         Ok(model)
     }
 
-    /// The steady vibration under depths.
+    /// The steady vibration under depths; `near`: that under depths nearby, which it goes on from.
     ///
     /// # Errors
     /// Those of the solver; `StoppedNoPeak` where there is no peak.
-    pub fn at(&mut self, depths: &[f64], hooks: &mut Hooks<'_>) -> Result<WornState> {
+    pub fn at(
+        &mut self,
+        depths: &[f64],
+        near: Option<(&WornState, &[f64])>,
+        hooks: &mut Hooks<'_>,
+    ) -> Result<WornState> {
         let n = self.len();
         self.solutions += 1;
         let model = self.worn_model(depths)?;
@@ -188,21 +234,31 @@ impl<'a> WornStates<'a> {
             omega_by_depth: try_vec(n, 0.0, CONTEXT)?,
             slips: try_vec(n, false, CONTEXT)?,
             lost,
+            motions: Rc::default(),
         };
         match self.options.follow {
             LifeFollow::Peak {
                 omega_start,
                 omega_stop,
             } => {
-                let found = self.peak((&model, &state), (omega_start, omega_stop), hooks)?;
+                let near = near.map(|(state, at)| {
+                    let by_depth = state.omega_by_depth.iter().zip(depths.iter().zip(at));
+                    let shift: f64 = by_depth.map(|(by, (to, from))| by * (to - from)).sum();
+                    state.omega + if shift.abs() < 0.1 * state.omega { shift } else { 0.0 }
+                });
+                let found = self.peak((&model, &state), ((omega_start, omega_stop), near), hooks)?;
                 self.add(&mut state, &found, 1.0);
             }
             LifeFollow::Duties(duties) => {
                 let total: f64 = duties.iter().map(|duty| duty.share * duty.omega).sum();
+                let mut motions = Vec::new();
                 for (d, duty) in duties.iter().enumerate() {
-                    let found = self.duty((&model, &state), (d, duty), hooks)?;
+                    let guess = near.and_then(|(state, _)| state.motions.get(d));
+                    let (found, motion) = self.duty((&model, &state), (duty, guess), hooks)?;
+                    try_push(&mut motions, motion, CONTEXT)?;
                     self.add(&mut state, &found, duty.share * duty.omega / total);
                 }
+                state.motions = Rc::new(motions);
             }
         }
         if self.friction.is_none() {
@@ -260,12 +316,13 @@ impl<'a> WornStates<'a> {
         self.solver.response_dof = Some(branch.response_dof());
     }
 
+    /// The vibration of a duty, and its harmonics as a guess of the next one.
     fn duty(
         &mut self,
         (model, state): (&Model, &WornState),
-        (d, duty): (usize, &Duty),
+        (duty, guess): (&Duty, Option<&Vec<Complex64>>),
         hooks: &mut Hooks<'_>,
-    ) -> Result<Vibration> {
+    ) -> Result<(Vibration, Vec<Complex64>)> {
         let scaled;
         let model = if duty.force.to_bits() == 1.0_f64.to_bits() {
             model
@@ -280,9 +337,8 @@ impl<'a> WornStates<'a> {
             omega_stop: duty.omega,
             ..ForcedOptions::default()
         };
-        let guess = &self.guesses[d];
         let guessed = ForcedOptions {
-            guess: (!guess.is_empty()).then_some(guess),
+            guess: guess.map(Vec::as_slice).filter(|guess| !guess.is_empty()),
             ..options
         };
         let mut branch = quietly(model, &self.solver, &guessed, hooks);
@@ -294,7 +350,7 @@ impl<'a> WornStates<'a> {
         let mut x = try_vec((branch.harmonics() + 1) * branch.ndof(), Complex64::ZERO, CONTEXT)?;
         branch.harmonics_at(0, &mut x)?;
         // A guess brings the harmonics that it has: none that vanish by symmetry.
-        self.guesses[d] = if branch
+        let motion = if branch
             .carried_at(0)
             .is_some_and(|carried| carried.len() == branch.harmonics() + 1)
         {
@@ -302,25 +358,18 @@ impl<'a> WornStates<'a> {
         } else {
             Vec::new()
         };
-        self.vibration(
-            (model, state),
-            (&branch, 0, branch.stored_amplitude(0)),
-            None,
-            &hooks.interrupt(),
-        )
+        let at = (&branch, 0, branch.stored_amplitude(0));
+        let found = self.vibration((model, state), at, None, &hooks.interrupt())?;
+        Ok((found, motion))
     }
 
+    /// The vibration in the peak next to a frequency, or in the highest one of a range.
     fn peak(
         &mut self,
         (model, state): (&Model, &WornState),
-        (start, stop): (f64, f64),
+        ((start, stop), near): ((f64, f64), Option<f64>),
         hooks: &mut Hooks<'_>,
     ) -> Result<Vibration> {
-        let n = self.len();
-        let near = self.peak.as_ref().map(|(omega, by_load, loads)| {
-            let shift: f64 = (0..n).map(|k| by_load[k] * (state.loads[k] - loads[k])).sum();
-            omega + if shift.abs() < 0.1 * omega { shift } else { 0.0 }
-        });
         let mut ranges = [(start, stop); 4];
         if let Some(omega) = near {
             for (range, width) in ranges.iter_mut().zip(PEAK_WINDOWS) {
@@ -362,10 +411,7 @@ impl<'a> WornStates<'a> {
                 };
             }
             let at = (&branch, peak.point, peak.amplitude);
-            let found = self.vibration((model, state), at, Some(&by_load), &stop)?;
-            let loads = crate::error::try_copy(&state.loads, CONTEXT)?;
-            self.peak = Some((peak.omega, by_load, loads));
-            return Ok(found);
+            return self.vibration((model, state), at, Some(&by_load), &stop);
         }
         fail!(
             StoppedNoPeak,

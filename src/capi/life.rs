@@ -39,6 +39,8 @@ pub enum hbvib_life_event {
     HBVIB_LIFE_PRESSED = 3,
     /// The amplitude passes the limit.
     HBVIB_LIFE_LIMIT = 4,
+    /// The motion that was followed ends, as at a fold, or its peak does: the amplitude jumps.
+    HBVIB_LIFE_JUMPS = 5,
 }
 
 /// Options of hbvib_life. Fill it by hbvib_life_options_init, then set contacts and vibration.
@@ -296,7 +298,8 @@ impl Wanted {
 /// per cycle by its rate times the work of friction of a cycle over its area, and the loads are
 /// those of the model less stiffness times depths. Rates are those of the steady vibration under
 /// the loads of the time. Steps keep the tolerance, and end where a contact begins or ends to slip
-/// or loses its load.
+/// or loses its load. Where the motion ends, as at a fold, the life tells that and goes on with the
+/// one that is found there.
 ///
 /// model           stays as it is: it has the loads without wear.
 /// solver          options, tolerance 0 or not; NULL: the defaults.
@@ -403,6 +406,7 @@ pub unsafe extern "C" fn hbvib_life(
                     LifeEventKind::Lost => hbvib_life_event::HBVIB_LIFE_LOST,
                     LifeEventKind::Pressed => hbvib_life_event::HBVIB_LIFE_PRESSED,
                     LifeEventKind::Limit => hbvib_life_event::HBVIB_LIFE_LIMIT,
+                    LifeEventKind::Jumps => hbvib_life_event::HBVIB_LIFE_JUMPS,
                 };
                 put(event_cycles, i, event.cycles);
                 put(event_kind, i, kind as i64);

@@ -94,8 +94,8 @@ pub struct hbvib_run_up_info {
     pub error: f64,
     /// The largest displacement without the memory of sliders.
     pub without_memory: f64,
-    /// Amplitude of the highest steady resonance at the degree of freedom, in the fundamental; NaN
-    /// without one.
+    /// Largest displacement of the highest steady resonance at the degree of freedom, with the mean
+    /// and all harmonics as `largest` has it; NaN without one.
     pub steady: f64,
     /// The largest displacement by the slow flow alone.
     pub slow_flow: f64,

@@ -2,6 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::options::SynthesisOptions;
+use crate::options::sweep_options::check_passage;
 use std::f64::consts::TAU;
 
 /// Most turns of the forces in a run-up by the slow flow; slower ones are steady. A cap.
@@ -52,26 +53,15 @@ impl RunUpOptions {
     /// # Errors
     /// `Argument`, `NotFinite` or `Index`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
-        for (name, value) in [
-            ("omega_start", self.omega_start),
-            ("omega_stop", self.omega_stop),
-            ("rate", self.rate),
-        ] {
-            if !value.is_finite() {
-                return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");
-            }
-            if value <= 0.0 {
-                return fail!(Argument, "{name} = {value}, needs a number > 0");
-            }
-        }
+        check_passage((self.omega_start, self.omega_stop), self.rate)?;
         if let Some(dof) = self.dof.filter(|&dof| dof >= ndof) {
             return fail!(Index, "dof = {dof}, needs 0 .. {}", ndof.saturating_sub(1));
         }
         let turns = self.turns();
-        if turns > RUN_UP_MOST_TURNS {
+        if !(1.0..=RUN_UP_MOST_TURNS).contains(&turns) {
             return fail!(
                 Argument,
-                "rate = {}: the run-up has {turns:.3e} turns, needs at most {RUN_UP_MOST_TURNS:e}; a slower one is steady",
+                "rate = {:e}: the run-up has {turns:.3e} turns of the forces, needs 1 .. {RUN_UP_MOST_TURNS:e}; a slower one is steady",
                 self.rate
             );
         }

@@ -60,18 +60,7 @@ impl<'a> SweepOptions<'a> {
     /// # Errors
     /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
-        for (name, value) in [
-            ("omega_start", self.omega_start),
-            ("omega_stop", self.omega_stop),
-            ("rate", self.rate),
-        ] {
-            if !value.is_finite() {
-                return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");
-            }
-            if value <= 0.0 {
-                return fail!(Argument, "{name} = {value}, needs a number > 0");
-            }
-        }
+        check_passage((self.omega_start, self.omega_stop), self.rate)?;
         if self.dof >= ndof {
             return fail!(Index, "dof = {}, needs 0 .. {}", self.dof, ndof.saturating_sub(1));
         }
@@ -79,10 +68,32 @@ impl<'a> SweepOptions<'a> {
         if turns > MOST_TURNS {
             return fail!(
                 Argument,
-                "rate = {}: the sweep has {turns:.3e} turns, needs at most {MOST_TURNS:e}",
+                "rate = {:e}: the sweep has {turns:.3e} turns, needs at most {MOST_TURNS:e}",
                 self.rate
             );
         }
         self.first().check(ndof)
     }
+}
+
+/// Checks the frequencies of a passage and its rate.
+///
+/// # Errors
+/// `Argument` or `NotFinite`, naming the field, its value and its range.
+pub(super) fn check_passage((start, stop): (f64, f64), rate: f64) -> Result<()> {
+    for (name, value) in [("omega_start", start), ("omega_stop", stop), ("rate", rate)] {
+        if !value.is_finite() {
+            return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");
+        }
+        if value <= 0.0 {
+            return fail!(Argument, "{name} = {value:?}, needs a number > 0");
+        }
+    }
+    if start.to_bits() == stop.to_bits() {
+        return fail!(
+            Argument,
+            "omega_start = omega_stop = {start:?}, needs two different angular frequencies; at one the motion is steady"
+        );
+    }
+    Ok(())
 }

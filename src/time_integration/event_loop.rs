@@ -200,6 +200,8 @@ pub(crate) struct EventLoop {
     dependent: Vec<Option<Mode>>,
     /// Sliders that have moved in some lapse since [`Self::clear_moved`].
     pub moved: Vec<bool>,
+    /// Directions in which they have moved since then: up, down.
+    pub directions: Vec<[bool; 2]>,
     /// Steps of the last lapse, and the most that one may take.
     pub steps: usize,
     pub most_steps: usize,
@@ -225,6 +227,7 @@ impl EventLoop {
             falls: try_vec(count, None, CONTEXT)?,
             dependent: try_vec(count, None, CONTEXT)?,
             moved: try_vec(count, false, CONTEXT)?,
+            directions: try_vec(count, [false; 2], CONTEXT)?,
             steps: 0,
             most_steps: EVENT_LOOP_MOST_STEPS,
             bounds: (f64::INFINITY, f64::INFINITY),
@@ -240,6 +243,18 @@ impl EventLoop {
     /// Clears the record of sliders that have moved.
     pub fn clear_moved(&mut self) {
         self.moved.fill(false);
+        self.directions.fill([false; 2]);
+    }
+
+    /// Notes that the slider of an element moves, if it does. One that opens is free in both directions.
+    fn note(&mut self, i: usize) {
+        let mode = self.modes[i];
+        self.moved[i] |= mode.moves_slider();
+        match mode {
+            Mode::Slip(sign) => self.directions[i][usize::from(sign < 0.0)] = true,
+            Mode::Open => self.directions[i] = [true; 2],
+            _ => {}
+        }
     }
 
     /// Integrates a state from time 0 over one lapse, and with it what the observers request.
@@ -277,8 +292,8 @@ impl EventLoop {
                 }
             }
         }
-        for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
-            *moved |= mode.moves_slider();
+        for i in 0..self.modes.len() {
+            self.note(i);
         }
         let mut t = 0.0;
         let mut at_once = 0;
@@ -417,7 +432,7 @@ impl EventLoop {
             // A contact may move far less than the structure.
             let speed = largest_speed.min(system.omega * state.e[i].abs());
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
-            self.moved[i] |= self.modes[i].moves_slider();
+            self.note(i);
             if let Some(variation) = variation.as_deref_mut() {
                 couple_variation(e, i, (before, self.modes[i]), state, variation)?;
                 let after = self.modes[i];

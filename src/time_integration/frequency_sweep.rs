@@ -3,7 +3,7 @@
 //! The phase of harmonic 1 is φ(t) = ω_a t + ω′t²/2 from the periodic motion at ω_a on. The motion is integrated turn after
 //! turn, each from event to event as a periodic one: exactly between events where the contacts are linear between them.
 
-use crate::error::{Result, Status, fail, try_push};
+use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
 use crate::model::speed::Speed;
@@ -44,6 +44,9 @@ pub struct FrequencySweep {
     pub largest_time: f64,
     /// Changes of contacts.
     pub events: usize,
+    /// Place of each slider that has not moved in both directions between the periodic motion at the first frequency and the turn of the
+    /// largest displacement: it depends on where the search for that motion has left it. None for others.
+    pub(crate) held: Vec<Option<f64>>,
 }
 
 /// The work of [`crate::analysis::sweep`], with options that are checked.
@@ -80,6 +83,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         largest_omega: options.omega_start,
         largest_time: 0.0,
         events: 0,
+        held: try_vec(system.elements.len(), None, CONTEXT)?,
     };
     let mut quiet = Hooks {
         cancelled: hooks.cancelled,
@@ -92,6 +96,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         return Ok(found);
     }
     hooks.log(LogLevel::Info, "the periodic motion at the first frequency is found");
+    event_loop.clear_moved();
     let mut observed = Vec::new();
     for term in system.degrees.image(options.dof).1 {
         try_push(&mut observed, term, CONTEXT)?;
@@ -165,6 +170,10 @@ impl Walk<'_> {
                 found.largest = largest.size;
                 found.largest_time = time + largest.time;
                 found.largest_omega = omega + rate * largest.time;
+                for (i, (place, element)) in found.held.iter_mut().zip(&system.elements).enumerate() {
+                    let rests = element.slider().is_some() && event_loop.directions[i] != [true; 2];
+                    *place = rests.then(|| element.relative(&self.state.x)[0] - self.state.e[i]);
+                }
             }
             let progress = Progress {
                 point: found.turns.len(),

@@ -75,7 +75,8 @@ int main(void)
     d.acceleration = 5e-4;
     WORKS("resonances", hbvib_campbell_response(mode, model, &d, NULL, 2, factors, row[0], row[1], row[2], row[3], row[4], row[5]));
     EXPECT("speeds", row[1][0] == 2 * row[0][0] && row[1][1] == 2 * row[0][1]);
-    EXPECT("amplitudes", row[2][1] == info.steady && row[2][0] < row[2][1] && row[4][1] < row[2][1] && row[4][1] > 0.5 * row[2][1]);
+    /* One is the fundamental, the other the largest displacement. */
+    EXPECT("amplitudes", fabs(row[2][1] / info.steady - 1) < 0.01 && row[2][0] < row[2][1] && row[4][1] < row[2][1] && row[4][1] > 0.5 * row[2][1]);
     EXPECT("damping", row[3][1] > 0 && fabs(row[5][1]) < 0.01);
     d.acceleration = -5e-4;
     WORKS("downwards", hbvib_campbell_response(mode, model, &d, NULL, 2, factors, NULL, NULL, NULL, NULL, row[5], NULL));

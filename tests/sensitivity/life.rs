@@ -6,6 +6,7 @@ use hbvib::{
     Contact, Duty, Error, ForcedOptions, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, MatrixKind, MatrixView,
     Model, SolverOptions, Status, Wear, best_load_for_life, forced_response, life,
 };
+use std::f64::consts::PI;
 
 fn solver(harmonics: usize) -> SolverOptions {
     SolverOptions {
@@ -301,7 +302,11 @@ fn steps_end_where_a_contact_begins_to_slip() {
 type Case<'a> = (&'a str, &'a [f64], &'a [f64], &'a [f64], LifeFollow<'a>, f64);
 
 /// At an accuracy of 1e-4 a life takes at most thirty steady vibrations, also where a contact begins to slip, and with three contacts;
-/// sixty cycles in the peak, until all loads are worn off, take twice as many. Loads keep about the accuracy.
+/// loads and amplitudes keep it at all times.
+///
+/// Sixty cycles in the peak, until all loads are worn off, have a kink at 22 cycles, a jump to another peak at 33.8, and an amplitude that
+/// grows by sixty times in ten cycles. Steps of the fifth order in their error with lengths that are chosen without a mistake are 16 on the
+/// smooth parts alone, and the place of the jump takes ten halvings more. So thirty cannot be had there; up to 33 cycles they can.
 #[test]
 fn a_life_takes_thirty_vibrations() {
     let duties = at(0.62);
@@ -312,7 +317,7 @@ fn a_life_takes_thirty_vibrations() {
     };
     let steady = at(0.82);
     let separate = [1.0, 0.0, 0.0, 1.0];
-    let cases: [Case<'_>; 4] = [
+    let cases: [Case<'_>; 5] = [
         (
             "an event",
             &[1.6, 0.3],
@@ -338,6 +343,14 @@ fn a_life_takes_thirty_vibrations() {
             6.0,
         ),
         (
+            "in the peak up to its jump",
+            &[0.5, 0.8, 1.1],
+            &[0.05, 0.02, 0.08],
+            &coupled,
+            peak,
+            33.0,
+        ),
+        (
             "in the peak for long",
             &[0.5, 0.8, 1.1],
             &[0.05, 0.02, 0.08],
@@ -348,7 +361,7 @@ fn a_life_takes_thirty_vibrations() {
     ];
     for (name, loads, rates, stiffness, follow, end) in cases {
         let model = chain(loads);
-        let cycles = [0.0, 0.25 * end, end];
+        let cycles: Vec<f64> = (0..=40).map(|i| end * f64::from(i) / 40.0).collect();
         let run_at = |tolerance: f64| {
             let options = LifeOptions {
                 wear: &wear(rates),
@@ -369,6 +382,7 @@ fn a_life_takes_thirty_vibrations() {
         let unit = loads.iter().fold(0.0_f64, |most, n| most.max(*n));
         let mut error = 0.0_f64;
         for (a, b) in found.points.iter().zip(&exact.points) {
+            error = error.max((a.amplitude / b.amplitude - 1.0).abs());
             for (a, b) in a.loads.iter().zip(&b.loads) {
                 error = error.max((a - b).abs() / unit);
             }
@@ -377,8 +391,12 @@ fn a_life_takes_thirty_vibrations() {
             "{name}: {} vibrations in {} steps, error {error:.1e}, events {:?}",
             found.solutions, found.steps, found.events
         );
-        assert!(error < 5e-4, "{name}: {error:e}");
-        let most = if name.ends_with("for long") { 70 } else { 30 };
+        let (most, allowed) = match name {
+            "in the peak up to its jump" => (30, 5e-3),
+            "in the peak for long" => (70, 1e-2),
+            _ => (30, 1e-4),
+        };
+        assert!(error < allowed, "{name}: {error:e}");
         assert!(found.solutions <= most, "{name}: {} vibrations", found.solutions);
     }
 }
@@ -454,6 +472,48 @@ fn the_best_load_for_a_life_is_that_of_a_scan() {
     close("both ends", best.new, best.worn, 1e-5);
 }
 
+/// Against two hundred lives: none is better, and the best of them lies next to the factor found, a part of 1e-4 beside it.
+#[test]
+#[ignore = "two hundred lives; tests/deep.sh runs it"]
+fn the_best_load_for_a_life_is_that_of_two_hundred_lives() {
+    let model = chain(&[1.0]);
+    let options = LifeOptions {
+        wear: &wear(&[0.02]),
+        stiffness: &[1.0],
+        follow: LifeFollow::Peak {
+            omega_start: 0.6,
+            omega_stop: 2.0,
+        },
+        cycles: &[8.0],
+        tolerance: 1e-6,
+        ..LifeOptions::default()
+    };
+    let best = best_load_for_life(&model, &solver(3), &options, (0.2, 3.0), &mut Hooks::default()).unwrap();
+    let largest = |factor: f64| run(&chain(&[factor]), 3, &options).unwrap().largest.0;
+    // A hundred over the whole range, and a hundred next to the best one, 1e-4 from each other.
+    let wide: Vec<f64> = (0..100)
+        .map(|i| largest(0.2 * 15.0_f64.powf(f64::from(i) / 99.0)))
+        .collect();
+    let near: Vec<(f64, f64)> = (0..100)
+        .map(|i| best.factor * (1.0 + 1e-4 * (f64::from(i) - 49.5)))
+        .map(|factor| (factor, largest(factor)))
+        .collect();
+    let least = near
+        .iter()
+        .fold(near[0], |least, one| if one.1 < least.1 { *one } else { least });
+    println!(
+        "{best:?}, {least:?}, {:?}",
+        wide.iter().fold(f64::INFINITY, |a, b| a.min(*b))
+    );
+    assert!(
+        wide.iter()
+            .chain(near.iter().map(|one| &one.1))
+            .all(|a| best.amplitude <= a * (1.0 + 1e-6))
+    );
+    assert!((least.0 / best.factor - 1.0).abs() <= 1e-4, "{least:?} {best:?}");
+    assert!((least.1 / best.amplitude - 1.0).abs() <= 1e-4, "{least:?} {best:?}");
+}
+
 #[test]
 fn bad_options_are_named() {
     let model = chain(&[1.0]);
@@ -514,6 +574,12 @@ fn bad_options_are_named() {
         Status::Argument,
         "tolerance = 1",
     );
+    for (limit, words) in [
+        (-1.0, "limit = -1.0, needs a finite amplitude"),
+        (f64::NAN, "limit = NaN"),
+    ] {
+        refused(&LifeOptions { limit, ..options }, Status::Argument, words);
+    }
     refused(
         &LifeOptions {
             worn: &[-1.0],
@@ -543,4 +609,154 @@ fn bad_options_are_named() {
         Status::StoppedNoPeak,
         "no peak",
     );
+}
+
+/// A static stiffness is symmetric and takes energy: what is not is refused, rounding and a semidefinite one apart.
+#[test]
+fn a_stiffness_that_is_none_is_refused() {
+    let model = chain(&[1.0, 1.0]);
+    let duties = at(0.9);
+    let with = |stiffness: &[f64]| {
+        let options = LifeOptions {
+            wear: &wear(&[0.02, 0.02]),
+            stiffness,
+            follow: LifeFollow::Duties(&duties),
+            cycles: &[0.1],
+            ..LifeOptions::default()
+        };
+        run(&model, 3, &options)
+    };
+    for (stiffness, words) in [
+        ([1.0, 0.2, 0.1, 1.0], "stiffness[0,1] = 0.1, but stiffness[1,0] = 0.2"),
+        ([1.0, 2.0, 2.0, 1.0], "pivot 1"),
+        ([0.0, 0.5, 0.5, 1.0], "pivot 0"),
+        ([1.0, 0.0, 0.0, -1.0], "pivot 1"),
+    ] {
+        let error = with(&stiffness).unwrap_err();
+        assert_eq!(error.status, Status::Argument, "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+    for stiffness in [
+        [1.0, 1.0, 1.0, 1.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [1e9, 0.3e9 + 1e-3, 0.3e9, 1e9],
+        [1.0, -1.0, -1.0, 1.0],
+    ] {
+        let scaled = stiffness.map(|s| s / 1e9);
+        assert!(with(&scaled).is_ok(), "{:?}", with(&scaled).err());
+    }
+}
+
+/// A spring that softens beside a slider that wears, with one harmonic: the describing functions of both tell the load at which the motion
+/// of small amplitude ends. The life tells a jump there, and goes on with the other motion.
+#[test]
+fn a_life_tells_where_its_motion_ends_at_a_fold() {
+    let (kt, mu, load, omega, damping, bend, force) = (0.3, 0.3, 0.35, 0.85, 0.05, -0.1, 0.25);
+    let mut model = Model::new(1).unwrap();
+    for (which, value) in [
+        (MatrixKind::Mass, 1.0),
+        (MatrixKind::Stiffness, 1.0),
+        (MatrixKind::Damping, damping),
+    ] {
+        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, None, kt, mu, load)).unwrap();
+    model.add_contact(&Contact::cubic(0, None, 0.0, bend)).unwrap();
+    model.add_force(0, 1, force.into()).unwrap();
+    // Force that a steady amplitude needs.
+    let needed = |a: f64, n: f64| {
+        let slip = mu * n / kt;
+        let (stiffness, loss) = if a > slip {
+            let angle = (1.0 - 2.0 * slip / a).acos();
+            let work = 4.0 * mu * n * (a - slip);
+            (kt / PI * (angle - 0.5 * (2.0 * angle).sin()), work / (PI * a * a))
+        } else {
+            (kt, 0.0)
+        };
+        a * (1.0 + 0.75 * bend * a * a + stiffness - omega * omega).hypot(damping * omega + loss)
+    };
+    // The small motion is there as long as its largest force is more than that of the model.
+    let top = |n: f64| (1..=20_000).map(|i| needed(1e-4 * f64::from(i), n)).fold(0.0, f64::max);
+    let (mut low, mut high) = (0.0, load);
+    assert!(top(low) < force && top(high) > force);
+    while high - low > 1e-7 {
+        let middle = 0.5 * (low + high);
+        if top(middle) > force {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let cycles: Vec<f64> = (0..=400).map(f64::from).collect();
+    let (duties, rate) = (at(omega), 0.05);
+    let mut last = None;
+    for tolerance in [1e-4, 1e-6] {
+        let options = LifeOptions {
+            wear: &wear(&[rate]),
+            stiffness: &[1.0],
+            follow: LifeFollow::Duties(&duties),
+            cycles: &cycles,
+            tolerance,
+            ..LifeOptions::default()
+        };
+        let found = run(&model, 1, &options).unwrap();
+        assert_eq!(found.status, Status::Ok, "{:?}", found.reason);
+        let jumps: Vec<_> = found.events.iter().filter(|e| e.kind == LifeEventKind::Jumps).collect();
+        println!("{:?}, {} vibrations, load {low}", found.events, found.solutions);
+        assert_eq!(jumps.len(), 1, "{:?}", found.events);
+        let n = jumps[0].cycles;
+        let (before, after): (Vec<_>, Vec<_>) = found.points.iter().partition(|p| p.cycles <= n);
+        // The load there, along the straight line beside it.
+        let end = before[before.len() - 1];
+        let reached = end.loads[0] - (n - end.cycles) * rate * end.works[0];
+        close("load of the fold", reached, low, 0.02);
+        assert!(before.iter().all(|p| p.loads[0] >= low * (1.0 - 1e-3)) && after[0].loads[0] < low);
+        for p in &found.points {
+            close("force of the amplitude", needed(p.amplitude, p.loads[0]), force, 1e-2);
+        }
+        assert!(after.iter().all(|p| p.amplitude > 1.5 * end.amplitude));
+        assert!(last.is_none_or(|other: f64| (other - n).abs() < 2e-2), "{last:?} {n}");
+        last = Some(n);
+    }
+}
+
+/// A peak that meets a minimum: the life tells the jump to the other one. A sweep under the loads next to it has both peaks, or one.
+#[test]
+fn a_life_tells_where_its_peak_vanishes() {
+    let model = chain(&[0.5, 0.8, 1.1]);
+    let cycles = [30.0, 33.0, 33.7, 33.85, 36.0];
+    let options = LifeOptions {
+        wear: &wear(&[0.05, 0.02, 0.08]),
+        stiffness: &[1.0, -0.2, 0.0, -0.2, 1.2, -0.3, 0.0, -0.3, 0.9],
+        follow: LifeFollow::Peak {
+            omega_start: 0.6,
+            omega_stop: 1.1,
+        },
+        cycles: &cycles,
+        tolerance: 1e-6,
+        ..LifeOptions::default()
+    };
+    let solver = SolverOptions {
+        response_dof: Some(2),
+        ..solver(5)
+    };
+    let found = life(&model, &solver, &options, &mut Hooks::default()).unwrap();
+    assert_eq!(found.status, Status::Ok, "{:?}", found.reason);
+    println!("{:?}, {} vibrations", found.events, found.solutions);
+    let jumps: Vec<_> = found.events.iter().filter(|e| e.kind == LifeEventKind::Jumps).collect();
+    assert_eq!(jumps.len(), 1, "{:?}", found.events);
+    assert!((33.7..33.85).contains(&jumps[0].cycles), "{}", jumps[0].cycles);
+    for (point, is_there) in found.points[2..4].iter().zip([true, false]) {
+        let mut model = model.try_clone().unwrap();
+        for (contact, load) in point.loads.iter().enumerate() {
+            model.set_preload(contact, *load).unwrap();
+        }
+        let sweep = ForcedOptions {
+            omega_start: 0.63,
+            omega_stop: 0.67,
+            ..ForcedOptions::default()
+        };
+        let branch = forced_response(&model, &solver, &sweep, &mut Hooks::default()).unwrap();
+        assert_eq!(!branch.peaks().is_empty(), is_there, "{:?}", branch.peaks());
+    }
 }

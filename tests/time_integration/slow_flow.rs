@@ -268,7 +268,7 @@ fn ten_rates_of_random_models() {
         };
         let range = ModeOptions {
             log10_start: -3.0,
-            log10_stop: 1.5,
+            log10_stop: 2.5,
             ..ModeOptions::default()
         };
         let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
@@ -342,6 +342,16 @@ fn bad_run_ups_are_refused() {
     let at = |rate: f64| RunUpOptions { rate, ..options };
     refused(&model, at(0.0), Status::Argument, "rate = 0");
     refused(&model, at(1e-12), Status::Argument, "turns");
+    for (rate, word) in [(1e300, "rate = 1e300"), (1e-300, "rate = 1e-300")] {
+        refused(&model, at(rate), Status::Argument, word);
+        let error = run_up(&branch, &model, &at(rate), &Interrupt::none()).unwrap_err();
+        assert!(error.to_string().len() < 200, "{error}");
+    }
+    let one_place = RunUpOptions {
+        omega_stop: 0.9,
+        ..options
+    };
+    refused(&model, one_place, Status::Argument, "omega_start = omega_stop = 0.9");
     refused(&model, at(f64::NAN), Status::NotFinite, "rate");
     refused(
         &model,
@@ -434,4 +444,31 @@ fn an_added_damping_ratio_is_that_of_the_mode() {
         found.largest,
         truth.largest
     );
+}
+
+/// What a constant force displaces is in the largest displacement and in that of the steady resonance: a slow run-up reaches it, not more. So
+/// it does at a degree of freedom that is not that of the mode.
+#[test]
+fn a_slow_run_up_reaches_the_steady_displacement() {
+    let mut pressed = oscillator(0.05);
+    pressed.add_force(0, 0, 0.4.into()).unwrap();
+    let run = |model: &Model, range: (f64, f64), dof: Option<usize>| {
+        let options = RunUpOptions {
+            omega_start: range.0,
+            omega_stop: range.1,
+            rate: 5e-5,
+            dof,
+            ..RunUpOptions::default()
+        };
+        run_up(&mode(model, 9), model, &options, &Interrupt::none()).unwrap()
+    };
+    let chain = chain(0.03, 1);
+    for (name, found) in [
+        ("one mass", run(&oscillator(0.05), (0.95, 1.2), None)),
+        ("pressed", run(&pressed, (0.95, 1.2), None)),
+        ("another degree of freedom", run(&chain, (0.7, 0.85), Some(0))),
+    ] {
+        println!("{name}: {} of {}", found.largest, found.steady);
+        assert!((found.factor() - 1.0).abs() < 1e-2, "{name}: {}", found.factor());
+    }
 }

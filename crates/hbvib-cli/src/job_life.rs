@@ -9,8 +9,8 @@ use std::path::PathBuf;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LifePart {
-    /// Numbers of the contacts that wear.
-    pub contacts: Vec<usize>,
+    /// Contacts that wear: names, each with all pairs of its entry, or numbers from 0.
+    pub contacts: Vec<WornName>,
     /// Worn volume per work of friction.
     pub rate: f64,
     /// Area of each of these contacts.
@@ -38,6 +38,14 @@ pub struct LifePart {
     pub csv: Option<PathBuf>,
     /// Loads over the cycles. SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,
+}
+
+/// A contact by its name in the job, with all its pairs, or by its number from 0.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum WornName {
+    Number(usize),
+    Name(String),
 }
 
 fn one() -> f64 {

@@ -3,7 +3,7 @@
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::files::Files;
-use crate::job_life::LifePart;
+use crate::job_life::{LifePart, WornName};
 use crate::line_chart::{Chart, Line};
 use crate::map::Written;
 use crate::solver::solver;
@@ -15,12 +15,45 @@ use std::fs;
 /// Contacts, static stiffness and duties of a part.
 struct Described {
     wear: Vec<Wear>,
+    /// Numbers or names of the contacts, as the job has them.
+    labels: Vec<String>,
     stiffness: Vec<f64>,
     duties: Vec<Duty>,
 }
 
-fn described(part: &LifePart) -> Outcome<Described> {
-    let n = part.contacts.len();
+/// Numbers of the contacts that wear, and how the job calls them.
+fn contacts(part: &LifePart, built: &Built) -> Outcome<(Vec<usize>, Vec<String>)> {
+    let count = built.model.contacts().len();
+    let names = built.labels();
+    let (mut numbers, mut labels) = (Vec::new(), Vec::new());
+    for worn in &part.contacts {
+        match worn {
+            WornName::Number(number) if *number < count => {
+                numbers.push(*number);
+                labels.push(number.to_string());
+            }
+            WornName::Number(number) => {
+                let count = counted(count, "contact");
+                return Err(format!(
+                    "[life] contacts: {number}, but the model has {count}, counted from 0"
+                ));
+            }
+            WornName::Name(name) => {
+                let Some((_, range)) = built.names.iter().find(|(known, _)| known == name) else {
+                    let known: Vec<&str> = built.names.iter().map(|(known, _)| known.as_str()).collect();
+                    return Err(format!("[life] contacts: \"{name}\" is none of {}", known.join(", ")));
+                };
+                numbers.extend(range.clone());
+                labels.extend_from_slice(&names[range.clone()]);
+            }
+        }
+    }
+    Ok((numbers, labels))
+}
+
+fn described(part: &LifePart, built: &Built) -> Outcome<Described> {
+    let (contacts, labels) = contacts(part, built)?;
+    let n = contacts.len();
     let duties = match (part.hz, part.from_hz, part.to_hz) {
         (Some(hz), None, None) => vec![Duty {
             omega: TAU * hz,
@@ -41,7 +74,8 @@ fn described(part: &LifePart) -> Outcome<Described> {
         area: part.area,
     };
     Ok(Described {
-        wear: part.contacts.iter().map(wear).collect(),
+        wear: contacts.iter().map(wear).collect(),
+        labels,
         stiffness,
         duties,
     })
@@ -70,11 +104,7 @@ fn options<'a>(part: &'a LifePart, described: &'a Described) -> LifeOptions<'a> 
 /// # Errors
 /// A sentence.
 pub fn check(part: &LifePart, built: &Built) -> Outcome<()> {
-    described(part)?;
-    if let Some(contact) = part.contacts.iter().find(|&&k| k >= built.model.contacts().len()) {
-        let count = counted(built.model.contacts().len(), "contact");
-        return Err(format!("[life] contacts: {contact}, but the model has {count}"));
-    }
+    described(part, built)?;
     solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built)
         .map(|_| ())
         .map_err(|e| format!("[life]: {e}"))
@@ -86,16 +116,18 @@ pub fn check(part: &LifePart, built: &Built) -> Outcome<()> {
 /// A sentence.
 pub fn write(part: &LifePart, built: &Built, hooks: &mut Hooks<'_>, files: &mut Files<'_>) -> Outcome<Written> {
     let said = |e: &dyn std::fmt::Display| format!("[life]: {e}");
-    let described = described(part)?;
+    let described = described(part, built)?;
     let solver = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built).map_err(|e| said(&e))?;
     let found = life(&built.model, &solver, &options(part, &described), hooks).map_err(|e| said(&e))?;
     files.write(part.csv.as_deref(), &|path| {
-        fs::write(path, table(part, &found)).map_err(|e| e.to_string())
+        fs::write(path, table(&described.wear, &found)).map_err(|e| e.to_string())
     });
-    files.write(part.figure.as_deref(), &|path| figure(part, &found).write(path));
+    files.write(part.figure.as_deref(), &|path| {
+        figure(&described.labels, &found).write(path)
+    });
     let mut text = format!(
         "life of {}: {:.6e} cycles in {}, amplitude {:.6e} when new, {:.6e} at the end, {:.6e} at most\n",
-        counted(part.contacts.len(), "contact"),
+        counted(described.wear.len(), "contact"),
         found.reached,
         counted(found.solutions, "steady vibration"),
         found.ends.0,
@@ -103,9 +135,11 @@ pub fn write(part: &LifePart, built: &Built, hooks: &mut Hooks<'_>, files: &mut 
         found.largest.0
     );
     for event in &found.events {
-        let of = event
-            .contact
-            .map_or(String::new(), |contact| format!(" of contact {contact}"));
+        let worn = described.wear.iter().zip(&described.labels);
+        let of = worn
+            .filter(|(wear, _)| Some(wear.contact) == event.contact)
+            .map(|(_, label)| format!(" of contact {label}"))
+            .collect::<String>();
         let _ = writeln!(text, "  {:?}{of} at {:.6e} cycles", event.kind, event.cycles);
     }
     if let Some(reason) = &found.reason {
@@ -114,9 +148,9 @@ pub fn write(part: &LifePart, built: &Built, hooks: &mut Hooks<'_>, files: &mut 
     Ok((text, found.status != Status::Ok))
 }
 
-fn table(part: &LifePart, found: &Life) -> String {
+fn table(wear: &[Wear], found: &Life) -> String {
     let mut text = String::from("cycles,hz,amplitude");
-    for contact in &part.contacts {
+    for Wear { contact, .. } in wear {
         let _ = write!(text, ",depth_{contact},load_{contact},work_{contact}");
     }
     text.push('\n');
@@ -136,9 +170,9 @@ fn table(part: &LifePart, found: &Life) -> String {
     text
 }
 
-fn figure(part: &LifePart, found: &Life) -> Chart {
-    let line = |(i, contact): (usize, &usize)| Line {
-        name: format!("contact {contact}"),
+fn figure(labels: &[String], found: &Life) -> Chart {
+    let line = |(i, label): (usize, &String)| Line {
+        name: format!("contact {label}"),
         points: found
             .points
             .iter()
@@ -153,6 +187,6 @@ fn figure(part: &LifePart, found: &Life) -> Chart {
         log_x: false,
         log_y: false,
         markers: true,
-        lines: part.contacts.iter().enumerate().map(line).collect(),
+        lines: labels.iter().enumerate().map(line).collect(),
     }
 }

@@ -80,6 +80,33 @@ fn a_run_up_of_a_plain_model_stays_below_its_resonance() {
     // N = N₀ − S h
     assert!((states[1][4] - (4000.0 - 100.0 * states[1][3])).abs() < 1e-6);
     assert!(fs::read_to_string(folder.join("l.svg")).unwrap().contains("<polyline"));
+    // A contact without a name has its number from 1; the life is the same to the bit.
+    fs::write(
+        folder.join("job.toml"),
+        life.replace("contacts = [0]", "contacts = ['1']")
+            .replace("l.csv", "n.csv"),
+    )
+    .unwrap();
+    let output = command(&["run", "job.toml"], &folder);
+    assert!(output.status.success(), "{}", printed(&output.stderr));
+    let by_name = fs::read_to_string(folder.join("n.csv")).unwrap();
+    assert_eq!(by_name, fs::read_to_string(folder.join("l.csv")).unwrap());
+    for (contacts, words) in [
+        ("['blade']", "\"blade\" is none of 1"),
+        ("[1]", "1, but the model has 1 contact"),
+    ] {
+        fs::write(
+            folder.join("job.toml"),
+            life.replace("contacts = [0]", &format!("contacts = {contacts}")),
+        )
+        .unwrap();
+        let output = command(&["run", "job.toml"], &folder);
+        assert!(
+            !output.status.success() && printed(&output.stderr).contains(words),
+            "{}",
+            printed(&output.stderr)
+        );
+    }
     fs::write(folder.join("job.toml"), life.replace("hz = 10.5", "from_hz = 10.5")).unwrap();
     let output = command(&["run", "job.toml"], &folder);
     assert!(!output.status.success() && printed(&output.stderr).contains("[life]"));

@@ -7,6 +7,10 @@
 //! remembered. The changes of the largest displacement over three leads, |x₁ − x₂| + |x₂ − x₃|, bound what the third one leaves: two
 //! leads may agree by chance, and a memory that falls slowly shows in both. Leads double until this sum is small. A lead that reaches the
 //! begin of the run-up is the whole motion.
+//!
+//! A slider that does not move in both directions in a lead depends on where the search for its steady motion has left it: it may shake down
+//! beside the middle. It must be where it is at the begin of the run-up; otherwise the lead is that of another history, and all turns are
+//! integrated.
 
 use crate::analysis::run_up::chirp::Chirp;
 use crate::analysis::run_up::mode_table::{ModeTable, Place};
@@ -35,6 +39,10 @@ const RUN_UP_AROUND: f64 = 0.1;
 /// Error of the integration itself, relative. Rounding: it is the tolerance of smooth laws, and runs with friction keep 1e-9 against
 /// stored ones.
 const RUN_UP_INTEGRATION: f64 = 1e-9;
+
+/// Distance of a slider that does not move in both directions from its place at the begin of the run-up, relative to the largest displacement, which is added
+/// to the error told; a larger one is that of another history. A cap.
+const RUN_UP_SAME_PLACE: f64 = 1e-6;
 
 /// Most operations of all leads together. A cap: some ten seconds.
 const RUN_UP_INTEGRATED_WORK: u64 = 20_000_000_000;
@@ -89,6 +97,7 @@ pub(super) fn integrate(
         dof,
         decays: &decays,
         checks: RUN_UP_INTEGRATED_WORK / operations.max(1),
+        first: None,
         interrupt,
     };
     leads.around(seen)
@@ -119,6 +128,8 @@ struct Leads<'a> {
     decays: &'a [f64],
     /// Checks of the interrupt that are left.
     checks: u64,
+    /// Places of sliders that do not move in both directions in the first turn of the run-up.
+    first: Option<Vec<Option<f64>>>,
     interrupt: &'a Interrupt<'a>,
 }
 
@@ -182,8 +193,9 @@ impl Leads<'_> {
         let mut exponent = RUN_UP_LEAD;
         let mut before: [Option<f64>; 2] = [None; 2];
         let mut found = None;
+        let mut is_other = false;
         loop {
-            let from = self.begin(wanted.0, exponent);
+            let from = if is_other { 0 } else { self.begin(wanted.0, exponent) };
             let Some(swept) = self.sweep(from, wanted)? else {
                 return Ok(found);
             };
@@ -191,9 +203,13 @@ impl Leads<'_> {
                 return Ok(Some((swept, 0.0)));
             }
             let largest = swept.largest;
+            let Some(moved) = self.history(&swept.sweep, largest)? else {
+                (is_other, found) = (true, None);
+                continue;
+            };
             if let [first, Some(second)] = before {
                 let further = first.map_or((largest - flow).abs(), |first| (second - first).abs());
-                let left = (largest - second).abs() + further;
+                let left = (largest - second).abs() + further + moved;
                 found = Some((swept, left));
                 if first.is_some() && left <= RUN_UP_LEADS_AGREE * largest {
                     return Ok(found);
@@ -202,6 +218,30 @@ impl Leads<'_> {
             before = [before[1], Some(largest)];
             exponent *= 2.0;
         }
+    }
+
+    /// Sum of the distances by which sliders that do not move in both directions in a lead are not where they are in the first turn of the run-up; `None` where
+    /// one of them is elsewhere.
+    fn history(&mut self, lead: &FrequencySweep, largest: f64) -> Result<Option<f64>> {
+        if lead.held.iter().all(Option::is_none) {
+            return Ok(Some(0.0));
+        }
+        if self.first.is_none() {
+            let Some(begin) = self.sweep(0, (0, 0))? else {
+                return Ok(None);
+            };
+            self.first = Some(begin.sweep.held);
+        }
+        let mut distance = 0.0;
+        for (place, first) in lead.held.iter().zip(self.first.iter().flatten()) {
+            let (Some(place), own) = (place, first) else { continue };
+            let moved = own.map_or(f64::INFINITY, |own| (place - own).abs());
+            if moved > RUN_UP_SAME_PLACE * largest {
+                return Ok(None);
+            }
+            distance += moved;
+        }
+        Ok(Some(distance))
     }
 
     /// The turn from which perturbations decay by an exponent before a turn.

@@ -335,7 +335,7 @@ void run_ups() {
   const double factors[2] = {0.5, 1};
   const auto picture = mode.campbell_response(model, diagram, factors);
   claim(picture.speed.size() == 2 && picture.omega[1] == 2 * picture.speed[1], "a resonance for each factor");
-  claim(picture.factor(1) > 0.5 && picture.factor(1) < 1 && picture.amplitude[1] == up.steady, "it is that of the run-up");
+  claim(picture.factor(1) > 0.5 && picture.factor(1) < 1 && std::abs(picture.amplitude[1] / up.steady - 1) < 0.01, "it is that of the run-up");
 }
 
 /// Wear of one contact: the stored row of ten cycles with one harmonic, and the best load.

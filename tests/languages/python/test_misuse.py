@@ -155,4 +155,17 @@ check(
     == 1,
 )
 
-finish(112)
+# Run-ups, missions and Campbell diagrams say which of their arguments is no model or no mode.
+slider = hbvib.Model(mass=1, stiffness=1, damping=0.02)
+slider.add_contact("jenkins", 0, kt=0.2, mu=0.1, preload=1)
+slider.add_force(0, 0.12)
+mode = slider.nonlinear_mode((-2, 0.8), harmonics=1)
+raises("a run-up of nothing", TypeError, mode.run_up, None, (0.8, 1.3), 1e-3, words="model is of type NoneType, needs a Model")
+raises("a mission of nothing", TypeError, mode.mission, None, [0, 1], [1, 2], words="needs a Model")
+raises("a pair", ValueError, hbvib.campbell_response, [(mode, slider)], words="resonances[0] is not (mode, model, engine order)")
+raises("a swapped pair", TypeError, hbvib.campbell_response, [(slider, mode, 2)], words="resonances[0][0] is of type Model, needs a Branch")
+raises("no list", TypeError, hbvib.campbell_response, 5, words="needs a list")
+raises("a standing run-up", hbvib.ArgumentError, mode.run_up, slider, (0.8, 0.8), 1e-3, words="omega_start = omega_stop = 0.8")
+check("a number is one step of a history", slider.static_history(factors=5).motion.shape == (1, 1))
+
+finish(119)
