@@ -176,6 +176,48 @@ enum Doubt {
     None,
 }
 
+impl Doubt {
+    /// The doubt where a step is broken once more.
+    fn again(self) -> Self {
+        match self {
+            Self::Half => Self::Half,
+            Self::Rest | Self::None => Self::None,
+        }
+    }
+
+    /// The doubt about a motion at cycles `other` after a step to `n`.
+    fn after(self, other: f64, n: f64) -> Option<(f64, Self)> {
+        let doubt = match self {
+            Self::Half => Self::Rest,
+            doubt => doubt,
+        };
+        (n < other).then_some((other, doubt))
+    }
+}
+
+/// Length of a step: a step of the last hundredth of the rest alone would be lost on rounding.
+fn length_of(delta: f64, rest: f64, is_bounded: bool) -> f64 {
+    if is_bounded {
+        delta
+    } else if delta >= 0.99 * rest {
+        rest
+    } else {
+        delta.min(0.5 * rest).max(0.01 * delta)
+    }
+}
+
+/// Factor of the length of the next step from the error over the tolerance, and from the ratio of this length to the one before with the
+/// error there: the constant of the error goes on to change as it did (Gustafsson 1994, doi:10.1145/198429.198437).
+fn growth(share: f64, power: i32, before: Option<(f64, f64)>) -> f64 {
+    if share <= 0.0 {
+        return 4.0;
+    }
+    let own = 0.9 * share.powf(-1.0 / f64::from(power));
+    before.map_or(own, |(ratio, earlier)| {
+        own.min(0.9 * ratio * (earlier / (share * share)).powf(0.2))
+    })
+}
+
 struct Walk<'a> {
     states: WornStates<'a>,
     options: &'a LifeOptions<'a>,
@@ -230,14 +272,7 @@ impl Walk<'_> {
                     Doubt::Half | Doubt::None => delta.min(0.5 * (other - at.n)),
                 };
             }
-            // A step of the last hundredth alone would be lost on rounding.
-            let length = if met.is_some() || broken.is_some() {
-                delta
-            } else if delta >= 0.99 * rest {
-                rest
-            } else {
-                delta.min(0.5 * rest).max(0.01 * delta)
-            };
+            let length = length_of(delta, rest, met.is_some() || broken.is_some());
             let step = match LifeStep::take(&mut self.states, (&at, length), last.as_ref(), tolerance, hooks) {
                 Err(e) if matches!(e.status, Status::StoppedByCaller | Status::OutOfMemory) => return Err(e),
                 Ok(Taken::Step(step)) => step,
@@ -247,10 +282,7 @@ impl Walk<'_> {
                     continue;
                 }
                 Ok(Taken::Broken) => {
-                    let doubt = match broken {
-                        Some((_, Doubt::Rest | Doubt::None)) => Doubt::None,
-                        _ => Doubt::Half,
-                    };
+                    let doubt = broken.map_or(Doubt::Half, |(_, doubt)| doubt.again());
                     broken = Some((at.n + length, doubt));
                     continue;
                 }
@@ -282,30 +314,17 @@ impl Walk<'_> {
             }
             let (error, power) = step.error(&self.states, last.as_ref())?;
             let share = error / tolerance;
-            let mut factor = if share > 0.0 {
-                0.9 * share.powf(-1.0 / f64::from(power))
-            } else {
-                4.0
-            };
             if share > 1.0 {
-                delta = length * factor.clamp(0.1, 0.9);
+                delta = length * growth(share, power, None).clamp(0.1, 0.9);
                 broken = self.too_short(&at, length).or(broken);
                 continue;
             }
             halvings = 0;
             self.record(&step, hooks)?;
-            // The constant of the error goes on to change as it did from the step before (Gustafsson 1994, 10.1145/198429.198437).
-            if let (Some((length, earlier)), true) = (before, share > 0.0) {
-                factor = factor.min(0.9 * step.length() / length * (earlier / (share * share)).powf(0.2));
-            }
+            let steps = before.map(|(length, earlier)| (step.length() / length, earlier));
+            delta = length * growth(share, power, steps).clamp(0.2, 4.0);
             before = (power == 5).then_some((step.length(), share));
-            delta = length * factor.clamp(0.2, 4.0);
-            broken = broken
-                .filter(|(other, _)| step.to.n < *other)
-                .map(|(other, doubt)| match doubt {
-                    Doubt::Half => (other, Doubt::Rest),
-                    doubt => (other, doubt),
-                });
+            broken = broken.and_then(|(other, doubt)| doubt.after(other, step.to.n));
             at = step.to.clone();
             last = Some(step);
         }
@@ -342,7 +361,7 @@ impl Walk<'_> {
         }
         let to = LifeState {
             n,
-            worn: self.states.at(&depths, at.near(), hooks)?,
+            worn: self.states.at(&depths, Some(at.near()), hooks)?,
             depths,
         };
         self.tell(&at.worn, &to.worn, n)?;
@@ -400,7 +419,7 @@ impl Walk<'_> {
                 let depths = ahead((at, last), n - at.n)?;
                 LifeState {
                     n,
-                    worn: self.states.at(&depths, at.near(), hooks)?,
+                    worn: self.states.at(&depths, Some(at.near()), hooks)?,
                     depths,
                 }
             };
@@ -459,7 +478,7 @@ impl Walk<'_> {
             }
             let to = LifeState {
                 n: if length < end - at.n { at.n + length } else { end },
-                worn: self.states.at(&depths, at.near(), hooks)?,
+                worn: self.states.at(&depths, Some(at.near()), hooks)?,
                 depths,
             };
             if at.worn.changes(&to.worn) {

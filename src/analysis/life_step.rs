@@ -70,8 +70,8 @@ fn times(matrix: &[f64], x: &[f64]) -> Result<Vec<f64>> {
 
 impl LifeState {
     /// The vibration and its depths, from which one nearby goes on.
-    pub fn near(&self) -> Option<(&WornState, &[f64])> {
-        Some((&self.worn, &self.depths))
+    pub fn near(&self) -> (&WornState, &[f64]) {
+        (&self.worn, &self.depths)
     }
 
     /// Whether another state is the continuation of this one: its amplitude and works follow from the derivatives at both.
@@ -129,6 +129,7 @@ pub(super) struct LifeStep {
 }
 
 /// Outcome of a step.
+#[allow(clippy::large_enum_variant)]
 pub(super) enum Taken {
     /// It is solved, or a contact changes its state within it.
     Step(LifeStep),
@@ -163,7 +164,7 @@ impl LifeStep {
             }
             let to = LifeState {
                 n: from.n + delta,
-                worn: states.at(&depths, before.as_ref().unwrap_or(from).near(), hooks)?,
+                worn: states.at(&depths, Some(before.as_ref().unwrap_or(from).near()), hooks)?,
                 depths: try_copy(&depths, CONTEXT)?,
             };
             let second = to.second()?;

@@ -69,7 +69,7 @@ pub struct RunUp {
 }
 
 impl RunUp {
-    /// Largest displacement over that of the steady resonance. What constant forces displace is in both.
+    /// Largest displacement over that of the steady resonance. Both have in them how far constant forces displace.
     #[must_use]
     pub fn factor(&self) -> f64 {
         self.largest / self.steady

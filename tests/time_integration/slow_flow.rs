@@ -446,7 +446,7 @@ fn an_added_damping_ratio_is_that_of_the_mode() {
     );
 }
 
-/// What a constant force displaces is in the largest displacement and in that of the steady resonance: a slow run-up reaches it, not more. So
+/// A displacement by a constant force is in the largest displacement and in that of the steady resonance: a slow run-up reaches it, not more. So
 /// it does at a degree of freedom that is not that of the mode.
 #[test]
 fn a_slow_run_up_reaches_the_steady_displacement() {

@@ -138,8 +138,7 @@ pub fn write(part: &LifePart, built: &Built, hooks: &mut Hooks<'_>, files: &mut 
         let worn = described.wear.iter().zip(&described.labels);
         let of = worn
             .filter(|(wear, _)| Some(wear.contact) == event.contact)
-            .map(|(_, label)| format!(" of contact {label}"))
-            .collect::<String>();
+            .fold(String::new(), |text, (_, label)| text + " of contact " + label);
         let _ = writeln!(text, "  {:?}{of} at {:.6e} cycles", event.kind, event.cycles);
     }
     if let Some(reason) = &found.reason {
