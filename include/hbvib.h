@@ -2151,7 +2151,7 @@ typedef enum {
   /// ratio by the parameter.
   HBVIB_D_DAMPING = 20,
   /// Forced responses with the solver option `freedom` only: number of free sliders, as
-  /// hbvib_branch_freedom lists them; 0 where the motion is unique. NaN where it is unknown.
+  /// hbvib_branch_freedom lists them; 0 where none is free nearby. NaN where it is unknown.
   HBVIB_FREE_SLIDERS = 21,
   /// The same: derivative of the amplitude by the place of each slider at a fixed frequency,
   /// points x contacts x 2 for t1 and t2. NaN where the slider is not free.

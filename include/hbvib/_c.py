@@ -445,7 +445,7 @@ class Field(enum.IntEnum):
     D_DAMPING   Parameter responses of the largest damping ratio of a mode only: total derivative of that ratio by the
         parameter.
     FREE_SLIDERS   Forced responses with the solver option `freedom` only: number of free sliders, as
-        hbvib_branch_freedom lists them; 0 where the motion is unique.
+        hbvib_branch_freedom lists them; 0 where none is free nearby.
     D_AMPLITUDE_BY_PLACE   The same: derivative of the amplitude by the place of each slider at a fixed frequency,
         points x contacts x 2 for t1 and t2.
 

@@ -232,3 +232,50 @@ fn without_contacts_the_states_are_those_of_the_stiffness() {
         }
     }
 }
+
+/// A contact that closes on the way sticks where it has closed: its normal load rises faster than its force. In one step or in many.
+#[test]
+fn a_contact_that_closes_within_a_step_sticks_where_it_closes() {
+    let (kt, kn, mu, gap) = (2.0, 5.0, 0.8, 0.3);
+    let mut model = Model::new(2).unwrap();
+    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
+        model
+            .set_matrix(kind, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
+            .unwrap();
+    }
+    let contact = Contact {
+        gap,
+        ..Contact::friction_2d([Some(0), Some(1)], [None; 2], (kt, kn), mu, 0.0)
+    };
+    model.add_contact(&contact).unwrap();
+    // It closes against the ground, and the force along is half of that towards it.
+    model.add_force(0, 0, 0.5.into()).unwrap();
+    model.add_force(1, 0, (-1.0).into()).unwrap();
+    // Displacement along and place of the slider under the load f: closed from f = gap on, at the displacement gap/2.
+    let exact = |f: f64| {
+        let place = if f > gap { 0.5 * gap } else { 0.5 * f };
+        let along = if f > gap {
+            (0.5 * f + kt * place) / (1.0 + kt)
+        } else {
+            0.5 * f
+        };
+        (along, place)
+    };
+    for between in [1, 2, 7] {
+        let turns = [0.1, 1.0, 0.2, 0.9];
+        let mut factors = vec![turns[0]];
+        for pair in turns.windows(2) {
+            factors.extend((1..=between).map(|i| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(between)));
+        }
+        let history = LoadHistory {
+            factors: &factors,
+            speeds: &[],
+        };
+        let steps = static_history(&model, &SolverOptions::default(), &history, &Interrupt::none()).unwrap();
+        for (step, f) in steps.iter().zip(&factors) {
+            let (along, place) = exact(*f);
+            println!("{f} {} {along} {} {place}", step.motion[0], step.places[0][0]);
+            assert!((step.motion[0] - along).abs() < 1e-7 && (step.places[0][0] - place).abs() < 1e-7);
+        }
+    }
+}
