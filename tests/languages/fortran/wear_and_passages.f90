@@ -90,7 +90,8 @@ contains
       call works(mode%campbell_response(model, speed, omega, steady, damping_ratio, passed, relative, engine_order=2*e, &
                                         acceleration=5e-4_dp, force_factors=[0.5_dp, e]), 'a diagram')
       call expect('a resonance for each factor', size(speed) == 2 .and. all(abs(omega - 2*speed) < 1e-14_dp))
-      call expect('it is that of the run-up', abs(steady(2) - up%steady) < 1e-12_dp .and. all(damping_ratio > 0))
+      ! That of the run-up has all harmonics, this one the fundamental.
+      call expect('it is that of the run-up', abs(steady(2)/up%steady - 1) < 0.02_dp .and. all(damping_ratio > 0))
       call expect('a passage stays below', all(passed < steady) .and. all(abs(relative) < 0.01_dp))
       status = mode%run_up(model, 0.8_dp, 1.3_dp, 0*e, up)
       call refused(status, HBVIB_E_ARGUMENT, 'rate = 0', 'no rate')
