@@ -28,8 +28,14 @@ impl BranchTracer<'_> {
         b: PointAt<'_>,
     ) -> Result<()> {
         let resolution = analysis.resolution();
-        let (first, last) = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
-        let brackets = self.predicted_brackets(&first, &last)?;
+        let moved;
+        let (first, last) = if a.1 == resolution && b.1 == resolution {
+            (a.0, b.0)
+        } else {
+            moved = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
+            (&moved.0, &moved.1)
+        };
+        let brackets = self.predicted_brackets(first, last)?;
         let interrupt = self.interrupt;
         let find = |tracer: &mut Self, analysis: &mut dyn Traceable, a: PointAt<'_>, b: PointAt<'_>| {
             let found = tracer.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
@@ -47,9 +53,9 @@ impl BranchTracer<'_> {
                 if s.to_bits() == at.to_bits() {
                     return end.try_clone().map(Some);
                 }
-                locator.between(analysis.problem(), (&first, &last), s, interrupt)
+                locator.between(analysis.problem(), (first, last), s, interrupt)
             };
-            let (Some(low), Some(high)) = (solved(low, &first, 0.0)?, solved(high, &last, 1.0)?) else {
+            let (Some(low), Some(high)) = (solved(low, first, 0.0)?, solved(high, last, 1.0)?) else {
                 continue;
             };
             if SpecialPoint::Peak.between(&low, &high) {

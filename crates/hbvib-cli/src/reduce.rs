@@ -28,6 +28,9 @@ const FIRST: usize = 20;
 /// Frequencies that are compared.
 const COMPARED: usize = 10;
 
+/// Keys with degrees of freedom.
+const NUMBERED: [&str; 7] = ["a", "b", "dof", "dofs", "dof_x", "dof_y", "response_dof"];
+
 /// Keys of [model] whose files the reduced one replaces.
 const MATRICES: [&str; 5] = ["matrices", "stiffness", "mass", "damping", "structural"];
 
@@ -91,13 +94,14 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
         .map_err(|e| format!("{}: cannot be written: {e}", table.display()))?;
     files.push(table);
     // Formats with names serve the same job.
-    if matches!(format, Format::Dmig | Format::UserElement | Format::Npz) && !full.nodes.numbers().is_empty() {
+    let has_names = matches!(format, Format::Dmig | Format::UserElement | Format::Npz);
+    if has_names && !full.nodes.numbers().is_empty() && !has_numbers(&job) {
         let own = of.output.with_extension("toml");
         fs::write(&own, job_text(&job, of.output.file_name())?)
             .map_err(|e| format!("{}: cannot be written: {e}", own.display()))?;
         files.push(own);
     } else {
-        text += "this format or model has no names of nodes: a job names the degrees of freedom of the table\n";
+        text += "this format, model or job has no names of nodes: a job names the degrees of freedom of the table\n";
     }
     for path in files {
         events::wrote(&path);
@@ -105,6 +109,28 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
     }
     print(&text)?;
     Ok(0)
+}
+
+/// Whether the job gives degrees of freedom by number: these are rows of the whole model.
+fn has_numbers(job: &Job) -> bool {
+    fn any(value: &toml::Value) -> bool {
+        match value {
+            toml::Value::Integer(_) => true,
+            toml::Value::Array(all) => all.iter().any(any),
+            _ => false,
+        }
+    }
+    fn in_part(part: &toml::Value) -> bool {
+        match part {
+            toml::Value::Array(all) => all.iter().any(in_part),
+            toml::Value::Table(keys) => NUMBERED.iter().any(|key| keys.get(*key).is_some_and(any)),
+            _ => false,
+        }
+    }
+    let Ok(whole) = job.text.parse::<toml::Table>() else {
+        return false;
+    };
+    whole.values().any(in_part)
 }
 
 /// Refuses models that are not reduced.
@@ -306,10 +332,10 @@ impl Reference {
 
     /// The largest difference of a frequency up to the limit, of the first one at least.
     fn error(&self, job: &Job, basis: &Basis, (found, kept): (&Matrices, &[usize]), full: &Built) -> Outcome<Told> {
-        if full.nodes.numbers().is_empty() {
+        if full.nodes.numbers().is_empty() || has_numbers(job) {
             return Ok(Told {
                 gap: None,
-                sentence: "the error is not told: it needs matrices that name nodes\n".into(),
+                sentence: "the error is not told: it needs matrices that name nodes, and a job that does\n".into(),
             });
         }
         // The reduced model as a job would read it.

@@ -225,3 +225,23 @@ fn models_that_are_not_reduced_are_refused() {
     );
     assert!(told.contains("6 of 60 degrees of freedom: 2 kept, 4 modes"), "{told}");
 }
+
+/// Rows of the whole model are none of the reduced one: its error is not told, and no job is written that would name them.
+#[test]
+fn a_job_with_numbers_is_reduced_without_a_job_of_its_own() {
+    let folder = empty_folder("reductions", "numbers");
+    beam(&folder);
+    let job = std::fs::read_to_string(folder.join("job.toml")).unwrap();
+    let bare = job.split("[[contact]]").next().unwrap();
+    let contact = "[[contact]]\nkind = \"jenkins\"\na = [20]\nkt = 1e3\nmu = 0.3\npreload = 1.0\n";
+    std::fs::write(folder.join("numbers.toml"), format!("{bare}{contact}")).unwrap();
+    let told = done(
+        &["reduce", "numbers.toml", "--modes", "4", "--output", "numbered.npz"],
+        &folder,
+    );
+    assert!(
+        told.contains("the error is not told") && told.contains("a job names the degrees of freedom of the table"),
+        "{told}"
+    );
+    assert!(!folder.join("numbered.toml").exists());
+}
