@@ -117,6 +117,7 @@ impl Search<'_> {
         }
         let mut quiet = Hooks {
             cancelled: hooks.cancelled,
+            phase: hooks.phase,
             ..Hooks::default()
         };
         let found: Life = life(&model, &self.solver, self.options, &mut quiet)?;

@@ -143,7 +143,12 @@ impl<'a> WornStates<'a> {
         }
         Ok(Self {
             model,
-            solver: *solver,
+            // A life asks for no stability and no freedom of its vibrations.
+            solver: SolverOptions {
+                stability: None,
+                freedom: false,
+                ..*solver
+            },
             options,
             new,
             solutions: 0,
@@ -534,6 +539,7 @@ fn quietly(
 ) -> Result<Branch> {
     let mut quiet = Hooks {
         cancelled: hooks.cancelled,
+        phase: hooks.phase,
         ..Hooks::default()
     };
     forced_response(model, solver, options, &mut quiet)
