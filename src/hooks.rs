@@ -74,6 +74,15 @@ impl<'a> Hooks<'a> {
         Interrupt::new(self.cancelled, self.phase)
     }
 
+    /// Hooks of a solve within the call: it can be stopped as the call can, and reports neither points nor log lines.
+    pub(crate) fn quiet(&self) -> Self {
+        Self {
+            cancelled: self.cancelled,
+            phase: self.phase,
+            ..Self::default()
+        }
+    }
+
     /// Reports a point; `true` when the caller requests a stop.
     pub fn report(&mut self, progress: &Progress) -> bool {
         self.progress.as_mut().is_some_and(|f| f(progress))

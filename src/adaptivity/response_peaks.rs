@@ -36,30 +36,29 @@ impl BranchTracer<'_> {
             (&moved.0, &moved.1)
         };
         let brackets = self.predicted_brackets(first, last)?;
-        let interrupt = self.interrupt;
-        let find = |tracer: &mut Self, analysis: &mut dyn Traceable, a: PointAt<'_>, b: PointAt<'_>| {
-            let found = tracer.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
-            });
-            found.map(|_| ())
-        };
         if SpecialPoint::Peak.between(a.0, b.0) && brackets.len() <= 1 {
-            return find(self, analysis, a, b);
+            return self.find_peak_on_arc(analysis, SpecialKind::Peak, a, b).map(|_| ());
         }
+        self.find_peaks_within(analysis, SpecialKind::Peak, ((first, last), resolution), brackets)
+    }
+
+    /// Records the peaks of a kind between the ends of parts of an arc, whose solutions decide.
+    fn find_peaks_within(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        kind: SpecialKind,
+        (ends, resolution): ((&Point, &Point), usize),
+        brackets: Vec<(f64, f64)>,
+    ) -> Result<()> {
         for (low, high) in brackets {
             analysis.select(resolution)?;
-            let mut locator = Locator::new(first.unknowns().len(), self.course.settings)?;
-            let mut solved = |s: f64, end: &Point, at: f64| {
-                if s.to_bits() == at.to_bits() {
-                    return end.try_clone().map(Some);
-                }
-                locator.between(analysis.problem(), (first, last), s, interrupt)
-            };
-            let (Some(low), Some(high)) = (solved(low, first, 0.0)?, solved(high, last, 1.0)?) else {
+            let solved = [low, high].map(|s| self.solved_between(analysis, kind, ends, s));
+            let [low, high] = solved;
+            let (Some(low), Some(high)) = (low?, high?) else {
                 continue;
             };
             if SpecialPoint::Peak.between(&low, &high) {
-                find(self, analysis, (&low, resolution), (&high, resolution))?;
+                self.find_peak_on_arc(analysis, kind, (&low, resolution), (&high, resolution))?;
             }
         }
         Ok(())
@@ -119,6 +118,7 @@ impl BranchTracer<'_> {
         let last = seen_here(analysis, response, &arc[next])?;
         let (first, last) = (&first, &last);
         let brackets = self.predicted_brackets(first, last)?;
+        let kind = SpecialKind::PeakOf(response);
         if SpecialPoint::Peak.between(first, last) && brackets.len() <= 1 {
             // Nodes beyond the two have the harmonics of the arc.
             let (mut nodes, mut place) = (Vec::new(), 0);
@@ -130,7 +130,6 @@ impl BranchTracer<'_> {
                     try_push(&mut nodes, seen_here(analysis, response, one)?, CONTEXT)?;
                 }
             }
-            let kind = SpecialKind::PeakOf(response);
             // One serves all peaks of an arc: it has the memory of a matrix.
             let known = match locator.take() {
                 Some(known) => known,
@@ -143,19 +142,9 @@ impl BranchTracer<'_> {
             {
                 return Ok(Some((point, resolution)));
             }
-            return self.find_peak_of(analysis, response, (first, resolution), (last, resolution));
+            return self.find_peak_on_arc(analysis, kind, (first, resolution), (last, resolution));
         }
-        for (low, high) in brackets {
-            analysis.select(resolution)?;
-            let ends = [low, high].map(|s| self.solved_between(analysis, response, (first, last), s));
-            let [low, high] = ends;
-            let (Some(low), Some(high)) = (low?, high?) else {
-                continue;
-            };
-            if SpecialPoint::Peak.between(&low, &high) {
-                self.find_peak_of(analysis, response, (&low, resolution), (&high, resolution))?;
-            }
-        }
+        self.find_peaks_within(analysis, kind, ((first, last), resolution), brackets)?;
         Ok(None)
     }
 
@@ -163,7 +152,7 @@ impl BranchTracer<'_> {
     fn solved_between(
         &self,
         analysis: &mut dyn Traceable,
-        response: usize,
+        kind: SpecialKind,
         (a, b): (&Point, &Point),
         s: f64,
     ) -> Result<Option<Point>> {
@@ -173,25 +162,21 @@ impl BranchTracer<'_> {
             }
         }
         let locator = Locator::new(a.unknowns().len(), self.course.settings)?;
-        let mut locator = locator.with_response(Some(response));
+        let mut locator = locator.with_response(kind.response());
         locator.between(analysis.problem(), (a, b), s, self.interrupt)
     }
 
-    fn find_peak_of(
+    fn find_peak_on_arc(
         &mut self,
         analysis: &mut dyn Traceable,
-        response: usize,
+        kind: SpecialKind,
         a: PointAt<'_>,
         b: PointAt<'_>,
     ) -> Result<Option<(Point, usize)>> {
         let interrupt = self.interrupt;
-        self.find(
-            analysis,
-            SpecialKind::PeakOf(response),
-            a,
-            b,
-            |locator, problem, a, b| locator.locate(problem, SpecialPoint::Peak, a, b, interrupt),
-        )
+        self.find(analysis, kind, a, b, |locator, problem, a, b| {
+            locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
+        })
     }
 
     /// Shares of the arc between which the cubic has a maximum.

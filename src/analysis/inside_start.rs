@@ -9,6 +9,7 @@ use crate::adaptivity::discretised::Discretised;
 use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::analysis::known_curve::lies_on;
+use crate::analysis::phase_direction::phase_direction;
 use crate::analysis::start_net::Net;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, fail, try_copy, try_vec};
@@ -119,19 +120,19 @@ impl Inside<'_> {
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
         let level = response.resolution();
+        let set = response.levels().at(level)?.condensed.set();
+        let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
+        let is_inside = |point: &Point| (low..=high).contains(&point.parameter());
         let Some(sense) = self.leaves else {
+            let by_phase = phase_direction(set, guess)?;
             let mut point = response.resolve(&start, true, interrupt)?;
             if point.is_none() {
-                let set = response.levels().at(level)?.condensed.set();
-                start.tangent = phase_direction(set, guess)?;
+                start.tangent = by_phase;
                 point = response.resolve(&start, false, interrupt)?;
             }
-            let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
-            let inside = point.filter(|point| point.parameter() >= low && point.parameter() <= high);
-            return Ok(inside.map(|point| Entered { point, dropped: None }));
+            return Ok(point.filter(is_inside).map(|point| Entered { point, dropped: None }));
         };
-        let dropped = dropped(response.levels().at(level)?.condensed.set(), guess);
-        let set = response.levels().at(level)?.condensed.set();
+        let dropped = dropped(set, guess);
         let first = start_vector(set, n, dropped)?;
         let Some(null) = response.null_direction(&start, &first, interrupt)? else {
             return Ok(None);
@@ -141,7 +142,6 @@ impl Inside<'_> {
             *t *= sense;
         }
         let size = norm(guess);
-        let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
         for distance in DISTANCES {
             let mut near = start.try_clone()?;
             for (v, t) in near.v[..n].iter_mut().zip(&start.tangent) {
@@ -150,7 +150,7 @@ impl Inside<'_> {
             let Some(mut point) = response.resolve(&near, false, interrupt)? else {
                 continue;
             };
-            if point.parameter() < low || point.parameter() > high {
+            if !is_inside(&point) {
                 continue;
             }
             let metric = Metric::along(norm(point.unknowns()), settings);
@@ -161,22 +161,6 @@ impl Inside<'_> {
         }
         Ok(None)
     }
-}
-
-/// The direction in which the phase of a motion changes, of a point with its frequency. Past a resonance the phase turns, while the
-/// frequency of a folded curve turns back there: across this direction a point of resonance is found where at its frequency alone
-/// it may not be.
-fn phase_direction(set: &HarmonicSet, motion: &[f64]) -> Result<Vec<f64>> {
-    let mut direction = try_vec(motion.len() + 1, 0.0, CONTEXT)?;
-    let m = set.packed_len().max(1);
-    for (to, from) in direction.chunks_exact_mut(m).zip(motion.chunks_exact(m)) {
-        for (i, h) in set.numbers().iter().enumerate() {
-            if *h > 0 {
-                set.set(to, i, set.get(from, i) * Complex64::new(0.0, *h as f64));
-            }
-        }
-    }
-    Ok(direction)
 }
 
 /// The settings in the sense of a point.

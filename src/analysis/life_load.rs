@@ -115,11 +115,7 @@ impl Search<'_> {
             let load = self.model.contacts()[wear.contact].load();
             model.set_worn_load(wear.contact, factor * load)?;
         }
-        let mut quiet = Hooks {
-            cancelled: hooks.cancelled,
-            phase: hooks.phase,
-            ..Hooks::default()
-        };
+        let mut quiet = hooks.quiet();
         let found: Life = life(&model, &self.solver, self.options, &mut quiet)?;
         if found.status != Status::Ok {
             return Err(found

@@ -261,10 +261,7 @@ fn where_next(
         responses: range.response.as_slice(),
         ..ForcedOptions::default()
     };
-    let mut quiet = Hooks {
-        cancelled: hooks.cancelled,
-        ..Hooks::default()
-    };
+    let mut quiet = hooks.quiet();
     let branch = forced_response(&design, &solver, &around, &mut quiet).ok();
     let peaks = branch.iter().flat_map(Branch::peaks);
     let status = Status::StoppedPeakVanished;
@@ -315,10 +312,7 @@ fn find_higher_peaks(
             ..*solver
         };
         let range = sweep((WAYS[0], omega), response.as_slice());
-        let mut quiet = Hooks {
-            cancelled: hooks.cancelled,
-            ..Hooks::default()
-        };
+        let mut quiet = hooks.quiet();
         // A sweep that fails shows no peak.
         let Ok(branch) = forced_response(&design, &solver, &range, &mut quiet) else {
             continue;

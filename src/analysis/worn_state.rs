@@ -537,11 +537,7 @@ fn quietly(
     options: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
-    let mut quiet = Hooks {
-        cancelled: hooks.cancelled,
-        phase: hooks.phase,
-        ..Hooks::default()
-    };
+    let mut quiet = hooks.quiet();
     forced_response(model, solver, options, &mut quiet)
 }
 

@@ -51,7 +51,8 @@ const AT_END: f64 = 1e-9;
 /// Largest number of modes of a search in the range.
 const RESONANCES_MOST_MODES: usize = 500;
 
-/// The same with gyroscopic forces, counted from zero.
+/// The same with gyroscopic forces, counted from zero. A cap: the projection of the quadratic problem has at most 200 modes, and takes two
+/// and some more for each that is asked for.
 const RESONANCES_MOST_GYROSCOPIC: usize = 90;
 
 /// Largest number of square matrices that the dense eigensolver holds at a time.

@@ -85,11 +85,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         events: 0,
         held: try_vec(system.elements.len(), None, CONTEXT)?,
     };
-    let mut quiet = Hooks {
-        cancelled: hooks.cancelled,
-        phase: hooks.phase,
-        ..Hooks::default()
-    };
+    let mut quiet = hooks.quiet();
     let steady = Search::new(&mut system, &mut event_loop, &first, &mut quiet, start)?.run()?;
     if steady.status != Status::Ok {
         found.status = steady.status;

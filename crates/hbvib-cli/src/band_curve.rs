@@ -237,14 +237,18 @@ fn summary(rows: &[Row], peaks: &[PeakBand], incomplete: usize) -> String {
             }
         );
     }
-    if incomplete > 0 {
-        let _ = writeln!(
-            text,
-            "at {} the ends are attained, but others may lie beyond",
-            counted(incomplete, "point")
-        );
+    text + &beyond(incomplete, "point")
+}
+
+/// Tells at how many places the search of a band does not claim its ends.
+pub fn beyond(incomplete: usize, of: &str) -> String {
+    if incomplete == 0 {
+        return String::new();
     }
-    text
+    format!(
+        "at {} the ends are attained, but others may lie beyond\n",
+        counted(incomplete, of)
+    )
 }
 
 /// The band as a shaded area around the curve of the response.

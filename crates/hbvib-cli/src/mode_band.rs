@@ -1,5 +1,6 @@
 //! Band of a nonlinear mode of a job: damping ratio and frequency over the forces that sticking contacts may keep.
 
+use crate::band_curve::beyond;
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
@@ -138,14 +139,7 @@ fn summary(rows: &[Row], incomplete: usize) -> String {
             row.log10, row.damping[1], row.damping[2], row.hz[1], row.hz[2]
         );
     }
-    if incomplete > 0 {
-        let _ = writeln!(
-            text,
-            "at {} the ends are attained, but others may lie beyond",
-            counted(incomplete, "amplitude")
-        );
-    }
-    text
+    text + &beyond(incomplete, "amplitude")
 }
 
 /// The damping ratio as a shaded area over the amplitude.

@@ -1,6 +1,7 @@
 //! The computed resonance next to a synthesised one: the forced response with the harmonics of the mode, from the
 //! motion of the mode.
 
+use crate::analysis::phase_direction::phase_direction;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
 use crate::continuation::corrector::{Corrector, Outcome};
@@ -27,7 +28,7 @@ const COMPUTED_PEAK_NEAR: f64 = 0.5;
 /// Most points of the response on the way to its peak.
 const COMPUTED_PEAK_MOST_POINTS: usize = 100;
 
-/// Largest step over the range of frequency: a third of the bandwidth.
+/// Largest step over the range of frequency: a sixth of the half-power bandwidth.
 const COMPUTED_PEAK_STEP: f64 = 0.01;
 
 /// A synthesised resonance with the motion of the mode there.
@@ -68,7 +69,8 @@ fn computed(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<f64>> {
     let (state, omega) = (peak.state, peak.omega);
-    let width = 2.0 * BANDWIDTHS * state.damping * omega;
+    let bandwidth = 2.0 * state.damping * omega;
+    let width = BANDWIDTHS * bandwidth;
     if !(width > 0.0 && omega > 0.0) {
         return Ok(None);
     }
@@ -88,7 +90,7 @@ fn computed(
     };
     let v = turned(peak, n)?;
     let near = Point {
-        tangent: by_phase(peak, &v)?,
+        tangent: phase_direction(peak.condensed.set(), &v[..n])?,
         v,
         amplitude: Complex64::ZERO,
         slope: Complex64::ZERO,
@@ -101,7 +103,6 @@ fn computed(
     let upwards = settings(range);
     let mut corrector = Corrector::new(n, upwards.tolerance, upwards.max_iterations)?;
     let mut first = None;
-    let bandwidth = 2.0 * state.damping * omega;
     for keep_parameter in [false, true] {
         if first.is_none() {
             first = solve(&mut problem, &mut corrector, &upwards, &near, keep_parameter, interrupt)?;
@@ -162,21 +163,6 @@ fn solve(
             Outcome::Failed => None,
         },
     )
-}
-
-/// Derivative of a motion by its phase. At a resonance it is the direction of the branch, whichever way this bends:
-/// solutions across it exist where none has the frequency or the amplitude of the mode.
-fn by_phase(peak: &AtPeak<'_>, v: &[f64]) -> Result<Vec<f64>> {
-    let set = peak.condensed.set();
-    let (_, motion) = v.split_last().unwrap_or((&0.0, &[]));
-    let mut direction = try_vec(v.len(), 0.0, CONTEXT)?;
-    let packed = set.packed_len().max(1);
-    for (to, y) in direction.chunks_exact_mut(packed).zip(motion.chunks_exact(packed)) {
-        for (i, &h) in set.numbers().iter().enumerate() {
-            set.set(to, i, set.get(y, i) * Complex64::new(0.0, h as f64));
-        }
-    }
-    Ok(direction)
 }
 
 /// The motion of the mode with the phase that the force gives it, and the frequency.
