@@ -325,7 +325,7 @@ fn refine<'a>(
             begun.band.states[if outward < 0.0 { 0 } else { last }] = state;
         }
     }
-    begun.band.states.sort_by(|a, b| a.place.total_cmp(&b.place));
+    begun.band.states.sort_unstable_by(|a, b| a.place.total_cmp(&b.place));
     Ok(solved)
 }
 
