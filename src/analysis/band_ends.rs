@@ -311,15 +311,14 @@ fn refine<'a>(
     for (edge, outward) in edges.iter().zip(BAND_SENSES) {
         let place = edge.places[0];
         let same = known.iter().find(|one| one.0.to_bits() == place.to_bits());
-        let finer = match same {
-            Some((_, state)) => Some(*state),
-            None => {
-                // Outwards the result grows or falls.
-                let sign = if edge.gradient[0] * outward < 0.0 { -1.0 } else { 1.0 };
-                let found = refined(held, edge, (sign, to), interrupt)?;
-                solved += found.as_ref().map_or(0, |found| found.own.solved);
-                found.map(|found| state_of(&found.own.state))
-            }
+        let finer = if let Some((_, state)) = same {
+            Some(*state)
+        } else {
+            // Outwards the result grows or falls.
+            let sign = if edge.gradient[0] * outward < 0.0 { -1.0 } else { 1.0 };
+            let found = refined(held, edge, (sign, to), interrupt)?;
+            solved += found.as_ref().map_or(0, |found| found.own.solved);
+            found.map(|found| state_of(&found.own.state))
         };
         if let Some(state) = finer {
             begun.band.states[if outward < 0.0 { 0 } else { last }] = state;
