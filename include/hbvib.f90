@@ -544,10 +544,11 @@ module hbvib
 
    !> Numbers of a band.
    type, bind(c) :: hbvib_band_info
-      integer(c_int32_t) :: struct_size = 96, complete = 0
+      integer(c_int32_t) :: struct_size = 112, complete = 0
       integer(c_int64_t) :: sliders = 0, states = 0, solved = 0
       real(c_double) :: lower = 0, upper = 0, lower_omega = 0, upper_omega = 0, lower_gain = 0, upper_gain = 0
       integer(c_int64_t) :: lower_at_limit = 0, upper_at_limit = 0
+      real(c_double) :: lower_error = 0, upper_error = 0
    end type hbvib_band_info
 
    !> Options of hbvib_life.

@@ -4769,7 +4769,8 @@ typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
   /// 1 if one slider was followed to both of its limits, or each search of several ended at an
-  /// extremum; else 0.
+  /// extremum; else 0. 0, too, where every contact is linear at the point and some stick: then
+  /// states far from it were sampled.
   int32_t complete;
   /// Number of free sliders, those of the point and then those that stick at an end; 0: the
   /// response has no band, and both ends are the point itself.
@@ -4787,7 +4788,8 @@ typedef struct {
   /// Angular frequency of the largest one.
   double upper_omega;
   /// Relative change of the least result that the linearised problem still foretells within a
-  /// tenth of the distances over which the sliders can be dragged; 0 with one slider.
+  /// tenth of the distances over which the sliders can be dragged; 0 with one slider, NaN for a
+  /// motion without a free slider.
   double lower_gain;
   /// The same of the largest one.
   double upper_gain;
@@ -4795,6 +4797,11 @@ typedef struct {
   int64_t lower_at_limit;
   /// The same in the largest one.
   int64_t upper_at_limit;
+  /// Relative change of the least result by the last doubling of its harmonics, which bounds its
+  /// error; NaN where it is unknown, as with fixed harmonics.
+  double lower_error;
+  /// The same of the largest one.
+  double upper_error;
 } hbvib_band_info;
 
 /// Fills the numbers of a band with zeros.
@@ -4806,14 +4813,19 @@ HBVIB_NODISCARD
 hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);
 
 /// The band of a stored point of a forced response: the least and the largest result over all
-/// places of the sliders that stick through the period, and the states that attain them. The
-/// harmonics are those of the point. With one free slider all states from one limit of its friction
-/// to the other are followed, with every extremum between. With several, a search from each start
-/// goes to an extremum; the bounds are attained ones, beyond which others may lie.
+/// places of the sliders that stick through the period, and the states that attain them. With one
+/// free slider all states from one limit of its friction to the other are followed, with every
+/// extremum between. With several, a search from each start goes to an extremum; the bounds are
+/// attained ones, beyond which others may lie. Where every contact is linear at the point, states
+/// with sliders at the corners of their limits are tried, at which others may slip or open.
+/// The harmonics are those of the point. Where a tolerance has chosen these, the ends and the
+/// limits of one free slider are searched again with twice as many, until their results change by
+/// less than the tolerance of `solver`.
 ///
 /// model            the model of which the branch is a result, unchanged since.
 /// point            number of a stored point; of a peak where the band is one of a peak.
-/// solver           options; NULL: the defaults. Harmonics and tolerance have no effect.
+/// solver           options; NULL: the defaults. `harmonics` has no effect; `tolerance` is that of
+///                  the ends of a point whose harmonics a tolerance has chosen.
 /// options          the result and what is free; NULL: the defaults.
 /// hooks            log, phase and cancellation; NULL: none.
 /// info             receives the numbers of the band.

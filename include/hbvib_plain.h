@@ -926,6 +926,8 @@ struct hbvib_band_info {
   double upper_gain;
   int64_t lower_at_limit;
   int64_t upper_at_limit;
+  double lower_error;
+  double upper_error;
 };
 struct hbvib_life_options {
   uint32_t struct_size;

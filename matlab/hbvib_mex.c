@@ -1293,6 +1293,8 @@ static const Field band_info_fields[] = {
   {"upper_gain", DOUBLE, offsetof(hbvib_band_info, upper_gain), 1, NULL},
   {"lower_at_limit", INT64, offsetof(hbvib_band_info, lower_at_limit), 1, NULL},
   {"upper_at_limit", INT64, offsetof(hbvib_band_info, upper_at_limit), 1, NULL},
+  {"lower_error", DOUBLE, offsetof(hbvib_band_info, lower_error), 1, NULL},
+  {"upper_error", DOUBLE, offsetof(hbvib_band_info, upper_error), 1, NULL},
 };
 static hbvib_status band_info_fill(void *s) { return hbvib_band_info_init(s, sizeof(hbvib_band_info)); }
 static const Struct BAND_INFO_STRUCT = {"band_info", sizeof(hbvib_band_info), band_info_fields, sizeof band_info_fields / sizeof *band_info_fields, band_info_fill};

@@ -44,12 +44,14 @@ class BandEnd(NamedTuple):
     places    of the free sliders, in the order of Band.sliders.
     at_limit  number of contacts that are at the limit of their friction.
     gain      relative gain that the linearised problem still foretells nearby; 0 with one slider.
+    error     relative change of the value by the last doubling of its harmonics, which bounds its error; NaN where it is
+              unknown, as with fixed harmonics.
     model     the model with its sliders at these places, of which branch is the solution, a branch of one point: give both to
               verify. Without a band the model itself, and None.
 
     >>> import hbvib
     >>> import numpy as np
-    >>> hbvib.BandEnd(1.0, 2.0, np.zeros(1), 0, 0.0, hbvib.Model(1), None).value
+    >>> hbvib.BandEnd(1.0, 2.0, np.zeros(1), 0, 0.0, 1e-4, hbvib.Model(1), None).value
     1.0
     """
     value: float
@@ -57,6 +59,7 @@ class BandEnd(NamedTuple):
     places: FloatArray
     at_limit: int
     gain: float
+    error: float
     model: Model
     branch: Optional[Branch]
 
@@ -82,7 +85,8 @@ class Band:
     sliders        (contact, direction) of each free slider, those of the point and then those that stick at an end; empty
                    where there is no band.
     states         with one free slider at the point the states from one limit to the other, a BandStates.
-    complete       whether one slider was followed to both limits, or each search of several ended at an extremum.
+    complete       whether one slider was followed to both limits, or each search of several ended at an extremum. False where
+                   every contact is linear at the point and some stick: then states far from it were sampled.
     solved         number of solutions that were computed.
 
     >>> import hbvib
@@ -172,7 +176,8 @@ class _Bands(_Owner):
     def band(self, branch: Branch, point: int, of: BandOfs = "amplitude", *, contacts: Optional[Sequence[int]] = None,
              starts: int = 3, phase: Hook = None, cancel: Optional[CancelFlag] = None) -> Band:
         """The least and the largest result at a point of a forced response of this model, over all residual forces that
-        its sticking contacts may keep, with the states that attain them. The harmonics are those of the point.
+        its sticking contacts may keep, with the states that attain them. The harmonics are those of the point. Where a
+        tolerance has chosen these, the ends have twice as many, or more, until they change by less than 1e-3.
 
         of        "amplitude": at the frequency of the point; "peak_amplitude", "peak_omega": of a peak, which moves.
         contacts  whose sliders are free; None: all of `freedom`.
@@ -217,7 +222,8 @@ class _Bands(_Owner):
                     placed.set_slider(slider[0], at, direction=slider[1])
                 found = Branch(handle.value, tuple(self._kept), "")
             ends.append(BandEnd(getattr(info, name), getattr(info, name + "_omega"), place[:len(sliders)].copy(),
-                                getattr(info, name + "_at_limit"), getattr(info, name + "_gain"), placed, found))
+                                getattr(info, name + "_at_limit"), getattr(info, name + "_gain"), getattr(info, name + "_error"),
+                                placed, found))
         followed = states[:min(info.states, most)].T.copy()
         return Band(ends[0], ends[1], sliders, BandStates(*followed), bool(info.complete), info.solved)
 

@@ -1011,7 +1011,7 @@ batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop;
 wheel_info: uint32 struct_size; int32 reserved; int64 blade; double largest tuned tuned_omega amplification
 band_options: uint32 struct_size; int32 of; pointer contacts; int64 contacts_len starts
 band_info: uint32 struct_size; int32 complete; int64 sliders states solved; double lower upper lower_omega upper_omega
-    lower_gain upper_gain; int64 lower_at_limit upper_at_limit
+    lower_gain upper_gain; int64 lower_at_limit upper_at_limit; double lower_error upper_error
 life_options: uint32 struct_size; int32 follow; pointer contacts rates areas; int64 contacts_len; pointer stiffness worn
     duty_omega duty_force duty_share; int64 duties_len; double omega_start omega_stop tolerance limit; int64 most_steps
 life_info: uint32 struct_size; int32 reserved; int64 steps solutions points; double reached largest largest_at

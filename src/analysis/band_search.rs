@@ -117,8 +117,13 @@ impl Search<'_, '_> {
 
     /// The largest (`sign` 1) or smallest (−1) result that is found from a start within the limits.
     pub fn climb(&mut self, start: HeldState, sign: f64) -> Result<Found> {
+        self.climb_from(start, sign, BAND_SEARCH_FIRST)
+    }
+
+    /// The same with a radius of the first step, in units of the sliders' distances.
+    pub fn climb_from(&mut self, start: HeldState, sign: f64, first: f64) -> Result<Found> {
         let mut state = start;
-        let mut radius = BAND_SEARCH_FIRST;
+        let mut radius = first;
         let mut best = state.clone();
         for _ in 0..BAND_SEARCH_MOST_STEPS {
             let step = self.step(&state, sign, radius)?;

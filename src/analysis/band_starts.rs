@@ -1,6 +1,7 @@
 //! Other states of a model from which the search of a band begins: the sliders of all contacts are placed within the reach of their
 //! limits, those too that slip in the state of the branch, so that other contacts may stick.
 
+use crate::analysis::band_corners::corners;
 use crate::analysis::band_growth::Grown;
 use crate::analysis::band_search::Search;
 use crate::analysis::forced_response::forced_response;
@@ -152,6 +153,42 @@ impl<'a> Starts<'a> {
         } else {
             Ok(None)
         }
+    }
+
+    /// The corners of the sliders, see [`corners`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn corners(&self, of_point: Option<(&HeldState, &[StuckSlider])>, starts: usize) -> Result<Vec<Vec<f64>>> {
+        let mut places = Vec::new();
+        for slider in &self.sliders {
+            try_push(
+                &mut places,
+                ((slider.contact, slider.direction), slider.reach > 0.0),
+                CONTEXT,
+            )?;
+        }
+        corners(&places, of_point, starts)
+    }
+
+    /// The state with sliders at a corner, and those that are free in it.
+    ///
+    /// # Errors
+    /// As [`Self::state`].
+    pub fn corner(&mut self, signs: &[f64], distance: f64) -> Result<Option<(Branch, Vec<StuckSlider>)>> {
+        let mut places = Vec::new();
+        for (slider, sign) in self.sliders.iter().zip(signs) {
+            let place = slider.middle + distance * sign * slider.reach;
+            try_push(&mut places, (slider.contact, slider.direction, place), CONTEXT)?;
+        }
+        self.solution(&places)
+    }
+
+    /// The place of a slider at a corner; `None` for one that is not placed.
+    pub fn corner_place(&self, pair: (usize, usize), signs: &[f64], distance: f64) -> Option<f64> {
+        let mut placed = self.sliders.iter().zip(signs);
+        let found = placed.find(|(s, _)| (s.contact, s.direction) == pair);
+        found.map(|(slider, sign)| slider.middle + distance * sign * slider.reach)
     }
 
     /// The solution of the model with sliders at places, and those that are free in it.

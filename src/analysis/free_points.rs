@@ -5,7 +5,7 @@
 
 use crate::analysis::held_sliders::HELD;
 use crate::analysis::stuck_contacts::{StuckSlider, keeps_force, stuck_contacts};
-use crate::condense::{Condensed, Reference};
+use crate::condense::Condensed;
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -122,6 +122,30 @@ impl<'a> FreePoints<'a> {
         Ok(free)
     }
 
+    /// The sliders of a stored point that stick through the period, for a point of which none is free: another place, far from that of the
+    /// point, may make a contact slip, open or close. None where all contacts have sliders under constant loads: then the velocities of
+    /// all motions are the same, because the difference of two of them cannot grow.
+    ///
+    /// # Errors
+    /// As [`Self::at`].
+    pub fn stuck_at(&self, point: usize) -> Result<Vec<StuckSlider>> {
+        let (model, branch) = (self.model, self.branch);
+        let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
+            return Ok(Vec::new());
+        };
+        let (condensed, samples) = (branch.condensed_at(point), branch.samples_at(point));
+        let contacts = model.contacts();
+        let is_constant =
+            |number: usize| keeps_force(&contacts[number]) && contacts[number].normal_direction().is_none();
+        let are_constant = condensed.laws().iter().all(|law| is_constant(law.contact));
+        if are_constant || !self.may_be_free(point) || condensed.has_exchanges() {
+            return Ok(Vec::new());
+        }
+        let at_frequency = model.at_frequency(omega)?;
+        let stuck = stuck_contacts(&at_frequency, (condensed, samples), (motion, omega), self.interrupt)?;
+        Ok(stuck.sliders)
+    }
+
     /// Whether the shares of slip leave room for freedom: some contact sticks, and some other one slips, or may open.
     fn may_be_free(&self, point: usize) -> bool {
         let Some(shares) = self.branch.slip_fraction_at(point) else {
@@ -185,7 +209,8 @@ impl<'a> FreePoints<'a> {
         };
         let omega = branch.omega_at(point).unwrap_or(f64::NAN);
         let sweep = sweep.unwrap_or((omega, omega));
-        let condensed = Condensed::with_reference(&held, &options, sweep, Some(Reference::Complex), self.interrupt)?;
+        let reference = Some(condensed.reference());
+        let condensed = Condensed::with_reference(&held, &options, sweep, reference, self.interrupt)?;
         Ok(HeldContacts {
             resolution,
             contacts,

@@ -8,7 +8,7 @@
 
 use crate::analysis::slip_margins::{Held, Margin};
 use crate::analysis::stuck_contacts::StuckSlider;
-use crate::condense::{Condensed, Reference};
+use crate::condense::Condensed;
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -198,8 +198,7 @@ impl<'a> HeldSliders<'a> {
 
     fn solution(&self, places: &[f64], (set, motion, mut omega): (&HarmonicSet, &[f64], f64)) -> Result<HeldState> {
         let model = self.placed(&self.held, places)?;
-        let reference = Some(Reference::Complex);
-        let condensed = Condensed::with_reference(&model, &self.solver, (omega, omega), reference, self.interrupt)?;
+        let condensed = Condensed::with_reference(&model, &self.solver, (omega, omega), None, self.interrupt)?;
         let length = condensed.length();
         let mut u = try_vec(condensed.unknowns(), 0.0, CONTEXT)?;
         if motion.len() / set.packed_len().max(1) != condensed.coordinates() {

@@ -2,9 +2,13 @@
 
 mod all_solutions;
 pub mod band;
+mod band_corners;
 pub mod band_curve;
+mod band_ends;
 mod band_growth;
 mod band_line;
+mod band_refinement;
+pub mod band_result;
 mod band_search;
 mod band_starts;
 pub mod batch;

@@ -140,7 +140,8 @@ pub struct hbvib_band_info {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
     /// 1 if one slider was followed to both of its limits, or each search of several ended at an
-    /// extremum; else 0.
+    /// extremum; else 0. 0, too, where every contact is linear at the point and some stick: then
+    /// states far from it were sampled.
     pub complete: i32,
     /// Number of free sliders, those of the point and then those that stick at an end; 0: the
     /// response has no band, and both ends are the point itself.
@@ -158,7 +159,8 @@ pub struct hbvib_band_info {
     /// Angular frequency of the largest one.
     pub upper_omega: f64,
     /// Relative change of the least result that the linearised problem still foretells within a
-    /// tenth of the distances over which the sliders can be dragged; 0 with one slider.
+    /// tenth of the distances over which the sliders can be dragged; 0 with one slider, NaN for a
+    /// motion without a free slider.
     pub lower_gain: f64,
     /// The same of the largest one.
     pub upper_gain: f64,
@@ -166,6 +168,11 @@ pub struct hbvib_band_info {
     pub lower_at_limit: i64,
     /// The same in the largest one.
     pub upper_at_limit: i64,
+    /// Relative change of the least result by the last doubling of its harmonics, which bounds its
+    /// error; NaN where it is unknown, as with fixed harmonics.
+    pub lower_error: f64,
+    /// The same of the largest one.
+    pub upper_error: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_band_info {
@@ -187,6 +194,8 @@ unsafe impl VersionedStruct for hbvib_band_info {
             upper_gain: 0.0,
             lower_at_limit: 0,
             upper_at_limit: 0,
+            lower_error: 0.0,
+            upper_error: 0.0,
         }
     }
 }
@@ -202,14 +211,19 @@ pub unsafe extern "C" fn hbvib_band_info_init(i: *mut hbvib_band_info, size_of_i
 }
 
 /// The band of a stored point of a forced response: the least and the largest result over all
-/// places of the sliders that stick through the period, and the states that attain them. The
-/// harmonics are those of the point. With one free slider all states from one limit of its friction
-/// to the other are followed, with every extremum between. With several, a search from each start
-/// goes to an extremum; the bounds are attained ones, beyond which others may lie.
+/// places of the sliders that stick through the period, and the states that attain them. With one
+/// free slider all states from one limit of its friction to the other are followed, with every
+/// extremum between. With several, a search from each start goes to an extremum; the bounds are
+/// attained ones, beyond which others may lie. Where every contact is linear at the point, states
+/// with sliders at the corners of their limits are tried, at which others may slip or open.
+/// The harmonics are those of the point. Where a tolerance has chosen these, the ends and the
+/// limits of one free slider are searched again with twice as many, until their results change by
+/// less than the tolerance of `solver`.
 ///
 /// model            the model of which the branch is a result, unchanged since.
 /// point            number of a stored point; of a peak where the band is one of a peak.
-/// solver           options; NULL: the defaults. Harmonics and tolerance have no effect.
+/// solver           options; NULL: the defaults. `harmonics` has no effect; `tolerance` is that of
+///                  the ends of a point whose harmonics a tolerance has chosen.
 /// options          the result and what is free; NULL: the defaults.
 /// hooks            log, phase and cancellation; NULL: none.
 /// info             receives the numbers of the band.
@@ -364,6 +378,8 @@ fn numbers_of(found: &Band) -> hbvib_band_info {
         upper_gain: found.upper.gain,
         lower_at_limit: found.lower.at_limit.len() as i64,
         upper_at_limit: found.upper.at_limit.len() as i64,
+        lower_error: found.lower.error,
+        upper_error: found.upper.error,
     }
 }
 

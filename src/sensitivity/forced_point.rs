@@ -10,13 +10,13 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
 use crate::linalg::linear_system::Jacobian;
-use crate::linalg::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
 use crate::options::Response;
 use crate::problem::gauges::{Derivatives, Gauges};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::{Problem, Residual};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::newton_factors::NewtonFactors;
 use num_complex::Complex64;
 
 /// The equations of a forced response near one solution.
@@ -26,10 +26,7 @@ pub(crate) struct ForcedPoint<'a> {
     pub(super) problem: HarmonicBalance<'a>,
     workspace: Workspace,
     /// Newton's matrix at the point linearised last.
-    pub(super) system: Lu<f64>,
-    /// The same before its factorisation.
-    matrix: Vec<f64>,
-    active: Vec<bool>,
+    pub(super) system: NewtonFactors,
     at: Residual,
     response: MotionRow,
     /// w = f − κ y of one harmonic.
@@ -91,9 +88,7 @@ impl<'a> ForcedPoint<'a> {
             condensed,
             interrupt,
             workspace: Workspace::new(condensed, None)?,
-            system: Lu::new(n, 1)?,
-            matrix: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,
-            active: try_vec(n, true, CONTEXT)?,
+            system: NewtonFactors::new(n)?,
             at: Residual::new(n)?,
             response: condensed.motion_row(problem.observed(), response)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
@@ -120,9 +115,9 @@ impl<'a> ForcedPoint<'a> {
     /// Evaluates the equations and Newton's matrix at `u`, and writes the derivative of the amplitude by the motions.
     fn linearise(&mut self, u: &[f64], omega: f64, gradient: &mut [f64]) -> Result<Complex64> {
         self.problem.evaluate(u, omega, &mut self.at)?;
-        self.active.fill(true);
-        self.problem.fill(self.system.matrix(), &mut self.active)?;
-        self.matrix.copy_from_slice(self.system.matrix());
+        let system = &mut self.system;
+        system.active.fill(true);
+        self.problem.fill(&mut system.matrix, &mut system.active)?;
         if self.watched.is_some() {
             return self.response_gradient(u, omega, gradient);
         }
@@ -221,7 +216,7 @@ impl<'a> ForcedPoint<'a> {
         let n = u.len();
         let mut gradient = try_vec(n + 1, 0.0, CONTEXT)?;
         let amplitude = self.linearise(u, omega, &mut gradient[..n])?;
-        for (g, column) in gradient.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
+        for (g, column) in gradient.iter_mut().zip(self.system.matrix.chunks_exact(n.max(1))) {
             *g = self.condensed.length() * (*g - dot(column, lambda));
         }
         gradient[n] = self.of_lambda((u, omega), amplitude, lambda)?.by_omega;
@@ -236,7 +231,7 @@ impl<'a> ForcedPoint<'a> {
         let n = u.len();
         let mut gradient = try_vec(n + 1, 0.0, CONTEXT)?;
         self.linearise(u, omega, &mut gradient[..n])?;
-        for (g, column) in gradient.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
+        for (g, column) in gradient.iter_mut().zip(self.system.matrix.chunks_exact(n.max(1))) {
             *g = -self.condensed.length() * dot(column, w);
         }
         let adjoint = self.of_lambda((u, omega), Complex64::ZERO, w)?;
@@ -383,7 +378,7 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn newton_step(&self) -> Result<Vec<f64>> {
+    pub fn newton_step(&mut self) -> Result<Vec<f64>> {
         let mut step = try_copy(&self.at.values, CONTEXT)?;
         for x in &mut step {
             *x = -*x;
@@ -435,7 +430,7 @@ impl<'a> ForcedPoint<'a> {
 
     /// Newton's matrix there.
     pub fn jacobian(&self) -> &[f64] {
-        &self.matrix
+        &self.system.matrix
     }
 
     /// ∂R/∂ω at the point of which the adjoint was made last.

@@ -20,6 +20,7 @@ mod fold_point;
 mod forced_point;
 mod friction_work;
 mod mode_point;
+mod newton_factors;
 mod one_sided;
 mod parameter;
 mod peak_shift;

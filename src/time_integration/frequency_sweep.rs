@@ -47,6 +47,9 @@ pub struct FrequencySweep {
     /// Place of each slider that has not moved in both directions between the periodic motion at the first frequency and the turn of the
     /// largest displacement: it depends on where the search for that motion has left it. None for others.
     pub(crate) held: Vec<Option<f64>>,
+    /// Contact and place of each slider that does not move in both directions in the periodic motion at the first frequency. None for
+    /// others.
+    pub(crate) resting: Vec<Option<(usize, f64)>>,
 }
 
 /// The work of [`crate::analysis::sweep`], with options that are checked.
@@ -84,6 +87,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         largest_time: 0.0,
         events: 0,
         held: try_vec(system.elements.len(), None, CONTEXT)?,
+        resting: try_vec(system.elements.len(), None, CONTEXT)?,
     };
     let mut quiet = hooks.quiet();
     let steady = Search::new(&mut system, &mut event_loop, &first, &mut quiet, start)?.run()?;
@@ -92,6 +96,13 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         return Ok(found);
     }
     hooks.log(LogLevel::Info, "the periodic motion at the first frequency is found");
+    let period = TAU / options.omega_start;
+    find_resting(
+        (&mut system, &mut event_loop),
+        &steady.state,
+        period,
+        &mut found.resting,
+    )?;
     event_loop.clear_moved();
     let mut observed = Vec::new();
     for term in system.degrees.image(options.dof).1 {
@@ -112,6 +123,26 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         outcome => outcome?,
     }
     Ok(found)
+}
+
+/// Finds the sliders that do not move in both directions in a periodic motion, by one period of it.
+fn find_resting(
+    (system, event_loop): (&mut System<'_>, &mut EventLoop),
+    steady: &State,
+    period: f64,
+    resting: &mut [Option<(usize, f64)>],
+) -> Result<()> {
+    if system.elements.iter().all(|element| element.slider().is_none()) {
+        return Ok(());
+    }
+    let mut state = steady.try_clone()?;
+    event_loop.clear_moved();
+    event_loop.run_for(system, &mut state, period, Observers::default())?;
+    for (i, (place, element)) in resting.iter_mut().zip(&system.elements).enumerate() {
+        let rests = element.slider().is_some() && event_loop.directions[i] != [true; 2];
+        *place = rests.then(|| (element.family, element.relative(&state.x)[0] - state.e[i]));
+    }
+    Ok(())
 }
 
 struct Walk<'a> {

@@ -3,8 +3,8 @@
 
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Contact, ContactKind, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, band,
-    forced_response, freedom,
+    BandOf, BandOptions, Contact, ContactKind, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, TimeOptions,
+    band, forced_response, freedom, time_response,
 };
 use num_complex::Complex64;
 use std::cell::Cell;
@@ -288,4 +288,48 @@ fn contacts_that_stick_at_an_end_alone_are_free_there() {
         }
     }
     assert_eq!(grew, 4);
+}
+
+/// The ends of bands over several sliders are motions in time, with exact events: the amplitude at the places of the end, and those of
+/// the sliders that stick there.
+#[test]
+fn ends_of_two_dampers_are_motions_in_time() {
+    let solver = harmonics(25);
+    for (second, omega) in [(0.2, 1.4), (0.3, 1.4)] {
+        let model = blade_with_two_dampers(second);
+        let branch = solve_at(&model, &solver, omega);
+        let options = BandOptions {
+            starts: 1,
+            ..BandOptions::default()
+        };
+        let found = band(&model, &branch, 0, &solver, &options, &mut Hooks::default()).unwrap();
+        for end in [&found.lower, &found.upper] {
+            let mut placed = model.try_clone().unwrap();
+            for ((contact, k), place) in found.sliders.iter().zip(&end.places) {
+                placed.set_slider(*contact, *k, *place).unwrap();
+            }
+            let own = end.branch.as_ref().unwrap();
+            let start = crate::common::all_harmonics(own, 0);
+            let options = TimeOptions {
+                omega,
+                start: Some(&start),
+                ..TimeOptions::default()
+            };
+            let in_time = time_response(&placed, &options, &mut Hooks::default()).unwrap();
+            let amplitude = in_time.harmonics[model.ndof()].norm();
+            // Sliders that slip at the end forget their places; twenty-five harmonics leave the others beyond a limit by a little.
+            let free = freedom(&placed, own, 0).unwrap();
+            let sliders = found.sliders.iter().zip(&end.places);
+            let dragged = sliders
+                .filter(|((c, _), _)| free.iter().any(|f| f.contact == *c))
+                .map(|((c, _), place)| (in_time.places[*c] - place).abs())
+                .fold(0.0, f64::max);
+            println!(
+                "{second} {omega}: {} in time {amplitude}, {} free, dragged by {dragged:.1e}",
+                end.value,
+                free.len()
+            );
+            assert!(!free.is_empty() && (amplitude / end.value - 1.0).abs() < 1e-4 && dragged < 1e-4);
+        }
+    }
 }

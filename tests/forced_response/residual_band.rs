@@ -4,9 +4,9 @@
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
     BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, ForcedOptions, Frame, Hooks,
-    LogLevel, MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, TimeOptions,
-    VerifyOptions, band, band_curve, floquet, forced_response, freedom, parameter_response, sensitivity, time_response,
-    verify,
+    LogLevel, MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, SolverOptions,
+    TimeOptions, VerifyOptions, band, band_curve, floquet, forced_response, freedom, parameter_response, sensitivity,
+    time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -307,6 +307,44 @@ fn limits_with_fifty_harmonics_are_those_of_exact_events() {
             println!("{omega}: {:e} {:e}", end.place - place, end.value / amplitude - 1.0);
             assert!(place.is_nan() || (end.place - place).abs() < 1e-5);
             assert!((end.value / amplitude - 1.0).abs() < 1e-5);
+        }
+    }
+}
+
+/// The tolerance of 1e-3 has chosen the harmonics of the point; ends and limits have more.
+#[test]
+fn ends_with_default_options_keep_the_error_that_they_tell() {
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let solver = SolverOptions::default();
+    for (omega, limits) in LIMITS {
+        let branch = solve_at(&model, &solver, omega);
+        let mut hooks = Hooks::default();
+        let found = band(&model, &branch, 0, &solver, &BandOptions::default(), &mut hooks).unwrap();
+        assert!(found.is_complete && found.states.is_sorted_by(|a, b| a.place <= b.place));
+        let (first, last) = (found.states[0], found.states[found.states.len() - 1]);
+        for (end, [place, amplitude]) in [first, last].iter().zip(limits) {
+            println!(
+                "{omega}: {:e} {:e}, {} solved",
+                end.place - place,
+                end.value / amplitude - 1.0,
+                found.solved
+            );
+            assert!(place.is_nan() || (end.place - place).abs() < 1e-4);
+            assert!((end.value / amplitude - 1.0).abs() < 1e-4);
+        }
+        for end in [&found.lower, &found.upper] {
+            let is_known = |limit: &&[f64; 2]| (end.value / limit[1] - 1.0).abs() < 1e-3;
+            let amplitude = match limits.iter().find(is_known) {
+                Some(limit) => limit[1],
+                // The maximum between the limits, by many harmonics and by integration in time.
+                None => 0.714_724_349,
+            };
+            let error = (end.value / amplitude - 1.0).abs();
+            println!("   {}: error {error:.1e}, told {:.1e}", end.value, end.error);
+            // The reference has twelve digits.
+            assert!(error <= end.error + 1e-11 && end.error <= 1e-3 && error < 1e-4);
+            let used = end.branch.as_ref().unwrap().harmonics();
+            assert!(used > branch.harmonics() || omega < 1.15);
         }
     }
 }

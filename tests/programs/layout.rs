@@ -76,7 +76,7 @@ fn in_rust() -> String {
         hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved, responses, responses_len }
         hbvib_wheel_info { struct_size, reserved, blade, largest, tuned, tuned_omega, amplification }
         hbvib_band_options { struct_size, of, contacts, contacts_len, starts }
-        hbvib_band_info { struct_size, complete, sliders, states, solved, lower, upper, lower_omega, upper_omega, lower_gain, upper_gain, lower_at_limit, upper_at_limit }
+        hbvib_band_info { struct_size, complete, sliders, states, solved, lower, upper, lower_omega, upper_omega, lower_gain, upper_gain, lower_at_limit, upper_at_limit, lower_error, upper_error }
         hbvib_life_options { struct_size, follow, contacts, rates, areas, contacts_len, stiffness, worn, duty_omega, duty_force, duty_share, duties_len, omega_start, omega_stop, tolerance, limit, most_steps }
         hbvib_life_info { struct_size, reserved, steps, solutions, points, reached, largest, largest_at, amplitude_new, amplitude_worn }
         hbvib_best_load { struct_size, reserved, factor, amplitude, amplitude_new, amplitude_worn, lives }

@@ -269,7 +269,7 @@ def main():
         gaps = np.array(found) - [[low, low_amplitude], [high, high_amplitude]]
         worst = max(worst, np.nanmax(np.abs(gaps)))
     print(f"largest difference from the test {worst:.1e}")
-    return worst > 1e-9
+    return int(worst > 1e-9)
 
 
 if __name__ == "__main__":

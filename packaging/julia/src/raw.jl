@@ -901,6 +901,8 @@ struct hbvib_band_info
     upper_gain::Float64
     lower_at_limit::Int64
     upper_at_limit::Int64
+    lower_error::Float64
+    upper_error::Float64
 end
 hbvib_band_info() = initialised(hbvib_band_info, dlsym_(:hbvib_band_info_init))
 

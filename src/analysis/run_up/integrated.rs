@@ -8,9 +8,10 @@
 //! leads may agree by chance, and a memory that falls slowly shows in both. Leads double until this sum is small. A lead that reaches the
 //! begin of the run-up is the whole motion.
 //!
-//! A slider that does not move in both directions in a lead depends on where the search for its steady motion has left it: it may shake down
-//! beside the middle. It must be where it is at the begin of the run-up; otherwise the lead is that of another history, and all turns are
-//! integrated.
+//! A slider that does not move in both directions in the steady motion at the begin of a lead, or in the lead, depends on where the search
+//! for that motion has left it: it may shake down beside the middle. So the search begins with the places at the begin of the run-up, and
+//! the slider must be there; otherwise the lead is that of another history, and all turns are integrated. So they are where larger
+//! vibrations came before the lead, which may have moved it.
 
 use crate::analysis::run_up::chirp::Chirp;
 use crate::analysis::run_up::mode_table::{ModeTable, Place};
@@ -43,6 +44,10 @@ const RUN_UP_INTEGRATION: f64 = 1e-9;
 /// Distance of a slider that does not move in both directions from its place at the begin of the run-up, relative to the largest displacement, which is added
 /// to the error told; a larger one is that of another history. A cap.
 const RUN_UP_SAME_PLACE: f64 = 1e-6;
+
+/// Amplitude before a lead, relative to that at its begin, which may have moved a slider that rests there. A cap: beats of the begin of
+/// the run-up stay below.
+const RUN_UP_LARGER_BEFORE: f64 = 1.1;
 
 /// Most operations of all leads together. A cap: some ten seconds.
 const RUN_UP_INTEGRATED_WORK: u64 = 20_000_000_000;
@@ -84,18 +89,21 @@ pub(super) fn integrate(
     }
     let mut loaded = model.separate_clone()?;
     loaded.scale_fundamental(s.force_factor)?;
-    let mut decays = Vec::new();
+    let (mut decays, mut amplitudes) = (Vec::new(), Vec::new());
     let mut place = Place::default();
     for turn in &seen.turns {
         table.find(turn.modal_amplitude.max(f64::MIN_POSITIVE), &mut place)?;
         try_push(&mut decays, decay(table, &place), CONTEXT)?;
+        try_push(&mut amplitudes, turn.amplitude, CONTEXT)?;
     }
     let mut leads = Leads {
-        model: &loaded,
+        model: loaded,
+        placed: None,
         options,
         chirp,
         dof,
         decays: &decays,
+        amplitudes: &amplitudes,
         checks: RUN_UP_INTEGRATED_WORK / operations.max(1),
         first: None,
         interrupt,
@@ -120,16 +128,21 @@ fn decay(table: &ModeTable, at: &Place) -> f64 {
 
 /// Sweeps with leads.
 struct Leads<'a> {
-    model: &'a Model,
+    /// The model with the forces of the run-up.
+    model: Model,
+    /// The same for leads: its sliders have the places of the begin of the run-up where they rest there.
+    placed: Option<Model>,
     options: &'a RunUpOptions,
     chirp: &'a Chirp,
     dof: usize,
     /// Rate at which perturbations die away, in each turn.
     decays: &'a [f64],
+    /// Largest displacement of each turn by the slow flow.
+    amplitudes: &'a [f64],
     /// Checks of the interrupt that are left.
     checks: u64,
-    /// Places of sliders that do not move in both directions in the first turn of the run-up.
-    first: Option<Vec<Option<f64>>>,
+    /// The first turn of the run-up, for the places of its sliders.
+    first: Option<FrequencySweep>,
     interrupt: &'a Interrupt<'a>,
 }
 
@@ -196,6 +209,9 @@ impl Leads<'_> {
         let mut is_other = false;
         loop {
             let from = if is_other { 0 } else { self.begin(wanted.0, exponent) };
+            if from > 0 && !self.know_begin()? {
+                return Ok(None);
+            }
             let Some(swept) = self.sweep(from, wanted)? else {
                 return Ok(found);
             };
@@ -203,7 +219,7 @@ impl Leads<'_> {
                 return Ok(Some((swept, 0.0)));
             }
             let largest = swept.largest;
-            let Some(moved) = self.history(&swept.sweep, largest)? else {
+            let Some(moved) = self.history(from, &swept.sweep, largest) else {
                 (is_other, found) = (true, None);
                 continue;
             };
@@ -220,28 +236,43 @@ impl Leads<'_> {
         }
     }
 
-    /// Sum of the distances by which sliders that do not move in both directions in a lead are not where they are in the first turn of the run-up; `None` where
-    /// one of them is elsewhere.
-    fn history(&mut self, lead: &FrequencySweep, largest: f64) -> Result<Option<f64>> {
-        if lead.held.iter().all(Option::is_none) {
-            return Ok(Some(0.0));
-        }
+    /// Integrates the first turn of the run-up, and gives the places of the sliders that rest there to the model of leads; whether it was found.
+    fn know_begin(&mut self) -> Result<bool> {
         if self.first.is_none() {
-            let Some(begin) = self.sweep(0, (0, 0))? else {
-                return Ok(None);
+            let Some(first) = self.sweep(0, (0, 0))? else {
+                return Ok(false);
             };
-            self.first = Some(begin.sweep.held);
+            if first.sweep.resting.iter().any(Option::is_some) {
+                let mut placed = self.model.separate_clone()?;
+                for &(contact, place) in first.sweep.resting.iter().flatten() {
+                    placed.set_slider(contact, 0, place)?;
+                }
+                self.placed = Some(placed);
+            }
+            self.first = Some(first.sweep);
         }
+        Ok(true)
+    }
+
+    /// Sum of the distances by which sliders that do not move in both directions in a lead, or in the steady motion at its begin, are not
+    /// where they are at the begin of the run-up; `None` where one of them is elsewhere, or may have been moved before.
+    fn history(&self, from: usize, lead: &FrequencySweep, largest: f64) -> Option<f64> {
+        let Some(first) = &self.first else { return Some(0.0) };
         let mut distance = 0.0;
-        for (place, first) in lead.held.iter().zip(self.first.iter().flatten()) {
-            let (Some(place), own) = (place, first) else { continue };
+        let rests = lead.resting.iter().zip(&first.resting);
+        let rests = rests.map(|(lead, first)| (lead.map(|one| one.1), first.map(|one| one.1)));
+        let held = lead.held.iter().zip(&first.held).map(|(lead, first)| (*lead, *first));
+        for (place, own) in rests.chain(held) {
+            let Some(place) = place else { continue };
             let moved = own.map_or(f64::INFINITY, |own| (place - own).abs());
             if moved > RUN_UP_SAME_PLACE * largest {
-                return Ok(None);
+                return None;
             }
             distance += moved;
         }
-        Ok(Some(distance))
+        let before = self.amplitudes[..from].iter().fold(0.0_f64, |most, a| most.max(*a));
+        let is_larger = before > RUN_UP_LARGER_BEFORE * self.amplitudes[from];
+        (!is_larger || lead.resting.iter().all(Option::is_none)).then_some(distance)
     }
 
     /// The turn from which perturbations decay by an exponent before a turn.
@@ -281,7 +312,9 @@ impl Leads<'_> {
             cancelled: Some(&cancelled),
             ..Hooks::default()
         };
-        let outcome = run_through(self.model, &options, &mut hooks);
+        // From the begin on it is the run-up itself.
+        let model = self.placed.as_ref().filter(|_| from > 0).unwrap_or(&self.model);
+        let outcome = run_through(model, &options, &mut hooks);
         self.checks = left.get();
         self.interrupt.check()?;
         let sweep = match outcome {

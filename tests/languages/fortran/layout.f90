@@ -747,6 +747,8 @@ contains
       call field('upper_gain', c_loc(s), c_loc(s%upper_gain), c_sizeof(s%upper_gain))
       call field('lower_at_limit', c_loc(s), c_loc(s%lower_at_limit), c_sizeof(s%lower_at_limit))
       call field('upper_at_limit', c_loc(s), c_loc(s%upper_at_limit), c_sizeof(s%upper_at_limit))
+      call field('lower_error', c_loc(s), c_loc(s%lower_error), c_sizeof(s%lower_error))
+      call field('upper_error', c_loc(s), c_loc(s%upper_error), c_sizeof(s%upper_error))
    end subroutine band_info
 
    subroutine life_options()

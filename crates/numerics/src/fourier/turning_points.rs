@@ -71,9 +71,18 @@ impl TurningPoints {
             for (k, rows) in table.chunks_exact_mut(2 * points).enumerate() {
                 let p = set.reduced(k);
                 let (of_sine, of_cosine) = rows.split_at_mut(points);
-                for (j, (sine, cosine)) in of_sine.iter_mut().zip(of_cosine).enumerate() {
-                    *sine = -(p as f64) * sines.of(p * j);
-                    *cosine = -(p as f64) * sines.of(p * j + whole / 4);
+                // p·j and p·j + whole/4 within one turn, without a division.
+                let step = p % whole;
+                let (mut at, mut ahead) = (0, whole / 4);
+                for (sine, cosine) in of_sine.iter_mut().zip(of_cosine) {
+                    *sine = -(p as f64) * sines.within(at);
+                    *cosine = -(p as f64) * sines.within(ahead);
+                    for k in [&mut at, &mut ahead] {
+                        *k += step;
+                        if *k >= whole {
+                            *k -= whole;
+                        }
+                    }
                 }
             }
             Grid::Table(table)
@@ -267,15 +276,14 @@ impl Sines {
         Self { first, quarter }
     }
 
-    /// The sine of so many parts.
-    fn of(&self, parts: usize) -> f64 {
-        let rest = parts % self.quarter;
-        match (parts / self.quarter) % 4 {
-            0 => self.first[rest],
-            1 => self.first[self.quarter - rest],
-            2 => -self.first[rest],
-            _ => -self.first[self.quarter - rest],
-        }
+    /// The sine of so many parts, less than a turn.
+    fn within(&self, parts: usize) -> f64 {
+        let (half, sign) = if parts < 2 * self.quarter {
+            (parts, 1.0)
+        } else {
+            (parts - 2 * self.quarter, -1.0)
+        };
+        sign * self.first[half.min(2 * self.quarter - half)]
     }
 }
 
