@@ -41,18 +41,29 @@ need codespell codespell --version
 need calculix-ccx sh -c 'command -v ccx'
 
 # Python with numpy, what builds the wheel, what tables and figures need, and a type checker: the system's, or one of our own.
-# All that comes from the network comes here; the tests work without it.
+# All that comes from the network comes here, beside the compiler; the tests work without it.
 modules="numpy scipy matplotlib distributed pip hatchling pandas xarray tqdm mypy typing_extensions pycparser meshio pyuff"
 complete() { "$1" -c "import $(echo $modules | sed 's/ /, /g')" >/dev/null 2>&1; }
+pip=""
 if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
     need python3-venv python3 -c 'import venv, ensurepip'
     echo "installing numpy, scipy, matplotlib, distributed, pandas, xarray, tqdm, hatchling, a type checker and readers of result files in .venv"
-    python3 -m venv .venv
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check $(echo $modules | sed 's/pip //') || {
+    (
+        set -e
+        python3 -m venv .venv
+        .venv/bin/python -m pip install --quiet --disable-pip-version-check $(echo $modules | sed 's/pip //')
+    ) &
+    pip=$!
+    trap 'kill $pip 2>/dev/null || true' EXIT
+fi
+python_is_there() {
+    [ -n "$pip" ] || return 0
+    wait $pip || {
         echo "tests/run.sh: could not install $modules; install them for python3 (pip or apt) and run again" >&2
         exit 1
     }
-fi
+    trap - EXIT
+}
 
 # The crates of all platforms: a build takes those of its own, but a new project of a user is resolved with all.
 cargo fetch --quiet
@@ -67,19 +78,14 @@ step() { # name, command
     times="$times$(printf '%6d s  %s' $(($(date +%s) - began)) "$name")
 "
 }
-# The libraries, which programs link against, all tests and the examples that some run, in one call, which keeps all cores busy; then the
-# command, the readers of files and the unit tests.
-step "compile the library and its tests" \
-    cargo build --release --lib --tests --example ring_damper --example flutter --example campbell
-step "compile the command and the readers of files" cargo build --release --lib --bins --tests -p hbvib-io -p hbvib-cli
-units="-p hbvib-unit-tests -p hbvib-numerics-unit-tests"
-step "compile the unit tests" cargo test --release --no-run --lib $units
+# In one call, which keeps all cores busy and compiles nothing twice: the libraries, which programs link against, the command, all tests,
+# and the examples that some run. All calls name the same packages, since others give dependencies other features.
+packages="--workspace --exclude hbvib-bindings"
+step "compile" cargo build --release $packages --lib --bins --tests --example ring_damper --example flutter --example campbell
+step "wait for the Python packages" python_is_there
 [ "${1:-}" != build ] || { printf '%s' "$times"; exit 0; }
-step "tests of claims, programs in five languages" cargo test --release --no-fail-fast --test '*'
-step "unit tests of the library and of its numerics" cargo test --release --lib $units
+step "all tests, programs in five languages" cargo test --release $packages --no-fail-fast --lib --bins --tests
 # Examples in the documentation of the Rust interface.
-step "examples of the Rust interface" cargo test --release --doc -p hbvib
-step "readers of files" cargo test --release -p hbvib-io --lib --test '*'
-step "the command" cargo test --release -p hbvib-cli --test command --bin hbvib
+step "examples of the Rust interface" cargo test --release $packages --doc
 printf '%s' "$times"
 echo "all tests passed; sanitisers, lints of tests, Windows, damaged input and what takes long are in tests/deep.sh"

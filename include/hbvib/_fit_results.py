@@ -58,8 +58,10 @@ class Predicted(NamedTuple):
 class Profile(NamedTuple):
     """Least chi2 over one parameter, all others fitted again; made by Fit.profile.
 
-    value, chi2    of the scanned parameter; NaN where no fit was found.
-    best           least chi2 of the fit.
+    value, chi2    of the scanned parameter; NaN where no fit was found. Of a robust fit its loss, which is what is least.
+    best           least chi2 (loss) of the fit.
+    unit           rise of chi2 that is one standard deviation: 1, or chi2 by degree of freedom where the fit scaled the
+                   covariance by it.
 
     >>> import hbvib
     >>> import numpy as np
@@ -69,10 +71,11 @@ class Profile(NamedTuple):
     value: FloatArray
     chi2: FloatArray
     best: float
+    unit: float = 1.0
 
     def interval(self, rise: float = 3.841) -> tuple[float, float]:
-        """The interval in which chi2 is below the least one plus `rise`: 3.841 for 95 %, 1 for one standard deviation. An end is
-        infinite where the scan does not reach it.
+        """The interval in which chi2 is below the least one plus `rise` units: 3.841 for 95 %, 1 for one standard deviation. An
+        end is infinite where the scan does not reach it.
 
         >>> import hbvib
         >>> import numpy as np
@@ -80,7 +83,7 @@ class Profile(NamedTuple):
         (-inf, inf)
         """
         # The root is a line where chi2 is a parabola.
-        above = np.sqrt(np.maximum(self.chi2 - self.best, 0)) - np.sqrt(rise)
+        above = np.sqrt(np.maximum(self.chi2 - self.best, 0)) - np.sqrt(rise * self.unit)
         least = int(np.nanargmin(self.chi2))
         ends = []
         for step, missing in ((-1, -np.inf), (1, np.inf)):
@@ -131,6 +134,8 @@ class Fit:
             self.correlation: FloatArray = np.asarray(covariance / np.outer(self.sd, self.sd))
         self.chi2, self.degrees_of_freedom = float(info.chi2), int(info.degrees_of_freedom)
         self.names = [_name(one.parameter) for one in unknowns]
+        #: Rise of chi2 that is one standard deviation.
+        self._unit = 1.0
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} = {value:.5g} +- {sd:.2g}" for name, value, sd in zip(self.names, self.theta, self.sd))
@@ -190,7 +195,7 @@ class Fit:
 
     def profile(self, number: int, values: Optional[ArrayLike] = None) -> Profile:
         """Least chi2 at fixed values of one parameter, all others fitted again; None: 9 values within three standard deviations,
-        on the logarithm of what is positive.
+        on the logarithm of what is positive. Parameters that are tied to it go with it.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
@@ -208,24 +213,40 @@ class Fit:
         at = np.atleast_1d(np.asarray(values, float))
         chi2 = np.full(len(at), np.nan)
         for i, value in enumerate(at):
-            fixed = [one._replace(start=float(start)) for one, start in zip(self.unknowns, self.theta)]
-            fixed[number] = fixed[number]._replace(start=float(value), lower=float(value), upper=float(value))
-            chi2[i] = self._at_fixed(fixed, number)
-        return Profile(at, chi2, self.chi2)
+            fixed, leader = self._fixed_at(number, float(value))
+            chi2[i] = self._at_fixed(fixed, leader)
+        best = self.chi2 if self._options["huber"] == 0 else float(self.info.loss)
+        return Profile(at, chi2, best, self._unit)
+
+    def _fixed_at(self, number: int, value: float) -> tuple[list[Unknown], int]:
+        """The unknowns as they were fitted, but one at a value, with all that is tied to the same, and which of them is free else."""
+        leaders = list(range(len(self.unknowns)))
+        for i, one in enumerate(self.unknowns):
+            if one.tied_to >= 0:
+                leaders[i] = leaders[one.tied_to]
+        leader = leaders[number]
+        factor = value / self.theta[number] if self.theta[number] != 0 else 1.0
+        starts = [float(start * factor) if leaders[i] == leader else float(start) for i, start in enumerate(self.theta)]
+        if number == leader:
+            starts[leader] = value
+        fixed = [one._replace(start=start) for one, start in zip(self.unknowns, starts)]
+        fixed[leader] = fixed[leader]._replace(lower=starts[leader], upper=starts[leader])
+        return fixed, leader
 
     def _at_fixed(self, fixed: list[Unknown], number: int) -> float:
-        """Least chi2 with a fixed parameter."""
+        """Least chi2 (of a robust fit: loss) with a fixed parameter."""
         prior = self.unknowns[number].prior
         known = 0.0 if prior is None else ((float(fixed[number].start or 0.0) - prior[0]) / prior[1]) ** 2
         if any(one.tied_to < 0 and (one.lower is None or one.lower != one.upper) for one in fixed):
-            return self._original.fit(fixed, self.data, **self._options).chi2 + known
+            return float(self._original.fit(fixed, self.data, **self._options).info.loss) + known
         # Without anything that is free only the residuals are needed: those of predictions.
         total = known
         for one in self.data:
             at = self._with(np.array([float(u.start or 0.0) for u in fixed])).predict(
                 one.kind, one.x, force=one.force, response=one.response, mode=one.mode, omega=one.omega if any(one.omega) else None)
             numbers = one._residuals(at.value, at.second)
-            total += float((numbers ** 2).sum())
+            size, limit = np.abs(numbers), self._options["huber"]
+            total += float(np.where((limit > 0) & (size > limit), 2 * limit * size - limit ** 2, size ** 2).sum())
         return total
 
     def _with(self, theta: FloatArray) -> Fit:

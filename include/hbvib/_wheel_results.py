@@ -160,8 +160,8 @@ class WheelStudy:
                         float(values[high - 1]) if high <= n else np.inf)
 
     def weibull(self) -> WheelWeibull:
-        """The Weibull distribution of maxima of the greatest likelihood for the amplification, whose bound is sought up to
-        Whitehead's (Castanier & Pierre 2006, doi:10.2514/1.16345).
+        """The Weibull distribution of maxima of the greatest likelihood for the amplification (Castanier & Pierre 2006,
+        doi:10.2514/1.16345). The bound is sought up to a hundred times the span of the values above the largest of them.
 
         >>> import hbvib
         >>> import numpy as np

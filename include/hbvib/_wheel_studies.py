@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from ._results import FloatArray
 
 
+#: Step of delta in differences: its square is far below what a gradient needs, a peak by its rounding far above.
+_DIFFERENCE = 1e-5
 #: A blade as a degree of freedom of a sector, or a Response.
 Blade = Union[int, Response]
 
@@ -110,7 +112,9 @@ class _WheelStudies(_Owner):
         at = np.array([peaks.omega for peaks in found.responses])
         largest = np.where(np.isfinite(of_blades), of_blades, -np.inf).argmax(axis=0)
         each = np.arange(len(given))
-        tuned, gradient, _, _ = self._peak_of_blade(wheel, parameters, watched[0], omega, solver)
+        tuned, gradient, _ = self._peak_of_blade(wheel, parameters, watched[0], omega, solver)
+        if not np.isfinite(gradient).all():
+            gradient, _ = self._by_differences(np.zeros(sector.sectors), kind, dofs, direction, watched[0], omega, solver)
         # Blade s of a pattern is blade 0 of the pattern that is shifted by s.
         shifted = np.stack([np.roll(gradient, s) for s in range(sector.sectors)])
         predicted = tuned + (transform(given) @ shifted.T).max(axis=1)
@@ -154,7 +158,11 @@ class _WheelStudies(_Owner):
             sweeps += 1
             other = sector.wheel()
             other.mistune(sector, kind, pattern, dofs=dofs, direction=direction)
-            amplitude, gradient, frequency, _ = self._peak_of_blade(other, parameters, watched, omega, solver)
+            amplitude, gradient, frequency = self._peak_of_blade(other, parameters, watched, omega, solver)
+            if not np.isfinite(gradient).all():
+                gradient, more = self._by_differences(pattern, kind, dofs, direction, watched, omega, solver)
+                sweeps += more
+                return amplitude, gradient, frequency
             # By delta instead of the factor on the direction.
             slope = (transform(pattern + 1e-6) - transform(pattern - 1e-6)) / 2e-6
             return amplitude, gradient * slope, frequency
@@ -197,8 +205,24 @@ class _WheelStudies(_Owner):
             parameters.append(Parameter(cast(Any, name), direction=_difference(one.matrix(cast(Any, name)), before)))
         return wheel, parameters, (lambda x: (1 + x) ** 2 - 1) if kind == "frequency" else (lambda x: x)
 
+    def _by_differences(self, pattern: FloatArray, kind: Mistunings, dofs: Optional[ArrayLike], direction: Any, watched: Response,
+                        omega: ArrayLike, solver: Any) -> tuple[FloatArray, int]:
+        """Derivatives of the highest peak of a blade by delta of each sector, and the sweeps they took: central differences, for
+        a peak at which a contact begins to slip or touch, where the exact ones do not exist while those of the peak do."""
+        sector, gradient = cast("Model", self), np.empty(len(pattern))
+        for s in range(len(pattern)):
+            ends = []
+            for sign in (1, -1):
+                moved = pattern.copy()
+                moved[s] += sign * _DIFFERENCE
+                other = sector.wheel()
+                other.mistune(sector, kind, moved, dofs=dofs, direction=direction)
+                ends.append(self._peak_of_blade(other, (), watched, omega, solver)[0])
+            gradient[s] = (ends[0] - ends[1]) / (2 * _DIFFERENCE)
+        return gradient, 2 * len(pattern)
+
     def _peak_of_blade(self, wheel: Model, parameters: Sequence[Parameter], watched: Response, omega: ArrayLike,
-                       solver: Any) -> tuple[float, FloatArray, float, Branch]:
+                       solver: Any) -> tuple[float, FloatArray, float]:
         """Highest peak of a blade of a wheel, its derivatives by the parameters and its frequency."""
         branch = wheel.forced_response(omega, responses=[watched], **solver)
         peaks = branch.responses[0].peaks()
@@ -206,8 +230,8 @@ class _WheelStudies(_Owner):
             raise ArgumentError("no peak of the watched blade lies within omega", Status.E_ARGUMENT, 2)
         best = int(np.argmax(peaks.amplitude))
         point = int(peaks.point[best])
-        gradient = wheel.sensitivity(branch, point, parameters, response=0)
-        return float(peaks.amplitude[best]), np.array(gradient), float(peaks.omega[best]), branch
+        gradient = np.array(wheel.sensitivity(branch, point, parameters, response=0)) if parameters else np.empty(0)
+        return float(peaks.amplitude[best]), gradient, float(peaks.omega[best])
 
 
 def _difference(changed: Any, before: Any) -> Any:

@@ -7,14 +7,16 @@ use crate::problem::gauges::Seen;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::results::SeenWithError;
 use num_complex::Complex64;
+use std::hash::{DefaultHasher, Hasher as _};
 
 const CONTEXT: &str = "the responses";
 
 /// Points whose readings are kept: the ends of a step, and the peaks between them.
 const MOST_RECENT: usize = 64;
 
-/// A point by its frequency, its first unknown and its resolution.
-type Key = (u64, u64, usize);
+/// A point by a hash of its unknowns and its tangent, and by its resolution. Solutions at one frequency differ in any of their unknowns:
+/// some, as the mean of a sector, are zero in all.
+type Key = (u64, usize);
 
 /// Responses of a run, and what they are at the last points.
 pub(super) struct WatchedResponses<'a> {
@@ -31,8 +33,11 @@ pub(super) struct WatchedResponses<'a> {
 }
 
 fn key((point, resolution): PointAt<'_>) -> Key {
-    let first = point.v.first().copied().unwrap_or(0.0);
-    (point.parameter().to_bits(), first.to_bits(), resolution)
+    let mut hasher = DefaultHasher::new();
+    for value in point.v.iter().chain(&point.tangent) {
+        hasher.write_u64(value.to_bits());
+    }
+    (hasher.finish(), resolution)
 }
 
 impl<'a> WatchedResponses<'a> {

@@ -19,7 +19,7 @@ where it is out of date.
 
 The tests are a package of their own, which is compiled with little optimisation, the library with all of it. Unit tests see what is
 private, so they are compiled with the sources of the library; the packages in [units](units) do that without optimisation:
-`cargo test --release -p hbvib-unit-tests --lib`, and `-p hbvib-numerics-unit-tests` for the numerics.
+`cargo test --release -p hbvib-unit-tests`, and `-p hbvib-numerics-unit-tests` for the numerics.
 
 Beside the crates: [common](common) holds what they share, [data](data) reference values, [c_abi](c_abi) and
 [languages](languages) the programs in C, C++, Fortran and Python that `programs` builds and runs, and

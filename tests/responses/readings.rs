@@ -1,7 +1,10 @@
 //! Values of the responses at every stored point of a branch, against its own harmonics, sampled in time.
 
 use crate::common::chains::chain;
-use hbvib::{Branch, Component, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response};
+use hbvib::{
+    Branch, Component, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
+    forced_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -141,6 +144,56 @@ fn every_response_is_that_of_the_harmonics_in_time() {
         }
     }
     assert!(compared > 300, "{compared}");
+}
+
+/// The mean of this sector is zero in all of its motions, so that none is known by its frequency and its first unknown.
+#[test]
+fn solutions_at_one_frequency_have_readings_of_their_own() {
+    let mut model = Model::cyclic(1, 10).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[2.2]))
+        .unwrap();
+    model.set_rayleigh(0.0, 0.01).unwrap();
+    model.set_wave(7);
+    let mut between = Contact::cubic(0, Some(0), 0.1, 0.06);
+    between.sector_offset = 1;
+    model.add_contact(&between).unwrap();
+    model.add_force(0, 1, 0.9.into()).unwrap();
+    model.add_force(0, 2, Complex64::new(0.0, 0.3)).unwrap();
+    let solver = SolverOptions {
+        harmonics: 5,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    };
+    let responses = [Measure::Rms, Measure::Peak].map(|measure| Response {
+        measure,
+        dofs: &[0],
+        ..Response::default()
+    });
+    let range = ForcedOptions {
+        omega_start: 0.7,
+        omega_stop: 2.6,
+        at: &[1.5],
+        responses: &responses,
+        ..ForcedOptions::default()
+    };
+    let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
+    let found = branch.at(0);
+    assert_eq!(found.len(), 3);
+    for solution in found {
+        for (response, series) in responses.iter().zip(branch.responses()) {
+            let expected = expected(response.measure, &history(&branch, solution.point, response, 4096));
+            let told = series.values()[solution.point];
+            assert!((told - expected).abs() < 1e-8 * expected, "{told}, in time {expected}");
+        }
+        assert_eq!(
+            solution.amplitude.to_bits(),
+            branch.responses()[0].values()[solution.point].to_bits()
+        );
+    }
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn seed() -> u64 {
 }
 
 fn cases() -> u64 {
-    from_environment("HBVIB_CASES", some_of(600, 2_000))
+    from_environment("HBVIB_CASES", some_of(300, 2_000))
 }
 
 /// A cold start at the frequency of a case, and what the log says of it.

@@ -10,6 +10,7 @@ use crate::mesh_picture;
 use crate::node_motion::{ContactField, Places};
 use crate::output;
 use crate::points::chosen;
+use crate::responses;
 use crate::vtu::escaped;
 use hbvib::{Branch, Special};
 use std::f64::consts::TAU;
@@ -40,7 +41,8 @@ pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>)
 
 /// The page.
 fn page(job: &Job, curve: &Curve<'_>, built: &Built) -> String {
-    let (branch, unit) = (curve.branch, unit(job));
+    let (name, unit) = responses::amplitude(job);
+    let (branch, unit) = (curve.branch, unit.map_or(String::new(), |unit| format!(", {unit}")));
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>hbvib report</title>\n<style>{STYLE}</style>\n</head>\n\
          <body>\n<h1>Steady-state response</h1>\n<p>hbvib {}</p>\n<h2>Summary</h2>\n<pre>{}</pre>\n",
@@ -48,6 +50,7 @@ fn page(job: &Job, curve: &Curve<'_>, built: &Built) -> String {
         escaped(&output::summary(curve))
     );
     part(&mut text, "Response", response(curve, &unit));
+    let _ = writeln!(text, "<p>The amplitude is the {}.</p>", escaped(&name));
     text += &special(curve, &unit);
     let highest = chosen(branch, PointsName::HighestPeak).first().copied();
     if let (Some(at), true) = (highest, branch.contacts() > 0) {
@@ -86,14 +89,6 @@ fn page(job: &Job, curve: &Curve<'_>, built: &Built) -> String {
         escaped(&job.text)
     );
     text
-}
-
-fn unit(job: &Job) -> String {
-    job.output
-        .units
-        .length
-        .as_ref()
-        .map_or(String::new(), |unit| format!(", {unit}"))
 }
 
 /// A part with its title, or the reason why it is not there.

@@ -5,6 +5,7 @@ use crate::curve::Curve;
 use crate::job::Job;
 use crate::netcdf::{Dataset, Kind, Numbers, UNLIMITED};
 use crate::node_motion::Places;
+use crate::responses;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -36,10 +37,8 @@ pub fn write(path: &Path, job: &Job, (built, places): (&Built, Option<&Places>),
     let frequency = [("units", "Hz"), ("long_name", "frequency of the excitation")];
     data.variable("frequency", Kind::Real, &[point], &frequency);
     of.push(Box::new(|p, _| one(omega[p.unwrap_or(0)] / TAU)));
-    let amplitude = [
-        ("units", length),
-        ("long_name", "amplitude of the response degree of freedom"),
-    ];
+    let (long_name, unit) = responses::amplitude(job);
+    let amplitude = [("units", unit.as_deref().unwrap_or(MODEL)), ("long_name", &long_name)];
     data.variable("amplitude", Kind::Real, &[point], &amplitude);
     of.push(Box::new(|p, _| one(height[p.unwrap_or(0)])));
     data.variable("harmonics_used", Kind::Real, &[point], &[("units", "1")]);

@@ -225,11 +225,15 @@ pub fn summary(curve: &Curve<'_>) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
-        "{}, {:.6} to {:.6} Hz, response degree of freedom {}",
+        "{}, {:.6} to {:.6} Hz, {}",
         counted(curve.points(), "point"),
         omega.first().map_or(f64::NAN, |w| w / TAU),
         omega.last().map_or(f64::NAN, |w| w / TAU),
-        branch.response_dof()
+        if branch.responses().is_empty() {
+            format!("response degree of freedom {}", branch.response_dof())
+        } else {
+            "response 0".into()
+        }
     );
     let list = |text: &mut String, name: &str, special: &[[f64; 2]]| {
         for [omega, amplitude] in special {

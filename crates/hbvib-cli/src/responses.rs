@@ -3,7 +3,7 @@
 use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::curve::Curve;
-use crate::job::DofName;
+use crate::job::{DofName, Job};
 use hbvib::{Component, Measure, Response};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -88,6 +88,33 @@ pub fn responses<'a>(parts: &'a [ResponsePart], dofs: &'a [Vec<usize>]) -> Vec<R
         },
     };
     parts.iter().zip(dofs).map(one).collect()
+}
+
+/// What the amplitude of a job's points is, and its unit, where the job names that of length: the first response or, without any, the
+/// fundamental of the response degree of freedom.
+pub fn amplitude(job: &Job) -> (String, Option<String>) {
+    let length = job.output.units.length.as_deref();
+    let parts = job.forced.as_ref().map_or(&[][..], |_| &job.response);
+    let Some(first) = parts.first() else {
+        return (
+            "amplitude of the response degree of freedom".into(),
+            length.map(str::to_owned),
+        );
+    };
+    let (component, by_time) = match first.component {
+        ComponentName::Displacement => ("displacement", ""),
+        ComponentName::Velocity => ("velocity", "/s"),
+        ComponentName::Acceleration => ("acceleration", "/s2"),
+    };
+    let measure = match first.measure {
+        MeasureName::Fundamental => "amplitude of the fundamental".to_owned(),
+        MeasureName::Harmonic => format!("amplitude of harmonic {}", first.harmonic.unwrap_or(1)),
+        MeasureName::Peak => "largest value over a period".to_owned(),
+        MeasureName::Rms => "root mean square".to_owned(),
+        MeasureName::Range => "largest less smallest value over a period".to_owned(),
+    };
+    let name = format!("{measure} of the {component} of response 0");
+    (name, length.map(|length| format!("{length}{by_time}")))
 }
 
 /// The highest peak of each response, a line each.

@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 
 import hbvib.io
-from common import check, finish, hbvib, raises
+from common import check, close, finish, hbvib, raises
 
 
 def rubbing(kt=1.0, mu=0.3):
@@ -46,6 +46,23 @@ check("the report has all names", all(name in fit.report() for name in ("kt 0", 
 # A profile of a parameter that is known well is a parabola: its interval is that of the covariance.
 low, high = fit.profile(1).interval(1.0)
 check("the profile agrees with the covariance", abs((high - low) / (2 * fit.sd[1]) - 1) < 0.1, (low, high, fit.sd[1]))
+
+# What is tied to a scanned parameter goes with it: two springs in parallel, the second half of the first; the profile is that of the sum
+# alone, seen from either of them. Where the covariance is scaled by chi2 the interval is, too.
+pair = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+for kt in (0.2, 0.1):
+    pair.add_contact("jenkins", 0, kt=kt, mu=1.0, preload=1e6)
+pair.add_force(0, 1.0)
+w = np.linspace(0.8, 1.6, 12)
+noisy = hbvib.Measured("response", w, 1 / (1.4 - w * w + 0.1j * w) + 0.05 * np.cos(40 * w), 0.02)
+tied = [hbvib.Unknown(hbvib.Parameter("kt", 0), 0.2), hbvib.Unknown(hbvib.Parameter("kt", 1), 0.1, tied_to=0)]
+for scaled in (False, True):
+    fitted = pair.fit(tied, noisy, harmonics=1, scale_covariance=scaled)
+    for number in (0, 1):
+        profile = fitted.profile(number)
+        check("no profile is below the fit", profile.chi2.min() > profile.best * (1 - 1e-9), profile)
+        low, high = profile.interval(1.0)
+        close("the interval of a tied pair is its deviation", (high - low) / (2 * fitted.sd[number]), 1.0, 0.05)
 
 # The predicted peak against that of the fitted model itself.
 peak = fit.predict("peak", 1.25, force=0.3, omega=(0.95, 1.6))
