@@ -61,20 +61,12 @@ def model_of(stiffness, mass, number, **more):
     return model
 
 
-def solved(name, model, dof, hertz):
-    clock = time.process_time()
-    ends = 2 * np.pi * np.array([hertz[0], hertz[-1]])
-    branch = model.forced_response(tuple(ends), harmonics=1, response_dof=dof, at=2 * np.pi * np.array(hertz))
-    print(f"{name}: {len(branch.omega)} points, {time.process_time() - clock:.1f} s of processor time")
-    return branch
-
-
 whole = model_of(stiffness, mass, np.arange(len(dofs)))
 if len(sys.argv) > 3:
-    hertz = np.linspace(float(sys.argv[2]), float(sys.argv[3]), 5)
+    hertz = np.linspace(float(sys.argv[2]), float(sys.argv[3]), 3)
 else:
     lowest = whole.linear_modes(1, diameter=3).omega[0] / (2 * np.pi)
-    hertz = lowest * np.linspace(0.98, 1.02, 5)
+    hertz = lowest * np.linspace(0.99, 1.01, 3)
 
 clock = time.process_time()
 kept = sorted({row[node, d] for pair in faces + contacts for node in pair for d in (1, 2, 3)} | {tip})
@@ -99,14 +91,18 @@ number = np.full(len(dofs), -1)
 number[kept] = np.arange(n)
 reduced = model_of(reduced_k, reduced_m, number)
 
-a = solved("all degrees of freedom", whole, tip, hertz)
-b = solved("Craig-Bampton", reduced, number[tip], hertz)
-worst = 0.0
+clock = time.process_time()
+ends = 2 * np.pi * np.array([hertz[0], hertz[-1]])
+branch = whole.forced_response(tuple(ends), harmonics=1, response_dof=tip, at=2 * np.pi * hertz)
+print(f"all degrees of freedom: {len(branch)} points, {time.process_time() - clock:.1f} s of processor time")
+clock, worst = time.process_time(), 0.0
 for i, frequency in enumerate(hertz):
-    (x,), (y,) = a.at(i).amplitude, b.at(i).amplitude
-    worst = max(worst, abs(y / x - 1))
-    print(f"{frequency:.4f} Hz: {x:.9e} {y:.9e}")
-(x,), (y,) = (branch.peaks().omega[branch.peaks().amplitude.argmax()][None] for branch in (a, b))
-(v,), (w,) = (branch.peaks().amplitude.max()[None] for branch in (a, b))
-print(f"peak: {x / 2 / np.pi:.6f} {y / 2 / np.pi:.6f} Hz, {v:.9e} {w:.9e}")
-print(f"largest difference: {max(worst, abs(y / x - 1), abs(w / v - 1)):.1e}")
+    point = branch.at(i).point[0]
+    # The reduced model is dense: it is solved at these frequencies alone, from the motion of the kept degrees of freedom.
+    guess = np.zeros((2, order), complex)
+    guess[:, :n] = branch.harmonics(point)[:, kept]
+    found = reduced.forced_response(2 * np.pi * frequency, harmonics=1, response_dof=int(number[tip]), guess=guess)
+    a, b = branch.at(i).amplitude[0], found.amplitude[0]
+    worst = max(worst, abs(b / a - 1))
+    print(f"{frequency:.4f} Hz: {a:.9e}, Craig-Bampton {b:.9e}, slip fraction up to {found.slip_fraction.max():.2f}")
+print(f"Craig-Bampton: {time.process_time() - clock:.1f} s of processor time; largest difference {worst:.1e}")
