@@ -38,9 +38,9 @@ class AxisNodes:
         whole = np.pad(np.asarray(matrix), (0, more))
         if tied:
             whole = whole + 0.0
-            for a, b in zip(self.nodes.ravel(), self.images.ravel()):
-                whole[[a, b], [a, b]] += self.stiffness
-                whole[[a, b], [b, a]] -= self.stiffness
+            for node, image in zip(self.nodes.ravel().tolist(), self.images.ravel().tolist()):
+                whole[[node, image], [node, image]] += self.stiffness
+                whole[[node, image], [image, node]] -= self.stiffness
         return whole
 
     def beside(self, axis: Any, angle: float) -> tuple[Any, Any]:
@@ -51,10 +51,10 @@ class AxisNodes:
         return np.tile(away, (len(self.nodes), 1)), np.tile(image, (len(self.nodes), 1))
 
 
-def axis_nodes(nodes: Optional[Any], stiffness: Any, frame: str) -> Optional[AxisNodes]:
+def axis_nodes(nodes: Optional[Any], stiffness: Any, is_cartesian: bool) -> Optional[AxisNodes]:
     """None where there are none."""
     if nodes is None or not np.size(nodes):
         return None
-    if frame != "cartesian":
-        raise ValueError(f"on_axis needs frame = 'cartesian', not {frame!r}: there is no radius on the axis")
+    if not is_cartesian:
+        raise ValueError("on_axis needs frame = 'cartesian': there is no radius on the axis")
     return AxisNodes(nodes, stiffness if hasattr(stiffness, "diagonal") else np.asarray(stiffness))

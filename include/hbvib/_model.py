@@ -117,7 +117,7 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         if faces[0].ndim == faces[1].ndim == 2 and faces[0].shape[1] != faces[1].shape[1]:
             raise ValueError(f"left has shape {faces[0].shape}, right {faces[1].shape}: needs equal shapes")
         components = faces[0].shape[1] if faces[0].ndim == 2 else 1
-        centre = axis_nodes(on_axis, stiffness, frame)
+        centre = axis_nodes(on_axis, stiffness, _member(SectorFrame, frame) == SectorFrame.CARTESIAN)
         if centre is not None:
             faces = [np.concatenate([face.reshape(-1, 3), more]) for face, more in zip(faces, (centre.nodes, centre.images))]
             components = 3
