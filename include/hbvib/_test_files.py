@@ -23,7 +23,7 @@ class TestFunction(NamedTuple):
 
     text         the lines of text of its head.
     kind         1: a history in time, 4: a frequency response, 6: a coherence, 12: a spectrum.
-    node, direction, reference_node, reference_direction   of response and reference; 1 to 3 along x, y, z, with a sign.
+    node, direction, reference_node, reference_direction   of response and reference; 1 to 3 along x, y, z, negative against them.
     quantity     of the ordinate: "displacement", "velocity", "acceleration", ..., or "".
     x, values    times or frequencies in hertz, real or complex numbers.
 
@@ -48,8 +48,8 @@ class TestFunction(NamedTuple):
         return 2 * np.pi * self.x
 
     def response(self, force: float = 1.0) -> ComplexArray:
-        """Complex displacements of a frequency response under a force of this amplitude: those of velocities and accelerations are
-        divided by i omega once or twice.
+        """Complex displacements of a frequency response under a force of this amplitude, both along the positive axes: velocities and
+        accelerations are divided by i omega once or twice, and a negative direction turns the sign.
 
         >>> import hbvib, hbvib.io
         >>> import numpy as np
@@ -58,7 +58,8 @@ class TestFunction(NamedTuple):
         array([-1.-0.j])
         """
         order = {"velocity": 1, "acceleration": 2}.get(self.quantity, 0)
-        return np.asarray(force * self.values / (1j * self.omega) ** order)
+        sense = -1.0 if (self.direction < 0) != (self.reference_direction < 0) else 1.0
+        return np.asarray(sense * force * self.values / (1j * self.omega) ** order)
 
 
 def read_uff(path: Any) -> list[TestFunction]:

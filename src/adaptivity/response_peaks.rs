@@ -39,17 +39,23 @@ impl BranchTracer<'_> {
         if SpecialPoint::Peak.between(a.0, b.0) && brackets.len() <= 1 {
             return self.find_peak_on_arc(analysis, SpecialKind::Peak, a, b).map(|_| ());
         }
-        self.find_peaks_within(analysis, SpecialKind::Peak, ((first, last), resolution), brackets)
+        let found = self.find_peaks_within(analysis, SpecialKind::Peak, ((first, last), resolution), brackets)?;
+        // A response that turns by half a circle within the arc is no cubic: its maximum need not lie where that has them.
+        if !found && SpecialPoint::Peak.between(a.0, b.0) {
+            self.find_peak_on_arc(analysis, SpecialKind::Peak, a, b)?;
+        }
+        Ok(())
     }
 
-    /// Records the peaks of a kind between the ends of parts of an arc, whose solutions decide.
+    /// Records the peaks of a kind between the ends of parts of an arc, whose solutions decide; whether there was one.
     fn find_peaks_within(
         &mut self,
         analysis: &mut dyn Traceable,
         kind: SpecialKind,
         (ends, resolution): ((&Point, &Point), usize),
         brackets: Vec<(f64, f64)>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
+        let mut any = false;
         for (low, high) in brackets {
             analysis.select(resolution)?;
             let solved = [low, high].map(|s| self.solved_between(analysis, kind, ends, s));
@@ -58,10 +64,11 @@ impl BranchTracer<'_> {
                 continue;
             };
             if SpecialPoint::Peak.between(&low, &high) {
-                self.find_peak_on_arc(analysis, kind, (&low, resolution), (&high, resolution))?;
+                let found = self.find_peak_on_arc(analysis, kind, (&low, resolution), (&high, resolution))?;
+                any |= found.is_some();
             }
         }
-        Ok(())
+        Ok(any)
     }
 
     /// Records the peaks of all further responses between two neighbours. Each that is found divides the arc for the next ones:
@@ -144,7 +151,11 @@ impl BranchTracer<'_> {
             }
             return self.find_peak_on_arc(analysis, kind, (first, resolution), (last, resolution));
         }
-        self.find_peaks_within(analysis, kind, ((first, last), resolution), brackets)?;
+        if !self.find_peaks_within(analysis, kind, ((first, last), resolution), brackets)?
+            && SpecialPoint::Peak.between(first, last)
+        {
+            return self.find_peak_on_arc(analysis, kind, (first, resolution), (last, resolution));
+        }
         Ok(None)
     }
 

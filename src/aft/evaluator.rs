@@ -75,14 +75,18 @@ impl Evaluator {
         Self::refined(set, (samples, 1), laws)
     }
 
-    /// The same for forces alone, into an [`Evaluation::force_alone`].
+    /// As [`Self::refined`] for forces alone, into an [`Evaluation::force_alone`].
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn force_alone<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+    pub fn force_alone<'l>(
+        set: &HarmonicSet,
+        (samples, refinement): (usize, usize),
+        laws: impl Iterator<Item = &'l dyn Law>,
+    ) -> Result<Self> {
         let sampling = Sampling {
             requested: samples,
-            refinement: 1,
+            refinement,
             other: false,
         };
         Self::with(set, (sampling, true), laws)

@@ -423,7 +423,7 @@ fn evaluate(
         (evaluation, Evaluator::new(set, samples, once)?)
     } else {
         let evaluation = Evaluation::force_alone(set, contact.directions())?;
-        (evaluation, Evaluator::force_alone(set, samples, once)?)
+        (evaluation, Evaluator::force_alone(set, (samples, 1), once)?)
     };
     evaluator.prepare(set, &packed[..set.packed_len()], interrupt)?;
     evaluator.evaluate(&*law, set, packed, omega, &mut evaluation, interrupt)?;

@@ -279,7 +279,7 @@ impl Walk<'_> {
         }
         let set = HarmonicSet::all(0)?;
         let law = contact.law(1.0)?;
-        let mut evaluator = Evaluator::force_alone(&set, self.solver.samples, core::iter::once(&*law))?;
+        let mut evaluator = Evaluator::force_alone(&set, (self.solver.samples, 1), core::iter::once(&*law))?;
         let mut found = Evaluation::force_alone(&set, count)?;
         if count == 1 {
             evaluator.prepare(&set, &motion, self.interrupt)?;

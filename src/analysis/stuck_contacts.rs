@@ -64,7 +64,7 @@ pub(super) fn stuck_contacts(
         return Ok(stuck);
     }
     let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
-    let mut evaluator = Evaluator::force_alone(set, samples, laws())?;
+    let mut evaluator = Evaluator::force_alone(set, (samples, 1), laws())?;
     let most = laws().map(crate::contact::Law::directions).max().unwrap_or(0);
     let mut found = Vec::new();
     for d in 1..=most {

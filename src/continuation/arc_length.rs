@@ -88,6 +88,9 @@ const LINE_BOUNDS: (f64, f64) = (1e-3, 1.4e-2);
 /// Motions below this share of the largest so far no longer refine the metric.
 const FLOOR: f64 = 1e-2;
 
+/// Relative motions below this share of the largest motion of the structure, the unit of all lengths, are its rounding.
+const ROUNDING_OF_MOTION: f64 = 1e-12;
+
 /// Relative change of the parameter that is rounding, and the number of points in a row, no further apart, that show a branch
 /// which ends in rounding. An amplitude that grows without bound at a resonance would else be followed there by chance.
 const ARC_LENGTH_ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -317,9 +320,14 @@ impl Continuation {
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
     }
 
+    /// Size below which motions no longer refine the metric.
+    fn least_size(&self) -> f64 {
+        (FLOOR * self.largest.0).max(ROUNDING_OF_MOTION)
+    }
+
     /// Units for the step that starts at the current point.
     fn metric(&self) -> Metric {
-        Metric::along(self.size.max(FLOOR * self.largest.0), &self.settings)
+        Metric::along(self.size.max(self.least_size()), &self.settings)
     }
 
     /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
@@ -425,7 +433,7 @@ impl Continuation {
         let n = predicted.len() - 1;
         let squares = predicted[..n].iter().zip(&point.v).map(|(a, b)| (a - b) * (a - b));
         let difference = squares.sum::<f64>().sqrt();
-        let motion = relative(difference, size.max(FLOOR * self.largest.0));
+        let motion = relative(difference, size.max(self.least_size()));
         let observed = relative(
             (amplitude - point.amplitude).norm(),
             point.amplitude.norm().max(FLOOR * self.largest.1),

@@ -189,6 +189,9 @@ impl Quadratic<'_> {
                 }
             }
             let mut eigenvalue = value * unit;
+            if oscillates && self.is_rigid(eigenvalue, &shape) {
+                continue;
+            }
             if !oscillates {
                 eigenvalue.im = 0.0;
                 if !self.grows(eigenvalue.re, &shape) {
@@ -204,6 +207,13 @@ impl Quadratic<'_> {
     fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
         let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
         force < -ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
+    }
+
+    /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below that of the forces. The two eigenvalues zero of a motion
+    /// that nothing holds lie apart by the root of rounding, in any direction.
+    fn is_rigid(&self, eigenvalue: Complex64, x: &[Complex64]) -> bool {
+        let forces = terms(self.stiffness, x) + eigenvalue.norm() * terms(self.damping, x);
+        eigenvalue.norm_sqr() * quadratic(self.mass, x) <= ROUNDING * forces
     }
 
     /// λ²M + λC + K

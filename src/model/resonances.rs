@@ -154,7 +154,7 @@ impl Model {
 }
 
 /// The resonances of harmonic `h` where gyroscopic forces act at a fixed speed, which are no small damping: eigenvalues of the
-/// quadratic problem. `None` if there are too many below the range.
+/// quadratic problem. `None` if there are too many below the range, or if one of them was not reached: a response goes on without them.
 ///
 /// # Errors
 /// Those of the eigensolvers.
@@ -168,7 +168,10 @@ pub fn gyroscopic_frequencies(
     let number = h as f64;
     let mut count = if n > RESONANCES_DENSE_UP_TO { FIRST_MODES } else { n };
     loop {
-        let modes = problem.lowest(count, interrupt)?;
+        let modes = match problem.lowest(count, interrupt) {
+            Err(e) if e.status == Status::NoConvergence => return Ok(None),
+            modes => modes?,
+        };
         let is_whole = modes.len() < count || count >= n;
         if !is_whole && modes.last().is_some_and(|(value, _)| value.im <= high * number) {
             if count >= RESONANCES_MOST_GYROSCOPIC {

@@ -84,6 +84,18 @@ impl<'a> ContactForces<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn unchecked(condensed: &'a Condensed, samples: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        Self::with((condensed, samples), false, interrupt)
+    }
+
+    /// As [`Self::unchecked`] for the forces alone: their Jacobians are empty, which saves most of an evaluation with many harmonics.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn forces_alone(condensed: &'a Condensed, samples: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        Self::with((condensed, samples), true, interrupt)
+    }
+
+    fn with((condensed, samples): (&'a Condensed, usize), alone: bool, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         const CONTEXT: &str = "the contact forces";
         // A linear problem has no contact to evaluate, and its harmonics need not be equidistant.
         let linear = condensed.coordinates() == 0;
@@ -95,11 +107,20 @@ impl<'a> ContactForces<'a> {
         let mut found = Vec::new();
         for d in 1..=most {
             let used = laws().any(|law| law.directions() == d);
-            let memory = if used { Some(Evaluation::new(set, d)?) } else { None };
+            let memory = match (used, alone) {
+                (false, _) => None,
+                (_, false) => Some(Evaluation::new(set, d)?),
+                (_, true) => Some(Evaluation::force_alone(set, d)?),
+            };
             try_push(&mut found, memory, CONTEXT)?;
         }
         let samples = if linear { 0 } else { samples };
-        let evaluator = Box::new(Evaluator::refined(set, (samples, condensed.refinement()), laws())?);
+        let sampling = (samples, condensed.refinement());
+        let evaluator = Box::new(if alone {
+            Evaluator::force_alone(set, sampling, laws())?
+        } else {
+            Evaluator::refined(set, sampling, laws())?
+        });
         Ok(Self {
             arch: Arch::new(),
             condensed,
@@ -118,7 +139,7 @@ impl<'a> ContactForces<'a> {
             force: try_vec(size, 0.0, CONTEXT)?,
             offset: try_vec(size, 0.0, CONTEXT)?,
             by_omega: try_vec(size, 0.0, CONTEXT)?,
-            jacobians: Blocks::new(condensed, m)?,
+            jacobians: Blocks::new(condensed, if alone { 0 } else { m })?,
             all_stuck: false,
             all_linear: false,
             linear: try_vec(condensed.coordinates(), false, CONTEXT)?,

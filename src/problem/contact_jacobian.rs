@@ -22,7 +22,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Zero blocks of order `m` for the laws of a condensed model.
+    /// Zero blocks of order `m` for the laws of a condensed model; 0 where the forces alone are evaluated.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -91,6 +91,9 @@ impl Blocks {
     /// returns where those of the next law begin. The contents of `jacobian` afterwards are unspecified.
     pub fn add(&mut self, from: usize, d: usize, jacobian: &mut Vec<f64>) -> usize {
         let m = self.order;
+        if m == 0 {
+            return from + d * d;
+        }
         if self.filled == [false] && self.values.len() == jacobian.len() {
             // One law alone fills all blocks: no copy is needed.
             core::mem::swap(&mut self.values, jacobian);

@@ -145,7 +145,7 @@ impl<'a> Orbit<'a> {
             omega,
         } = self.motion;
         let mut found = Evaluation::force_alone(set, directions)?;
-        let mut evaluator = Evaluator::force_alone(set, self.samples, std::iter::once(law))?;
+        let mut evaluator = Evaluator::force_alone(set, (self.samples, 1), std::iter::once(law))?;
         if directions == 1 {
             evaluator.prepare(set, packed, interrupt)?;
         }

@@ -65,7 +65,7 @@ impl<'a> Recovery<'a> {
             workspace: Workspace::new(condensed, None)?,
             motion: &[],
             omega: 0.0,
-            forces: ContactForces::unchecked(condensed, *samples, interrupt)?,
+            forces: ContactForces::forces_alone(condensed, *samples, interrupt)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             q: Vec::new(),
         };

@@ -2,7 +2,10 @@
 
 use crate::common::depth::some_of;
 use hbvib::contact::Contact;
-use hbvib::{ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Speed, forced_response};
+use hbvib::{
+    ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions, Special, Speed,
+    forced_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -222,6 +225,55 @@ fn gyroscopic_structures_of_every_size_have_every_peak() {
                 &right,
                 &format!("{n} masses in a plane, {gyroscopic}"),
             );
+        }
+    }
+}
+
+/// The second harmonic of a mass that neither touches the contact nor is coupled to it: its response is no unknown, and turns by half a
+/// circle within one step.
+#[test]
+fn a_harmonic_that_no_contact_feels_has_its_peak() {
+    let responses = [Response {
+        measure: Measure::Harmonic(2),
+        dofs: &[1],
+        ..Response::default()
+    }];
+    for beta in [0.02, 0.005, 0.001] {
+        for k in (0..some_of(12, 40)).map(|i| 1.2 + 10.8 * f64::from(i) / some_of(11.0, 39.0)) {
+            let mut model = Model::new(2).unwrap();
+            with_matrix(&mut model, MatrixKind::Mass, &[1.0, 0.0, 0.0, 1.0]);
+            with_matrix(&mut model, MatrixKind::Stiffness, &[1.0, 0.0, 0.0, k]);
+            model.set_rayleigh(0.0, beta).unwrap();
+            model.add_contact(&Contact::cubic(0, None, 0.0, 0.01)).unwrap();
+            model.add_force(0, 1, 0.05.into()).unwrap();
+            model.add_force(1, 2, 0.5.into()).unwrap();
+            // |k − s + i√s βk| is least where s = 4ω² is k − β²k²/2.
+            let s = k - 0.5 * (beta * k).powi(2);
+            let (omega, amplitude) = (0.5 * s.sqrt(), 0.5 / (k - s).hypot(s.sqrt() * beta * k));
+            if !(0.45..2.3).contains(&omega) {
+                continue;
+            }
+            for (omega_start, omega_stop) in [(0.4, 2.4), (2.4, 0.4)] {
+                let range = ForcedOptions {
+                    omega_start,
+                    omega_stop,
+                    responses: &responses,
+                    ..ForcedOptions::default()
+                };
+                let branch = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap();
+                let near = |peak: &&Special| (peak.omega - omega).abs() < 1e-6 * omega;
+                let found = branch.peaks().iter().find(near).unwrap_or_else(|| {
+                    panic!(
+                        "{k}, {beta}, from {omega_start}: no peak {amplitude} at {omega}: {:?}",
+                        branch.peaks()
+                    )
+                });
+                assert!(
+                    (found.amplitude - amplitude).abs() < 1e-8 * amplitude,
+                    "{k} {beta}: {}",
+                    found.amplitude
+                );
+            }
         }
     }
 }

@@ -204,9 +204,12 @@ fn csv(path: &Path) -> Outcome<Table> {
     Ok(table)
 }
 
-/// The function of a universal file, times the force of the test where it is a frequency response.
+/// The function of a universal file as displacements along the positive axes: times the force of the test where it is a frequency
+/// response, and over iω for each order of a velocity or an acceleration.
 fn universal(path: &Path, part: &DataPart) -> Outcome<Table> {
     const FREQUENCY_RESPONSE: i64 = 4;
+    const VELOCITY: i64 = 11;
+    const ACCELERATION: i64 = 12;
     let all = read_universal(path).map_err(|e| e.to_string())?;
     let is_wanted = |function: &&hbvib_io::Function| {
         part.node.is_none_or(|node| function.response.0 == node)
@@ -215,22 +218,40 @@ fn universal(path: &Path, part: &DataPart) -> Outcome<Table> {
     let Some(function) = all.functions.iter().find(is_wanted) else {
         return Err("has no function (data set 58) at this node and direction".into());
     };
-    let factor = if function.kind == FREQUENCY_RESPONSE {
-        part.frf_force
-    } else {
-        1.0
+    let order = match function.quantity {
+        // Files that do not tell mean displacements, as Python's reader takes them.
+        0 | 8 => 0,
+        VELOCITY => 1,
+        ACCELERATION => 2,
+        other => {
+            return Err(format!(
+                "the function has values of type {other} (data set 58, ninth line), needs 8 (displacement), 11 (velocity) or 12 (acceleration)"
+            ));
+        }
     };
-    let part_of = |of: fn(&(f64, f64)) -> f64| function.values.iter().map(|z| factor * of(z)).collect();
+    let sense = |(_, direction): (i64, i64)| if direction < 0 { -1.0 } else { 1.0 };
+    let mut factor = sense(function.response);
+    if function.kind == FREQUENCY_RESPONSE {
+        factor *= part.frf_force * sense(function.reference);
+    }
+    if order > 0 && function.abscissa.contains(&0.0) {
+        return Err(
+            "has a velocity or an acceleration at 0 Hz, which tells no displacement; leave that line out".into(),
+        );
+    }
+    let values: Vec<Complex64> = function
+        .abscissa
+        .iter()
+        .zip(&function.values)
+        .map(|(hz, (re, im))| factor * Complex64::new(*re, *im) / Complex64::new(0.0, TAU * hz).powi(order))
+        .collect();
     Ok(Table {
         columns: vec![
             ("hz".into(), function.abscissa.clone()),
-            ("re".into(), part_of(|z| z.0)),
-            ("im".into(), part_of(|z| z.1)),
-            (
-                "amplitude".into(),
-                function.values.iter().map(|z| factor * z.0.hypot(z.1)).collect(),
-            ),
+            ("re".into(), values.iter().map(|z| z.re).collect()),
+            ("im".into(), values.iter().map(|z| z.im).collect()),
+            ("amplitude".into(), values.iter().map(|z| z.norm()).collect()),
         ],
-        rows: function.values.len(),
+        rows: values.len(),
     })
 }

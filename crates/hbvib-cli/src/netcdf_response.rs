@@ -27,9 +27,12 @@ pub fn write(path: &Path, job: &Job, (built, places): (&Built, Option<&Places>),
     let mut data = Dataset::default();
     data.attribute("title", "Steady-state response, all harmonics");
     data.attribute("source", concat!("hbvib ", env!("CARGO_PKG_VERSION")));
-    let convention =
-        "x(t) = Re sum_h (displacement_real + i displacement_imag) exp(i h 2 pi frequency t), sector s + 1 lags";
-    data.attribute("convention", convention);
+    let mut convention =
+        "x(t) = Re sum_h (displacement_real + i displacement_imag) exp(i h 2 pi frequency t)".to_owned();
+    if branch.reduction().sectors > 1 {
+        convention += ", of sector 0; in harmonic h sector s + 1 lags sector s by h 2 pi engine_order / sectors";
+    }
+    data.attribute("convention", &convention);
     data.attribute("response_dof", &built.nodes.name_of(branch.response_dof()));
     let point = data.dimension("point", UNLIMITED);
     let harmonic = data.dimension("harmonic", curve.rows());

@@ -69,6 +69,8 @@ fn responses(built: &Built, curve: &Curve<'_>) -> Outcome<Vec<Function>> {
             kind: 12,
             response,
             reference: (0, 0),
+            // Displacements.
+            quantity: 8,
             abscissa: omega.iter().map(|omega| omega / TAU).collect(),
             values,
         })

@@ -71,6 +71,73 @@ fn a_fit_finds_the_values_behind_its_data() {
     }
 }
 
+/// A frequency response as a universal file, as an accelerometer or another sensor along or against its axis gives it.
+fn universal(quantity: i64, (sensor, hammer): (i64, i64)) -> String {
+    let order = [8, 11, 12].iter().position(|known| *known == quantity).unwrap_or(0);
+    let sense = if (sensor < 0) == (hammer < 0) { 1.0 } else { -1.0 };
+    let mut text = format!("{:>6}\n{:>6}\na sensor\nNONE\nNONE\nNONE\nNONE\n", -1, 58);
+    let _ = writeln!(
+        text,
+        "{:>5}{:>10}{:>5}{:>10} {:<10}{:>10}{sensor:>4} {:<10}{:>10}{hammer:>4}",
+        4, 1, 0, 0, "NONE", 1, "NONE", 1
+    );
+    let _ = writeln!(
+        text,
+        "{:>10}{:>10}{:>10}{:>13}{:>13}{:>13}",
+        6, 9, 0, "0.0e0", "0.0e0", "0.0e0"
+    );
+    for (kind, label) in [(18, "Frequency"), (quantity, "Response"), (13, "Force"), (0, "NONE")] {
+        let _ = writeln!(text, "{kind:>10}{:>5}{:>5}{:>5} {label:<20} {:<20}", 0, 0, 0, "NONE");
+    }
+    for i in 0..9 {
+        let omega = 0.9 + 0.03 * f64::from(i);
+        let (a, b) = (1.1 - omega * omega, 0.1 * omega);
+        let (mut re, mut im) = (sense * a / (a * a + b * b), -sense * b / (a * a + b * b));
+        for _ in 0..order {
+            (re, im) = (-omega * im, omega * re);
+        }
+        let _ = writeln!(text, "{:>13.5e}{re:>20.11e}{im:>20.11e}", omega / std::f64::consts::TAU);
+    }
+    text + "    -1\n"
+}
+
+#[test]
+fn universal_files_tell_displacements_along_the_axes() {
+    for (k, (quantity, directions)) in [
+        (8, (3, 3)),
+        (11, (3, 3)),
+        (12, (3, 3)),
+        (8, (-3, 3)),
+        (12, (3, -3)),
+        (11, (-3, -3)),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("universal_{k}");
+        let path = crate::common::empty_folder("fits", &format!("{name}_file")).join("test.uff");
+        fs::write(&path, universal(quantity, directions)).unwrap();
+        let data = format!("{}'\nfrf_force = 0.2\nsigma = 0.01\n", path.display());
+        let (output, folder) = run(&name, "fit", &FIT.replace("FILE'\n", &data));
+        assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
+        let json: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.join("fit.json")).unwrap()).unwrap();
+        for (k, truth) in [1.1, 1.0].into_iter().enumerate() {
+            // Frequencies have six digits.
+            assert!(
+                (json["theta"][k].as_f64().unwrap() - truth).abs() < 1e-3,
+                "{quantity} {directions:?}: {json}"
+            );
+        }
+    }
+    let path = crate::common::empty_folder("fits", "universal_force_file").join("test.uff");
+    fs::write(&path, universal(13, (3, 3))).unwrap();
+    let data = format!("{}'\nfrf_force = 0.2\nsigma = 0.01\n", path.display());
+    let (output, _) = run("universal_force", "fit", &FIT.replace("FILE'\n", &data));
+    let said = crate::common::printed(&output.stderr);
+    assert!(!output.status.success() && said.contains("type 13"), "{said}");
+}
+
 #[test]
 fn a_fit_that_cannot_be_computed_is_refused_by_its_part() {
     for (name, parts, words) in [

@@ -324,6 +324,7 @@ pub unsafe extern "C" fn hbvib_io_results_add_function(
             kind: 12,
             response: (node, direction),
             reference: (0, 0),
+            quantity: 8,
             abscissa,
             values,
         });

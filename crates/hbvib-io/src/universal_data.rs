@@ -35,6 +35,9 @@ pub struct Function {
     pub response: (i64, i64),
     /// Node and direction of the reference.
     pub reference: (i64, i64),
+    /// What the values are, as data set 58 numbers it: 8 displacements, 9 reaction forces, 11 velocities, 12 accelerations, 13 forces; 0
+    /// unknown.
+    pub quantity: i64,
     /// Times or frequencies.
     pub abscissa: Vec<f64>,
     /// Real and imaginary parts.
@@ -161,7 +164,9 @@ pub(crate) fn function(lines: &mut UniversalLines, binary: Option<&str>) -> Resu
         abscissa.push(x);
         values.extend(paired(value, is_complex));
     }
+    let quantity = head[8].split_whitespace().next().and_then(|word| word.parse().ok());
     Ok(Function {
+        quantity: quantity.unwrap_or(0),
         kind: field(0, 5),
         response: (field(41, 51), field(51, 55)),
         reference: (field(66, 76), field(76, 80)),

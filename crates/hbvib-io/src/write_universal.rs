@@ -20,7 +20,7 @@ const WIDTH: usize = 80;
 /// Most values of a node that are written on one line.
 const IN_LINE: usize = 3;
 
-/// Writes the nodes, functions and shapes of a universal file; functions and shapes are complex, and functions are over frequency, of
+/// Writes the nodes, functions and shapes of a universal file; functions and shapes are complex, functions over frequency, shapes of
 /// displacements.
 ///
 /// # Errors
@@ -114,9 +114,17 @@ fn write_function(file: &mut OutputFile, k: usize, one: &Function) -> Result<()>
         short(0.0),
         short(0.0)
     );
+    let label = match one.quantity {
+        8 => "Displacement",
+        9 => "Reaction force",
+        11 => "Velocity",
+        12 => "Acceleration",
+        13 => "Excitation force",
+        _ => "NONE",
+    };
     for (kind, label, units) in [
         (18, "Frequency", "Hz"),
-        (8, "Displacement", "NONE"),
+        (one.quantity, label, "NONE"),
         (0, "NONE", "NONE"),
         (0, "NONE", "NONE"),
     ] {

@@ -177,6 +177,9 @@ packed = b"".join(struct.pack("<fdd", x, z.real, z.imag) for x, z in zip((1, 2, 
 binary = f"    58b{1:6d}{2:6d}{11:12d}{len(packed):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
 found = written("uneven.uff", uneven, packed, binary)
 check("uneven", (found[0].x == [1, 2, 4]).all() and (found[0].values == numbers).all())
+turned = found[0]._replace(direction=3)
+check("a direction against the axis", (found[0].response(2.0) == -turned.response(2.0)).all())
+check("both against it", (found[0]._replace(reference_direction=-1).response() == turned.response()).all())
 raises("too few", ValueError, written, "short.uff", even, b"1.0 2.0", words="needs 6")
 
 finish(28)
