@@ -1,6 +1,6 @@
 """The response of the wheel through a Craig-Bampton model of the caller's, made by scipy, against that of all degrees of freedom.
 
-usage: python own_craig_bampton.py [MODES [FROM_HZ TO_HZ]]      after mesh.py and hbvib init, which left wheel.inp and wheel_matrices.sti
+usage: python own_craig_bampton.py [MODES [FROM_HZ TO_HZ]]      as 700 1060 1095; after mesh.py and hbvib init, which left wheel.inp and wheel_matrices.sti
 
 Nodes of the faces and of the contact, and the excited degree of freedom, stay physical.
 """
@@ -15,7 +15,7 @@ import scipy.sparse.linalg as sl
 import hbvib
 import hbvib.io
 
-count = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+count = int(sys.argv[1]) if len(sys.argv) > 1 else 700
 SECTORS, PRELOAD = 24, 40.0
 ANGLE = 2 * np.pi / SECTORS
 TURN = np.array([[np.cos(ANGLE), -np.sin(ANGLE), 0], [np.sin(ANGLE), np.cos(ANGLE), 0], [0, 0, 1]])
