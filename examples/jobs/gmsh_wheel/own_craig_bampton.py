@@ -1,6 +1,8 @@
 """The response of the wheel through a Craig-Bampton model of the caller's, made by scipy, against that of all degrees of freedom.
 
-usage: python own_craig_bampton.py [MODES [FROM_HZ TO_HZ]]      as 700 1060 1095; after mesh.py and hbvib init, which left wheel.inp and wheel_matrices.sti
+usage: python own_craig_bampton.py [MODES [FROM_HZ TO_HZ]]      as 700 1060 1095
+
+It is run after mesh.py and hbvib init, which leave wheel.inp and wheel_matrices.sti, and needs scipy and hbvib.
 
 Nodes of the faces and of the contact, and the excited degree of freedom, stay physical.
 """
