@@ -13,6 +13,7 @@ from ._calls import _call
 from ._children import _BranchChildren
 from ._errors import ArgumentError, BusyError
 from ._library import lib
+from ._modal_coordinates import _ModalCoordinates
 from ._run_up import _RunUps
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from ._responses import Response
 
 
-class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _RunUps):
+class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _ModalCoordinates, _RunUps):
     """Solutions along a curve, from a forced response or a nonlinear mode; made by the solves.
 
     Fields (`omega`, `amplitude`, ...) are read-only arrays over the points of the curve without a copy: each keeps the

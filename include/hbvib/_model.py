@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ._aero import _Aero
 from ._analyses import _Analyses
+from ._axis_nodes import axis_nodes
 from ._band import _Bands
 from ._batch import _Batches
 from ._c import MatrixKind, SectorFrame
@@ -84,7 +85,7 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
     @classmethod
     def sector(cls, *, stiffness: Any, mass: Any, damping: Any = None, sectors: int, engine_order: int,
                left: ArrayLike, right: ArrayLike, fixed: ArrayLike = (), frame: SectorFrames = "cartesian",
-               axis: ArrayLike = (0, 0, 1), direction: int = 1, coordinates: Any = None) -> Model:
+               axis: ArrayLike = (0, 0, 1), direction: int = 1, coordinates: Any = None, on_axis: Any = None) -> Model:
         """A wheel from one sector with both faces, as a finite-element program writes it. The numbering of the sector
         is kept for matrices, contacts, forces and results; its couplings follow from its matrices.
 
@@ -98,6 +99,8 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         direction     1 or -1: sense about the axis in which sector s + 1 follows s. The wave has its sense from the
                       sign of engine_order.
         coordinates   (left, right), Cartesian positions of the nodes, (pairs, 3) each, which are then checked.
+        on_axis       x, y, z of nodes on the axis, (nodes, 3), which are in neither face: they move along it in diameter 0, across it
+                      in diameter 1, not in other waves. ndof is larger by three for each of them, whose rows come last.
 
         >>> import hbvib
         >>> import numpy as np
@@ -114,6 +117,15 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         if faces[0].ndim == faces[1].ndim == 2 and faces[0].shape[1] != faces[1].shape[1]:
             raise ValueError(f"left has shape {faces[0].shape}, right {faces[1].shape}: needs equal shapes")
         components = faces[0].shape[1] if faces[0].ndim == 2 else 1
+        centre = axis_nodes(on_axis, stiffness, _member(SectorFrame, frame) == SectorFrame.CARTESIAN)
+        if centre is not None:
+            faces = [np.concatenate([face.reshape(-1, 3), more]) for face, more in zip(faces, (centre.nodes, centre.images))]
+            components = 3
+            stiffness = centre.extended(stiffness, True)
+            mass, damping = (None if matrix is None else centre.extended(matrix, False) for matrix in (mass, damping))
+            if coordinates is not None:
+                more = centre.beside(axis, direction * 2 * np.pi / sectors)
+                coordinates = [np.concatenate([np.asarray(at, float), of]) for at, of in zip(coordinates, more)]
         places = dict.fromkeys(("left_coordinates", "right_coordinates"))
         if coordinates is not None:
             for name, face, positions in zip(places, faces, coordinates):

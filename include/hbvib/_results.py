@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AeroEntries", "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "HigherPeaks",
-    "LimitCycles", "Loop", "Modes",
+    "LimitCycles", "Loop", "ModalCoordinates", "Modes",
     "Optima", "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Turns", "Verification", "Wanted",
 ]
 
@@ -215,6 +215,22 @@ class Loop(NamedTuple):
     motion: FloatArray
     force: FloatArray
     state: NDArray[np.int32]
+
+
+class ModalCoordinates(NamedTuple):
+    """A motion in coordinates of modes: coordinates (harmonics, modes), and the share of the motion that the modes lack, of the mass and
+    then of the stiffness, where that is given: (1 or 2, harmonics).
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=2, stiffness=1, rayleigh=(0, 0.02))
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response(0.5, harmonics=1)
+    >>> found = branch.modal_coordinates(0, [[1]], [[2]])
+    >>> bool(abs(found.coordinates[1, 0] / branch.harmonics(0)[1, 0] - 1) < 1e-12), bool(found.lacking.max() < 1e-12)
+    (True, True)
+    """
+    coordinates: ComplexArray
+    lacking: FloatArray
 
 
 class Synthesis(NamedTuple):

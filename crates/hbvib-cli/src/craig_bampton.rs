@@ -38,12 +38,16 @@ pub enum Modes {
 }
 
 /// Real entries of a matrix, each with its mirror image.
-struct Entries {
+pub struct Entries {
     all: Vec<(u32, u32, f64)>,
 }
 
 impl Entries {
-    fn of(name: &str, a: &Matrix) -> Outcome<Self> {
+    /// The entries of a matrix.
+    ///
+    /// # Errors
+    /// A sentence with its name: a complex matrix.
+    pub fn of(name: &str, a: &Matrix) -> Outcome<Self> {
         if a.is_complex {
             return Err(format!("the {name} is complex, needs a real matrix"));
         }
@@ -68,6 +72,21 @@ impl Entries {
             y[*i as usize] += v * x[*j as usize];
         }
         y
+    }
+
+    /// A x of a complex x.
+    pub fn times_complex(&self, x: &[Complex64]) -> Vec<Complex64> {
+        let mut y = vec![Complex64::ZERO; x.len()];
+        for (i, j, v) in &self.all {
+            y[*i as usize] += x[*j as usize] * *v;
+        }
+        y
+    }
+
+    /// xᴴ A x of a symmetric matrix.
+    pub fn energy(&self, x: &[Complex64]) -> f64 {
+        let y = self.times_complex(x);
+        x.iter().zip(&y).map(|(x, y)| (x.conj() * y).re).sum::<f64>().max(0.0)
     }
 
     /// Entries between rows that have a number.

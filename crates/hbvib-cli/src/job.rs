@@ -4,7 +4,7 @@ use crate::job_damper::DamperPart;
 use crate::job_faces::FacesPart;
 use crate::job_fit::{DataPart, FitPart};
 use crate::job_life::LifePart;
-use crate::job_motion::{MotionPart, UnitsPart};
+use crate::job_motion::{ModalPart, MotionPart, UnitsPart};
 use crate::job_passages::{MissionPart, RunUpPart};
 use crate::job_residual::{ModeBandPart, ResidualPart};
 use crate::job_solutions::SolutionsPart;
@@ -412,9 +412,10 @@ pub struct OutputPart {
     pub frd: Option<PathBuf>,
     /// One page of HTML with figures and tables, which needs no network.
     pub report: Option<PathBuf>,
-    /// Points and times of vtu, uff and frd.
+    /// Points and times of vtu, uff, frd and modal.
     #[serde(default)]
     pub motion: MotionPart,
+    pub modal: Option<ModalPart>,
     #[serde(default)]
     pub units: UnitsPart,
     #[serde(default)]

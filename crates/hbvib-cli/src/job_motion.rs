@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::path::PathBuf;
 
 /// Points of the curve whose motion is written.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
@@ -39,6 +40,17 @@ impl Default for MotionPart {
             wheel: false,
         }
     }
+}
+
+/// The motion in coordinates of modes of the finite-element program.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModalPart {
+    /// Modes: shapes (55) of a universal file, by node; or an .npz with the array shapes, a row for each mode in the order of the
+    /// matrices.
+    pub modes: PathBuf,
+    /// Coordinates of each mode in each harmonic, and the share of the motion that the modes lack, CSV.
+    pub csv: PathBuf,
 }
 
 /// Names of the units of the matrices, for the outputs.

@@ -60,6 +60,7 @@ mod map;
 mod mesh;
 mod mesh_elements;
 mod mesh_picture;
+mod modal_coordinates;
 mod mode_band;
 mod model_report;
 mod modes_table;

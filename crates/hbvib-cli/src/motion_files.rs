@@ -4,9 +4,10 @@ use crate::build::{Built, Outcome};
 use crate::curve::Curve;
 use crate::files::Files;
 use crate::job::Job;
+use crate::modal_coordinates::Modes;
 use crate::node_motion::Places;
 use crate::points::shapes;
-use crate::{frd, netcdf_response, uff, vtu_series};
+use crate::{frd, modal_coordinates, netcdf_response, uff, vtu_series};
 
 /// Refuses what cannot be written, before anything is computed.
 ///
@@ -26,6 +27,9 @@ pub fn check(job: &Job, built: &Built) -> Outcome<()> {
             outcome.map_err(|e| format!("[output], {name}: {e}"))?;
         }
     }
+    if let Some(part) = &output.modal {
+        Modes::of(job, part, &built.nodes).map_err(|e| format!("[output.modal]: {e}"))?;
+    }
     Ok(())
 }
 
@@ -34,7 +38,7 @@ pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>)
     let branch = curve.branch;
     let output = &job.output;
     let named = [&output.vtu, &output.uff, &output.netcdf, &output.frd];
-    if named.into_iter().all(Option::is_none) {
+    if named.into_iter().all(Option::is_none) && output.modal.is_none() {
         return;
     }
     let found = Places::of(job, built);
@@ -46,6 +50,11 @@ pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>)
     files.write(output.uff.as_deref(), &|path| {
         uff::write(path, (built, places), curve, &points)
     });
+    if let Some(part) = &output.modal {
+        files.write(Some(&part.csv), &|path| {
+            modal_coordinates::write(path, (job, part, built), (branch, &points))
+        });
+    }
     let needed = || -> Outcome<&Places> { found.as_ref().map_err(Clone::clone) };
     files.write(output.frd.as_deref(), &|path| {
         frd::write(path, (built, needed()?), branch, &points)

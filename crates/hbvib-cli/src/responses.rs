@@ -90,7 +90,7 @@ pub fn responses<'a>(parts: &'a [ResponsePart], dofs: &'a [Vec<usize>]) -> Vec<R
     parts.iter().zip(dofs).map(one).collect()
 }
 
-/// What the amplitude of a job's points is, and its unit, where the job names that of length: the first response or, without any, the
+/// The amplitude of a job's points and its unit, where the job names that of length: the first response or, without any, the
 /// fundamental of the response degree of freedom.
 pub fn amplitude(job: &Job) -> (String, Option<String>) {
     let length = job.output.units.length.as_deref();

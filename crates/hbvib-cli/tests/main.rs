@@ -16,6 +16,7 @@ mod fits;
 mod html_reports;
 mod lost_runs;
 mod map_and_tornado;
+mod modal_coordinates;
 mod model_reports;
 mod motion_outputs;
 mod mutations;

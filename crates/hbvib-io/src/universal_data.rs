@@ -35,7 +35,7 @@ pub struct Function {
     pub response: (i64, i64),
     /// Node and direction of the reference.
     pub reference: (i64, i64),
-    /// What the values are, as data set 58 numbers it: 8 displacements, 9 reaction forces, 11 velocities, 12 accelerations, 13 forces; 0
+    /// Kind of the values, as data set 58 numbers it: 8 displacements, 9 reaction forces, 11 velocities, 12 accelerations, 13 forces; 0
     /// unknown.
     pub quantity: i64,
     /// Times or frequencies.

@@ -310,7 +310,7 @@ OF_STRUCTS = {
     "synthesis": ("synthesis_options", "model"), "run_up": ("run_up_options", "model omega"),
     "mission": ("mission_options", "model time speed woehler"),
     "synthesis_peaks": ("synthesis_options", "model"), "add_user_force": ("user_force", "function"),
-    "sector": ("sector", "stiffness mass damping coordinates"),
+    "sector": ("sector", "stiffness mass damping coordinates on_axis"),
 }
 for name, (structs, others) in OF_STRUCTS.items():
     fields = {field for struct in structs.split() for field, _ in hbvib.structs["hbvib_" + struct]._fields_}
@@ -319,13 +319,14 @@ for name, (structs, others) in OF_STRUCTS.items():
     check(f"{name}: every argument is a field", arguments <= fields, arguments - fields)
 
 # Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and wheels of
-# test_wheels.py, fits of test_fits.py, add_damper, whose arguments are fields of test_every_field.py.
+# test_wheels.py, fits of test_fits.py, add_damper, whose arguments are fields of test_every_field.py, modal coordinates of
+# test_axis_nodes.py.
 PLAIN = {
     "add_contact", "add_damper", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic",
     "free", "from_bytes", "load", "matrix", "mistune", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
     "fit", "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
     "limit_cycles",
-    "mode_point", "point",
+    "modal_coordinates", "mode_point", "point",
     "to_dataframe", "to_xarray",
 }
 public = {name for kind in (hbvib.Model, hbvib.Branch) for name,
