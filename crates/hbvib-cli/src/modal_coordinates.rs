@@ -88,7 +88,9 @@ impl Modes {
         if left <= DEPENDENT * whole {
             return Err("is a sum of those before it".into());
         }
-        shape.iter_mut().for_each(|z| *z /= left);
+        for z in &mut shape {
+            *z /= left;
+        }
         column.push(left.into());
         self.orthonormal.push(shape);
         self.upper.push(column);
