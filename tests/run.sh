@@ -84,7 +84,7 @@ packages="--workspace --exclude hbvib-bindings"
 step "compile" cargo build --release $packages --lib --bins --tests --example ring_damper --example flutter --example campbell
 step "wait for the Python packages" python_is_there
 [ "${1:-}" != build ] || { printf '%s' "$times"; exit 0; }
-step "all tests, programs in five languages" cargo test --release $packages --no-fail-fast --lib --bins --tests
+step "all tests, programs in five languages" cargo test --release $packages --no-fail-fast --tests
 # Examples in the documentation of the Rust interface.
 step "examples of the Rust interface" cargo test --release $packages --doc
 printf '%s' "$times"
