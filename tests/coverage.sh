@@ -16,7 +16,7 @@ rm -rf "$work/profiles"
 printf '#!/bin/sh\nexec "$@" -Cinstrument-coverage\n' >"$work/wrapper"
 chmod +x "$work/wrapper"
 export RUSTC_WORKSPACE_WRAPPER="$work/wrapper" CARGO_TARGET_DIR="$work" LLVM_PROFILE_FILE="$work/profiles/%4m.profraw"
-which="-p hbvib-tests -p hbvib-unit-tests -p hbvib-numerics-unit-tests --lib --tests"
+which="-p hbvib-tests -p hbvib-unit-tests -p hbvib-numerics-unit-tests --tests"
 [ $# = 0 ] || which=$(printf ' --test %s' "$@")
 cargo build --release --quiet --lib --examples
 cargo build --release --quiet --lib --bins -p hbvib-io -p hbvib-cli

@@ -147,9 +147,6 @@ fn peaks_of_every_measure_of_a_chain_with_friction_are_maxima() {
             let is_exact = (peak.amplitude / same.amplitude - 1.0).abs() < 1e-9;
             corners += usize::from(distance(same) >= 1e-8 || !is_exact);
         }
-        if a.peaks().len() != b.peaks().len() {
-            println!("{response:?}: {:?}\n fine {:?}", a.peaks(), b.peaks());
-        }
         all += a.peaks().len();
         more += b.peaks().len() - a.peaks().len();
     }
