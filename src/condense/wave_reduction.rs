@@ -52,8 +52,8 @@ const DIRECT_UP_TO: usize = 20_000;
 
 /// Error with rounding, as the certificate tells it, beyond which a basis is not used in place of factors, and beyond which it is not used
 /// at all: stiffness of a penalty is lost in the soft motions of the basis, while factors keep them.
-const ROUNDED: f64 = 1e-6;
-const USELESS: f64 = 1e-2;
+const ROUNDED_BASIS: f64 = 1e-6;
+const USELESS_BASIS: f64 = 1e-2;
 
 /// Forces on more degrees of freedom than this in one harmonic count as one vector.
 const SEPARATE_FORCES: usize = 8;
@@ -130,14 +130,14 @@ pub(super) fn reduced_blocks(
             Err(e) => return Err(e),
         };
         worst = worst.max(error);
-        if is_optional && (error.basis > limit(request) || error.total > ROUNDED) {
+        if is_optional && (error.basis > limit(request) || error.total > ROUNDED_BASIS) {
             return Ok(None);
         }
         // NaN is no certificate either.
-        if !(error.total <= USELESS) {
+        if !(error.total <= USELESS_BASIS) {
             return fail!(
                 NoConvergence,
-                "flexibility on a basis: rounding makes an error of {:e} of its motions, needs at most {USELESS}; some stiffness is far above \
+                "flexibility on a basis: rounding makes an error of {:e} of its motions, needs at most {USELESS_BASIS}; some stiffness is far above \
                  that of the structure, as of a penalty: make what it connects one degree of freedom, or take flexibility = direct",
                 error.total
             );
