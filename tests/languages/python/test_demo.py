@@ -14,7 +14,7 @@ HERE = os.path.dirname(os.path.abspath(hbvib.__file__))
 
 
 def typed(*arguments, folder):
-    environment = dict(os.environ, PYTHONPATH=os.path.dirname(HERE))
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join([os.path.dirname(HERE), os.environ.get("PYTHONPATH", "")]))
     return subprocess.run([sys.executable, "-m", "hbvib", *arguments], cwd=folder, env=environment, capture_output=True, text=True)
 
 
