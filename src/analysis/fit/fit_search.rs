@@ -92,13 +92,18 @@ impl Search<'_> {
             state.slopes[row * n + k] = if free.is_log { value } else { 1.0 } / sigma;
             row += 1;
         }
-        // A prior is no outlier.
-        state.cost = state.residuals[..rows]
-            .iter()
-            .map(|r| self.options.loss.cost(*r))
-            .sum::<f64>()
-            + state.residuals[rows..].iter().map(|r| r * r).sum::<f64>();
+        let state = self.weighed(state);
         Ok(state.cost.is_finite().then_some(state))
+    }
+
+    /// The state with its loss.
+    #[must_use]
+    pub fn weighed(&self, mut state: State) -> State {
+        // A prior is no outlier.
+        let (data, priors) = state.residuals.split_at(self.predictor.rows());
+        let of_data: f64 = data.iter().map(|r| self.options.loss.cost(*r)).sum();
+        state.cost = of_data + priors.iter().map(|r| r * r).sum::<f64>();
+        state
     }
 
     /// JᵀWJ and JᵀWr, the priors with weight 1; without `robust` all weights are 1.
