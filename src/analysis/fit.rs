@@ -14,6 +14,7 @@ mod predicted_data;
 mod prediction;
 mod shared_work;
 mod suspected_units;
+mod thinned_data;
 
 pub use crate::analysis::fit::fit_data::{DataKind, FitData};
 pub use crate::analysis::fit::fit_options::{FitOptions, Loss};
@@ -114,7 +115,7 @@ impl Fit {
 }
 
 /// Fits parameters of `model` to data. With a tolerance of the solver it is lowered where the errors by harmonics would exceed a third
-/// of the standard deviations. Where the given start fits poorly, or friction is not seen from it, starts towards sliding and sticking
+/// of the standard deviations. Many data are searched by a share of them first. Where the given start fits poorly, or friction is not seen from it, starts towards sliding and sticking
 /// are tried; `options.starts` adds others.
 ///
 /// # Errors
@@ -163,6 +164,12 @@ pub fn fit(
     for free in &unknowns.free {
         try_push(&mut z, free.start, CONTEXT)?;
     }
+    let mut stopped = false;
+    let explains = |search: &Search<'_>, state: &State| !is_poor(search, state) && !unseen(state);
+    let mut told = |i: usize, state: &State| report(hooks, (i, state), &mut stopped);
+    if let Some(nearer) = thinned_data::start(&search, &z, explains, &mut told)? {
+        z = nearer;
+    }
     let Some(first) = search.at(z)? else {
         return fail!(
             NoConvergence,
@@ -170,7 +177,7 @@ pub fn fit(
         );
     };
 
-    let ended = best_of(&search, &first, hooks)?;
+    let ended = best_of(&search, &first, (hooks, stopped))?;
     let suspicion = if is_poor(&search, &ended.found.state) {
         suspected(&predictor, &first.theta)?
     } else {
@@ -225,10 +232,11 @@ struct Ended {
 }
 
 /// The best end of the searches from all starts.
-fn best_of(search: &Search<'_>, first: &State, hooks: &mut Hooks<'_>) -> Result<Ended> {
-    let mut stopped = false;
+fn best_of(search: &Search<'_>, first: &State, (hooks, mut stopped): (&mut Hooks<'_>, bool)) -> Result<Ended> {
     let mut starts = 1;
-    let mut best = search.from(first.clone(), &mut |i, state| report(hooks, (i, state), &mut stopped))?;
+    let mut best = search.from(first.clone(), &mut |i, state| {
+        stopped || report(hooks, (i, state), &mut stopped)
+    })?;
     if !stopped && is_poor(search, &best.state) && search.options.loss == Loss::Square {
         starts += 1;
         let found = by_robust_loss(search, first, &mut |i, state| report(hooks, (i, state), &mut stopped))?;
