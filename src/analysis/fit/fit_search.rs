@@ -169,6 +169,11 @@ impl Search<'_> {
             };
             let in_sigmas = along(&step).max(0.0).sqrt();
             let foretold = -(2.0 * step.iter().zip(&g).map(|(s, g)| s * g).sum::<f64>() + along(&step));
+            if in_sigmas < self.options.step && lambda <= FIT_DAMPING.0 {
+                // A state that differs by less than the step takes as long as any other.
+                converged = true;
+                break;
+            }
             let trial = self.at(z)?;
             let better = trial.as_ref().is_some_and(|t| t.cost <= state.cost);
             if let (true, Some(trial)) = (better, trial) {
