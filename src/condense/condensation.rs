@@ -300,6 +300,7 @@ impl Condensed {
             numbers: set.numbers(),
             contacts: (&contact_classes, &representatives),
             sweep,
+            loss_factor: model.structure().whole_loss_factor()?,
         };
         let on_bases = match mode {
             None => reduced_blocks(&request, kappa, interrupt)?,

@@ -25,6 +25,8 @@ pub struct DynamicStiffness {
     /// Z_κ on each pattern, and the index of that of each harmonic.
     z: Vec<Csc>,
     patterns: Vec<usize>,
+    /// Largest entry of the matrix that was factorised.
+    largest: f64,
     /// b − Z x, and memory for its exact sum.
     remainder: Vec<Complex64>,
     sums: Vec<ComplexSum>,
@@ -33,6 +35,13 @@ pub struct DynamicStiffness {
 
 /// Relative error of the relative motions above which a residual summed with its rounding errors is worth its cost.
 const NOISE: f64 = 1e-12;
+
+/// Product of the largest stiffness and motion under a load of 1 beyond which a plain solution loses so many digits that Newton's method
+/// sees their noise along a branch: a penalty of 1e6 times the structure.
+const STIFF_FOR_FACTORS: f64 = 1e5;
+
+/// Entries of the matrix, over all columns, up to which residuals with their rounding errors take no longer than the factors.
+const CHEAP_TO_REFINE: usize = 20_000;
 
 /// Largest number of such residuals: each leaves the error of the last times that of a plain solution.
 const EXACT: usize = 3;
@@ -61,6 +70,7 @@ impl DynamicStiffness {
             factor: Factor::new(&first.reference, columns)?,
             z,
             patterns,
+            largest: 0.0,
             remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
             sums: try_vec(n, ComplexSum::default(), CONTEXT)?,
             part: try_vec(n, ComplexSum::default(), CONTEXT)?,
@@ -83,11 +93,21 @@ impl DynamicStiffness {
         let block = &condensed.blocks()[i];
         let z = &mut self.z[self.patterns[i]];
         let sum = Combination::value(block, omega, damping);
+        self.largest = 0.0;
         for (at, z) in z.values.iter_mut().enumerate() {
             *z = sum.at(block, at);
+            self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
         }
         let factored = self.factor.factor(z, interrupt);
         factored.map_err(|e| at_harmonic(e, block, omega.re))
+    }
+
+    /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
+    pub fn should_refine(&self, condensed: &Condensed, i: usize, columns: &[Complex64]) -> bool {
+        let entries = condensed.blocks()[i].reference.values.len();
+        let count = columns.len() / condensed.ndof();
+        let size = |z: &Complex64| z.re.abs().max(z.im.abs());
+        entries * count <= CHEAP_TO_REFINE && columns.iter().any(|x| self.largest * size(x) > STIFF_FOR_FACTORS)
     }
 
     /// Solves Z X = B (or Zᵀ X = B) in place with the current factors, those of the i-th harmonic at `omega`.

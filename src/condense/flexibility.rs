@@ -163,6 +163,7 @@ impl Workspace {
     ) -> Result<&Table> {
         made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         self.solve_columns(condensed, i, omega, interrupt)?;
+        self.refine_columns((condensed, i, omega), interrupt)?;
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
@@ -177,6 +178,23 @@ impl Workspace {
             Slopes::All => self.fill_all_slopes(condensed, (i, omega), interrupt)?,
         }
         Ok(&self.table)
+    }
+
+    /// Removes the rounding of the columns where the stiffness of a penalty makes it large.
+    fn refine_columns(
+        &mut self,
+        (condensed, i, omega): (&Condensed, usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        if !dynamic.should_refine(condensed, i, &self.columns) {
+            return Ok(());
+        }
+        for (k, x) in self.columns.chunks_exact_mut(condensed.ndof()).enumerate() {
+            fill_load(&condensed.blocks()[i], k, omega, &mut self.load);
+            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
+        }
+        Ok(())
     }
 
     /// The k-th column of H and of its slope after [`Self::evaluate`], improved until only the rounding of the matrices is left; the

@@ -108,14 +108,15 @@ impl HarmonicBlock {
         Arc::ptr_eq(&self.reference, &other.reference) && Arc::ptr_eq(&self.mass, &other.mass)
     }
 
-    /// K_h of the structure itself, without any spring, at the entries of the pattern.
+    /// K_h of the structure itself, without any spring and without the loss in a complex stiffness, at the entries of the pattern.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn own_stiffness(&self, model: &Model) -> Result<Vec<Complex64>> {
         let Some(view) = &self.view else {
-            let structure = model.structure().wave_matrix(MatrixKind::Stiffness, self.number)?;
-            return structure.aligned(&self.reference);
+            let structure = model.structure();
+            let own = structure.elastic(structure.wave_matrix(MatrixKind::Stiffness, self.number)?)?;
+            return own.aligned(&self.reference);
         };
         let n = self.reference.rows;
         let mut own = try_vec(

@@ -21,7 +21,7 @@ pub(super) fn reduced_block(
     number: usize,
     (contact_classes, representatives): (&ContactClasses, &[(usize, usize)]),
     kappa: impl Fn(usize) -> Complex64,
-    (view, order): (ReducedView, usize),
+    (view, order, loss_factor): (ReducedView, usize, f64),
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
     let basis = view.pencil().order();
@@ -61,12 +61,12 @@ pub(super) fn reduced_block(
     }
     let stiffness = try_copy(&full.values, CONTEXT)?;
     // The loss factor is of the structure itself, and dissipates nothing at rest.
-    let structural = if structure.loss_factor() == 0.0 || number == 0 {
+    let structural = if loss_factor == 0.0 || number == 0 {
         None
     } else {
         let mut structural = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
         for j in 0..basis {
-            structural[j * n + j] = (structure.loss_factor() * view.pencil().stiffness(j)).into();
+            structural[j * n + j] = (loss_factor * view.pencil().stiffness(j)).into();
             full.values[j * n + j] += Complex64::I * structural[j * n + j];
         }
         Some(Arc::new(structural))

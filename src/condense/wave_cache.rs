@@ -188,7 +188,10 @@ impl WaveCache {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
-        let reference = condensed.stiffness_with_real_kappa(i)?;
+        let Some((reference, loss_factor)) = elastic_reference(model, condensed, i)? else {
+            self.has_no_modes = true;
+            return Ok(None);
+        };
         let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass, block.next);
         if let Some(known) = self.waves.iter().find(is_known) {
             return Ok(Some(Arc::clone(known)));
@@ -197,7 +200,7 @@ impl WaveCache {
             .waves
             .iter()
             .find(|known| known.is_conjugate_of(&reference, &block.mass));
-        let Some(found) = modes_of(model, condensed, (i, reference), other, interrupt)? else {
+        let Some(found) = modes_of(model, condensed, (i, reference, loss_factor), other, interrupt)? else {
             self.has_no_modes = true;
             return Ok(None);
         };
@@ -235,11 +238,32 @@ fn has_other_terms(model: &Model) -> bool {
     structure.has_structural_matrix() || structure.has_aero() || structure.is_rotating()
 }
 
+/// K_κ with the real part of κ and without the loss in a complex stiffness, and the loss factor of all stiffness; `None` where the loss
+/// has another form.
+fn elastic_reference(model: &Model, condensed: &Condensed, i: usize) -> Result<Option<(Csc, f64)>> {
+    let structure = model.structure();
+    let mut reference = condensed.stiffness_with_real_kappa(i)?;
+    let block = &condensed.blocks()[i];
+    let Some(loss_factor) = structure.whole_loss_factor()? else {
+        return Ok(None);
+    };
+    if structure.has_complex_stiffness() && block.view.is_none() {
+        let given = structure
+            .wave_matrix(MatrixKind::Stiffness, block.number)?
+            .aligned(&reference)?;
+        let elastic = block.own_stiffness(model)?;
+        for ((k, given), elastic) in reference.values.iter_mut().zip(given).zip(elastic) {
+            *k += elastic - given;
+        }
+    }
+    Ok(Some((reference, loss_factor)))
+}
+
 /// The modes of the i-th carried harmonic with this K_κ; from those of the wave that travels the other way where they are known.
 fn modes_of(
     model: &Model,
     condensed: &Condensed,
-    (i, reference): (usize, Csc),
+    (i, reference, loss_factor): (usize, Csc, f64),
     other: Option<&Arc<WaveModes>>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<WaveModes>> {
@@ -257,7 +281,8 @@ fn modes_of(
         return Ok(None);
     };
     let with_springs;
-    let own = if springs.is_empty() && block.view.is_none() {
+    let is_lossy = model.structure().has_complex_stiffness();
+    let own = if springs.is_empty() && block.view.is_none() && !is_lossy {
         &block.stiffness
     } else {
         with_springs = block.own_stiffness(model)?;
@@ -287,7 +312,7 @@ fn modes_of(
         values,
         vectors,
         proportional,
-        loss_factor: model.structure().loss_factor(),
+        loss_factor,
         springs,
     }))
 }

@@ -45,7 +45,12 @@ impl WaveMatrices<'_> {
 
     /// `None` where stiffness or mass is not Hermitian.
     pub fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled<'_>>> {
-        let stiffness = self.matrix(MatrixKind::Stiffness)?;
+        let structure = self.model.structure();
+        let stiffness = match self.matrix(MatrixKind::Stiffness)? {
+            // The loss of a complex stiffness is one factor, which the blocks know.
+            WaveMatrix::Made(made) => WaveMatrix::Made(structure.elastic(made)?),
+            kept @ WaveMatrix::Kept(_) => kept,
+        };
         interrupt.check()?;
         let mass = self.matrix(MatrixKind::Mass)?;
         for a in [&stiffness, &mass] {
@@ -54,8 +59,7 @@ impl WaveMatrices<'_> {
                 return Ok(None);
             }
         }
-        let structure = self.model.structure();
-        let damping = if structure.has(MatrixKind::Damping) {
+        let damping = if structure.has(MatrixKind::Damping) || structure.has_modal_damping() {
             let c = self.matrix(MatrixKind::Damping)?;
             let (none, n) = (Complex64::ZERO, c.columns());
             let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));

@@ -12,7 +12,7 @@ use crate::condense::reduced_block::reduced_block;
 use crate::condense::sweep::Sweep;
 use crate::condense::wave_cache::ALL_UP_TO;
 use crate::condense::wave_matrices::WaveMatrices;
-use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
 use crate::model::Model;
@@ -41,6 +41,7 @@ const SHARE_OF_BASIS: usize = 3;
 /// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed: by times of
 /// chains of 101 to 600 degrees of freedom with 1 to 10 contacts.
 const OF_MODES: f64 = 20.0;
+const OF_POLES: f64 = 200.0;
 const OF_BASIS: f64 = 480.0;
 
 /// Usual columns per input, and besides.
@@ -48,6 +49,11 @@ const USUAL_COLUMNS: (usize, usize) = (5, 10);
 
 /// Degrees of freedom up to which a structure whose basis does not hold is treated directly.
 const DIRECT_UP_TO: usize = 20_000;
+
+/// Error with rounding, as the certificate tells it, beyond which a basis is not used in place of factors, and beyond which it is not used
+/// at all: stiffness of a penalty is lost in the soft motions of the basis, while factors keep them.
+const ROUNDED_BASIS: f64 = 1e-6;
+const USELESS_BASIS: f64 = 1e-2;
 
 /// Forces on more degrees of freedom than this in one harmonic count as one vector.
 const SEPARATE_FORCES: usize = 8;
@@ -59,6 +65,8 @@ pub(super) struct Request<'a> {
     pub numbers: &'a [usize],
     pub contacts: (&'a ContactClasses, &'a [(usize, usize)]),
     pub sweep: Sweep,
+    /// η of the whole stiffness; `None` where a complex one has another form.
+    pub loss_factor: Option<f64>,
 }
 
 impl Request<'_> {
@@ -97,8 +105,8 @@ pub(super) fn reduced_blocks(
     let structure = model.structure();
     // A basis knows mass, viscous damping, stiffness and its loss factor, and forces of one size.
     if structure.has_structural_matrix()
+        || request.loss_factor.is_none()
         || structure.is_rotating()
-        || structure.has_modal_damping()
         || structure.has_aero()
         || model.excitation().has_unbalance()
     {
@@ -114,12 +122,25 @@ pub(super) fn reduced_blocks(
     let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
     let mut worst = Certificate::default();
     for group in &groups {
-        let Some((wave, error)) = wave_of(request, group, &kappa, interrupt)? else {
-            return declined(forced);
+        let is_optional = !forced && n <= DIRECT_UP_TO;
+        let (wave, error) = match wave_of(request, group, &kappa, interrupt) {
+            Ok(Some(found)) => found,
+            Ok(None) => return declined(forced),
+            Err(e) if is_optional && e.status == Status::NoConvergence => return Ok(None),
+            Err(e) => return Err(e),
         };
         worst = worst.max(error);
-        if !forced && error.basis > limit(request) && n <= DIRECT_UP_TO {
+        if is_optional && (error.basis > limit(request) || error.total > ROUNDED_BASIS) {
             return Ok(None);
+        }
+        // NaN is no certificate either.
+        if !(error.total <= USELESS_BASIS) {
+            return fail!(
+                NoConvergence,
+                "flexibility on a basis: rounding makes an error of {:e} of its motions, needs at most {USELESS_BASIS}; some stiffness is far above \
+                 that of the structure, as of a penalty: make what it connects one degree of freedom, or take flexibility = direct",
+                error.total
+            );
         }
         for &(i, conjugated) in &group.members {
             let wave = Arc::clone(&wave);
@@ -132,9 +153,16 @@ pub(super) fn reduced_blocks(
         .map(|view| view.pencil().order())
         .max()
         .unwrap_or(0);
+    let loss = request.loss_factor.unwrap_or(0.0);
     let mut blocks = Vec::new();
     for (view, &number) in views.into_iter().flatten().zip(request.numbers) {
-        let block = reduced_block(model, number, request.contacts, |c| kappa(c, number), (view, order))?;
+        let block = reduced_block(
+            model,
+            number,
+            request.contacts,
+            |c| kappa(c, number),
+            (view, order, loss),
+        )?;
         try_push(&mut blocks, block, CONTEXT)?;
     }
     Ok(Some((blocks, worst.total)))
@@ -161,8 +189,11 @@ fn pays(request: &Request<'_>, groups: &[Group]) -> bool {
     let columns = |group: &Group| (per_input * group.inputs.len() + besides) as f64;
     let of_group = |group: &Group| group.members.len() as f64 * columns(group).powi(3);
     let of_basis = OF_BASIS * groups.iter().map(of_group).sum::<f64>();
-    let of_modes = OF_MODES * groups.len() as f64 * (n as f64).powi(3);
-    request.options.tolerance == 0.0 && request.sweep.is_range() && of_basis < of_modes
+    // The alternative to modal damping, whose matrix is full, are poles.
+    let is_modal = request.model.structure().has_modal_damping();
+    let of_sum = if is_modal { OF_POLES } else { OF_MODES };
+    let of_sum = of_sum * groups.len() as f64 * (n as f64).powi(3);
+    (request.options.tolerance == 0.0 || is_modal) && request.sweep.is_range() && of_basis < of_sum
 }
 
 fn declined<T>(forced: bool) -> Result<Option<T>> {
@@ -172,7 +203,7 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     fail!(
         Unsupported,
         "flexibility = krylov needs Hermitian stiffness and mass, a mass by which K + shift M is positive definite, and neither \
-         structural matrix, modal damping, aerodynamic influence, a speed of rotation or unbalance"
+         structural matrix, aerodynamic influence, a speed of rotation or unbalance"
     )
 }
 
@@ -267,7 +298,7 @@ fn certificate_of(
             conjugated,
         };
         let number = request.numbers[i];
-        let at = (view.clone(), 0);
+        let at = (view.clone(), 0, request.loss_factor.unwrap_or(0.0));
         let block = reduced_block(request.model, number, request.contacts, |c| kappa(c, number), at)?;
         worst = worst.max(certificate(
             (&block, &view),
@@ -285,7 +316,7 @@ fn loss_factor(request: &Request<'_>, number: usize) -> f64 {
     if number == 0 {
         0.0
     } else {
-        request.model.structure().loss_factor()
+        request.loss_factor.unwrap_or(0.0)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::newton_homotopy::NewtonHomotopy;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
-use crate::error::{Error, Result, Status, fail, try_copy, try_push, try_vec};
+use crate::error::{Error, Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::{InitialGuess, Problem};
@@ -77,14 +77,6 @@ const PROGRESS: f64 = 1e-3;
 /// Longest step of a homotopy, of which only the end matters.
 const LONG_STEP: f64 = 0.1;
 
-/// Size of a motion, relative to that under linear contacts, beyond which the forces keep less than four digits in
-/// double precision.
-const INITIAL_POINT_FAR: f64 = 1e12;
-
-/// Residual, in units of the motion under linear contacts, above which the forces are unbalanced, even if it is small
-/// against a large motion.
-const UNBALANCED: f64 = 1e-2;
-
 /// Solves for the first point at `settings.start`. Its iterations are those of all attempts, homotopies included.
 ///
 /// # Errors
@@ -133,7 +125,7 @@ fn try_each_way(
         if exists {
             v[n] = p;
             match at_fixed(problem, settings, corrector, &mut v, interrupt)? {
-                Outcome::Converged(corrected) if !is_far(problem, &v[..n], p, corrected.residual)? => {
+                Outcome::Converged(corrected) if !problem.is_far(&v[..n], p, corrected.residual)? => {
                     v[n] = p;
                     return Ok(First {
                         point: Point::new(v, corrected, 0.0),
@@ -229,7 +221,7 @@ fn finish(
     let n = v.len() - 1;
     v[n] = settings.start;
     Ok(match at_fixed(problem, settings, corrector, &mut v, interrupt)? {
-        Outcome::Converged(corrected) if !is_far(problem, &v[..n], settings.start, corrected.residual)? => {
+        Outcome::Converged(corrected) if !problem.is_far(&v[..n], settings.start, corrected.residual)? => {
             v[n] = settings.start;
             Some(First {
                 point: Point::new(v, corrected, 0.0),
@@ -288,21 +280,6 @@ fn try_anchors(
         }
     }
     Ok(None)
-}
-
-/// Whether a solution is so large that its forces are lost in the round-off of the residual: nothing is then known of
-/// their balance. An undamped structure at its resonance ends here if friction does not limit its motion.
-fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result<bool> {
-    if !problem.is_bounded() {
-        return Ok(false);
-    }
-    let mut linear = try_vec(u.len(), 0.0, CONTEXT)?;
-    let known = match problem.initial_guess(InitialGuess::Reference, p, &mut linear) {
-        Err(e) if e.status == Status::StoppedByCaller => return Err(e),
-        guess => matches!(guess, Ok(true)),
-    };
-    let (far, scale) = (norm(u), norm(&linear));
-    Ok(known && scale > 0.0 && (far > INITIAL_POINT_FAR * scale || residual * far > UNBALANCED * scale))
 }
 
 /// End of a homotopy path.

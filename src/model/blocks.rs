@@ -18,6 +18,14 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
+    /// The matrices that were given, in one order.
+    pub fn parts(&self) -> impl Iterator<Item = &KeptMatrix> {
+        [&self.own, &self.next, &self.previous]
+            .into_iter()
+            .chain(&self.diameters)
+            .flatten()
+    }
+
     /// A copy, allocated fallibly.
     pub fn try_clone(&self) -> Result<Self> {
         let copy = |a: &Option<KeptMatrix>| a.as_ref().map(KeptMatrix::try_clone).transpose();

@@ -13,6 +13,9 @@ use std::borrow::Cow;
 /// Deviation from a symmetry, relative to the largest entry, that is rounding.
 const COMPLEX_STIFFNESS_ROUNDING: f64 = 1e-10;
 
+/// The same of the loss of a stiffness from one loss factor.
+const PROPORTIONAL_LOSS: f64 = 1e-12;
+
 /// Factors c of (A + Bᴴ)/2 and (A − Bᴴ)/2i as cA + (cB)ᴴ.
 const HERMITIAN_PART: Complex64 = Complex64::new(0.5, 0.0);
 const LOSS: Complex64 = Complex64::new(0.0, -0.5);
@@ -62,8 +65,44 @@ impl Structure {
         ring(Symmetry::Plain) && !ring(Symmetry::Hermitian)
     }
 
+    /// Loss factor of the whole stiffness: the one that was given, and η of a complex stiffness H(1 + iη) with a Hermitian H. `None`
+    /// where a complex stiffness dissipates in another form.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn whole_loss_factor(&self) -> Result<Option<f64>> {
+        if !self.has_complex_stiffness() {
+            return Ok(Some(self.loss_factor()));
+        }
+        let blocks = &self.blocks[MatrixKind::Stiffness as usize];
+        let (elastic, loss) = (of_blocks(blocks, HERMITIAN_PART)?, of_blocks(blocks, LOSS)?);
+        let pairs = || elastic.parts().zip(loss.parts());
+        let (mut product, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
+        for (h, l) in pairs() {
+            largest = largest.max(l.max_abs());
+            for j in 0..h.order() {
+                for (i, v) in h.column(j) {
+                    product += (v.conj() * l.get(i, j)).re;
+                    square += v.norm_sqr();
+                }
+            }
+        }
+        if square == 0.0 {
+            return Ok(None);
+        }
+        let eta = product / square;
+        let limit = PROPORTIONAL_LOSS * largest;
+        let is_share = pairs().all(|(h, l)| {
+            (0..h.order()).all(|j| {
+                h.column(j).all(|(i, v)| (l.get(i, j) - eta * v).norm() <= limit)
+                    && l.column(j).all(|(i, v)| (v - eta * h.get(i, j)).norm() <= limit)
+            })
+        });
+        Ok(is_share.then_some(self.loss_factor() + eta))
+    }
+
     /// The stiffness of a wave without the structural damping in a complex one.
-    pub(super) fn elastic(&self, stiffness: Csc) -> Result<Csc> {
+    pub(crate) fn elastic(&self, stiffness: Csc) -> Result<Csc> {
         if stiffness.is_real() || !self.has_complex_stiffness() {
             return Ok(stiffness);
         }

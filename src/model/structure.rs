@@ -166,8 +166,7 @@ impl Structure {
 
     /// The blocks of a matrix that were given.
     pub(super) fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &KeptMatrix> {
-        let b = &self.blocks[kind as usize];
-        [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten()
+        self.blocks[kind as usize].parts()
     }
 
     /// A copy that shares the matrices, allocated fallibly.

@@ -12,6 +12,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::lu::Lu;
+use crate::linalg::norm;
 use crate::options::Response;
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::gauges::{Gauges, Seen};
@@ -25,6 +26,18 @@ use num_complex::Complex64;
 
 /// Harmonics between two checks of the interrupt.
 const BETWEEN_CHECKS: usize = 16;
+
+/// Size of a motion, relative to that under linear contacts, beyond which the forces keep less than four digits in
+/// double precision.
+const FAR_MOTION: f64 = 1e12;
+
+/// Residual, in units of the motion under linear contacts, above which the forces are unbalanced, even if it is small
+/// against a large motion.
+const UNBALANCED: f64 = 1e-2;
+
+/// Least motion under linear contacts to which others are compared, in units of the largest motion of the structure: a contact
+/// far from the forces, or between parts that move alike, vibrates less than its own static load moves it.
+const LEAST_LINEAR_MOTION: f64 = 1e-6;
 
 /// The forced response of a condensed model.
 pub struct HarmonicBalance<'a> {
@@ -529,6 +542,19 @@ impl Problem for HarmonicBalance<'_> {
     /// Damping absorbs the power of the forces; without damping, resonances are the exception.
     fn is_bounded(&self) -> bool {
         true
+    }
+
+    fn is_far(&mut self, u: &[f64], p: f64, residual: f64) -> Result<bool> {
+        let mut linear = try_vec(u.len(), 0.0, "the first point")?;
+        match self.initial_guess(InitialGuess::Reference, p, &mut linear) {
+            Err(e) if e.status == Status::StoppedByCaller => return Err(e),
+            Ok(true) => {}
+            _ => return Ok(false),
+        }
+        let size = |packed: &[f64]| Squares::of(self.condensed.set(), packed).size(Squares::default());
+        let (far, linear) = (size(u), norm(&linear));
+        let scale = linear.max(LEAST_LINEAR_MOTION);
+        Ok(linear > 0.0 && (far > FAR_MOTION * scale || residual * far > UNBALANCED * scale))
     }
 
     fn has_kinks(&self) -> bool {

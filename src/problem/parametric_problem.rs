@@ -108,6 +108,16 @@ pub trait Problem: Jacobian {
         false
     }
 
+    /// Whether a solution u at p with this relative residual is so large that its forces are lost in the rounding of the residual:
+    /// nothing is then known of their balance. An undamped structure at its resonance ends here if friction does not limit its
+    /// motion.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    fn is_far(&mut self, _u: &[f64], _p: f64, _residual: f64) -> Result<bool> {
+        Ok(false)
+    }
+
     /// Whether the matrix jumps along the branch, wherever an event passes a sample.
     fn has_kinks(&self) -> bool {
         false

@@ -29,6 +29,7 @@ mod residual_band;
 mod ring_damper_speeds;
 mod rotation;
 mod small_systems;
+mod stiff_links;
 mod structural_closed_forms;
 mod structural_damping;
 mod stuck_and_scaling;

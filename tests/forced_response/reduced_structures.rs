@@ -160,10 +160,36 @@ fn structures(seed: u64) -> Vec<(&'static str, Model)> {
         model.set_loss_factor(loss_factor).unwrap();
         found.push(("sector", model));
     }
+    for sectors in [1, 24] {
+        let mut model = if sectors == 1 {
+            Model::new(N).unwrap()
+        } else {
+            Model::cyclic(N, sectors).unwrap()
+        };
+        model.set_wave(2);
+        let lossy: Vec<Complex64> = k.iter().map(|k| k * Complex64::new(1.0, 0.03)).collect();
+        let view = MatrixView::dense_complex(N, &lossy).part(Part::Symmetric);
+        model.set_matrix(MatrixKind::Stiffness, &view).unwrap();
+        set(&mut model, MatrixKind::Mass, &m);
+        if sectors > 1 {
+            let mut to_next = vec![Complex64::ZERO; N * N];
+            to_next[3] = -11.0 * Complex64::new(1.0, 0.03);
+            to_next[55 * N + 4] = -7.0 * Complex64::new(1.0, 0.03);
+            let view = MatrixView::dense_complex(N, &to_next).part(Part::General);
+            model.set_coupling(MatrixKind::Stiffness, &view).unwrap();
+        }
+        model.set_rayleigh(0.01, 2e-4).unwrap();
+        found.push(("complex stiffness", model));
+    }
     for (_, model) in &mut found {
         let offset = i64::from(model.structure().sectors() > 1);
         with_contacts(model, offset);
     }
+    let mut model = plain(&k, &m);
+    with_contacts(&mut model, 0);
+    let ratios: Vec<f64> = (0..N).map(|r| 0.01 + 1e-4 * r as f64).collect();
+    model.set_modal_damping(&ratios).unwrap();
+    found.push(("modal damping", model));
     found
 }
 
