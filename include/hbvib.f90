@@ -590,10 +590,11 @@ module hbvib
 
    !> A parameter as an unknown of a fit.
    type, bind(c) :: hbvib_unknown
-      integer(c_int32_t) :: struct_size = 72, scale = 0
+      integer(c_int32_t) :: struct_size = 80, scale = 0
       real(c_double) :: start = 0, lower = 0, upper = 0, prior_mean = 0, prior_sigma = 0
       integer(c_int64_t) :: tied_to = -1
       integer(c_int32_t) :: has_start = 0, has_lower = 0, has_upper = 0, reserved = 0
+      integer(c_int64_t) :: data_set = -1
    end type hbvib_unknown
 
    !> Options of a fit.

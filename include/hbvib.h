@@ -5309,6 +5309,8 @@ typedef struct {
   int32_t has_upper;
   /// Must be 0.
   int32_t reserved;
+  /// Number of the data set that alone has it, as each test its residual state; -1: all have it.
+  int64_t data_set;
 } hbvib_unknown;
 
 /// Fills an unknown that starts at the value of the model, without bounds and prior.
@@ -5418,7 +5420,8 @@ hbvib_status hbvib_fit_info_init(hbvib_fit_info *i, size_t size_of_i);
 /// residuals      receives the residuals in standard deviations, two for each point, set after
 ///                set, 0 for a number that is no datum; or NULL.
 /// values         receives the numbers of the model, likewise; or NULL.
-/// out            receives the model with the values; or NULL. Free it by hbvib_model_free.
+/// out            receives the model with the values that all data sets have; or NULL. Free it by
+///                hbvib_model_free.
 /// HBVIB_STOPPED_MAX_POINTS: the iterations did not suffice; HBVIB_STOPPED_STALLED: no step
 /// lowers the loss any more; HBVIB_STOPPED_BY_CALLER: by progress, with the best values so far;
 /// by other hooks nothing is written.

@@ -996,6 +996,7 @@ struct hbvib_unknown {
   int32_t has_lower;
   int32_t has_upper;
   int32_t reserved;
+  int64_t data_set;
 };
 struct hbvib_fit_options {
   uint32_t struct_size;

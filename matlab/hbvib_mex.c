@@ -1502,6 +1502,7 @@ static const Field unknown_fields[] = {
   {"has_start", INT32, offsetof(hbvib_unknown, has_start), 1, NULL},
   {"has_lower", INT32, offsetof(hbvib_unknown, has_lower), 1, NULL},
   {"has_upper", INT32, offsetof(hbvib_unknown, has_upper), 1, NULL},
+  {"data_set", INT64, offsetof(hbvib_unknown, data_set), 1, NULL},
 };
 static hbvib_status unknown_fill(void *s) { return hbvib_unknown_init(s, sizeof(hbvib_unknown)); }
 static const Struct UNKNOWN_STRUCT = {"unknown", sizeof(hbvib_unknown), unknown_fields, sizeof unknown_fields / sizeof *unknown_fields, unknown_fill};

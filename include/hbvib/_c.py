@@ -1020,7 +1020,7 @@ best_load: uint32 struct_size; int32 reserved; double factor amplitude amplitude
 data: uint32 struct_size; int32 kind; double force_factor; pointer response; int64 mode; double omega_start omega_stop;
     int64 n; pointer x value sigma second_sigma
 unknown: uint32 struct_size; int32 scale; double start lower upper prior_mean prior_sigma; int64 tied_to; int32
-    has_start has_lower has_upper reserved
+    has_start has_lower has_upper reserved; int64 data_set
 fit_options: uint32 struct_size; int32 scale_covariance; double huber; int64 starts max_iterations; double step
 fit_info: uint32 struct_size; int32 suspicion; double chi2 loss; int64 degrees_of_freedom data free iterations starts
     at_bound slipping; double aic bic condition harmonic_error suspected_factor

@@ -50,9 +50,11 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
     """Frequency and damping against amplitude from zero crossings and extremes of a decay in which one mode is left: filter other
     modes away before (the method of zero crossings, Londono, Neild & Cooper 2015, doi:10.1016/j.jsv.2014.12.019).
 
-    Zero crossings are those of lines through both samples, extremes those of parabolas through the three samples around the largest.
+    Zero crossings are those of lines through both samples, extremes those of parabolas through the samples around the largest, a sixth
+    of half a period to both sides: single samples would add their noise, the more so the smaller the motion is.
     In each window of `cycles` periods lines are fitted to the instants of the crossings, whose slope is half a period, and to the
-    logarithms of the extremes, whose slope is -D omega; what is left of both gives the standard deviations.
+    logarithms of the extremes, whose slope is -D omega, both as means of two neighbours; what is left of both gives the standard
+    deviations, right for errors that are independent from one crossing or extreme to the next.
 
     time, signal   samples at equal distances; ten a period or more.
     component      0: displacement, 1: velocity, 2: acceleration, whose amplitudes are divided by omega once or twice.
@@ -76,11 +78,12 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
         k = a + int(np.argmax(np.abs(x[a:b])))
         if not 0 < k < len(x) - 1:
             continue
-        left, middle, right = np.abs(x[k - 1:k + 2])
-        bend = left - 2 * middle + right
-        shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
-        instants.append(t[k] + shift * (t[k + 1] - t[k]))
-        extremes.append(middle - 0.25 * (left - right) * shift)
+        reach = max((b - a) // 6, 1)
+        first, last = max(k - reach, 0), min(k + reach + 1, len(x))
+        bend, rise, height = np.polyfit(np.arange(first - k, last - k), np.abs(x[first:last]), 2)
+        shift = float(np.clip(-0.5 * rise / bend, -reach, reach)) if bend < 0 else 0.0
+        instants.append(t[k] + shift * (t[1] - t[0]))
+        extremes.append(height + (rise + bend * shift) * shift)
     # Where sliders came to rest beside their place the motion has a mean: half of what lies between two extremes is the amplitude, and
     # the mean of two crossings is free of it.
     at = 0.5 * (np.array(instants[:-1]) + np.array(instants[1:]))
@@ -105,9 +108,17 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
 
 
 def _line(x: FloatArray, y: FloatArray) -> tuple[float, float, float]:
-    """Slope of the line through points, its standard deviation, and the height of the line at x = 0."""
+    """Slope of the line through means of neighbours, its standard deviation, and the height of the line at x = 0.
+
+    Means of two have an error in common with each neighbour: the deviations are those of independent numbers before, s, with
+    s^2 tr((I - H) V) the expected sum of the squares that are left, V the covariance of the means over s^2."""
     middle = x.mean()
     spread = float(((x - middle) ** 2).sum())
-    slope = float(((x - middle) * y).sum() / spread)
+    weights = (x - middle) / spread
+    slope = float((weights * y).sum())
     left = y - y.mean() - slope * (x - middle)
-    return slope, float(np.sqrt((left ** 2).sum() / max(len(x) - 2, 1) / spread)), float(y.mean() - slope * middle)
+    n = len(x)
+    common = 0.5 * np.eye(n) + 0.25 * (np.eye(n, k=1) + np.eye(n, k=-1))
+    hat = 1 / n + spread * np.outer(weights, weights)
+    variance = (left ** 2).sum() / np.trace((np.eye(n) - hat) @ common)
+    return slope, float(np.sqrt(variance * (weights @ common @ weights))), float(y.mean() - slope * middle)

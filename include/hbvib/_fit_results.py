@@ -133,7 +133,7 @@ class Fit:
         with np.errstate(invalid="ignore", divide="ignore"):
             self.correlation: FloatArray = np.asarray(covariance / np.outer(self.sd, self.sd))
         self.chi2, self.degrees_of_freedom = float(info.chi2), int(info.degrees_of_freedom)
-        self.names = [_name(one.parameter) for one in unknowns]
+        self.names = [_name(one.parameter) + (f" set {one.data_set}" if one.data_set >= 0 else "") for one in unknowns]
         #: Rise of chi2 that is one standard deviation.
         self._unit = 1.0
 
@@ -166,8 +166,9 @@ class Fit:
         return "\n".join(lines)
 
     def predict(self, kind: DataKinds, x: ArrayLike, *, force: float = 1.0, response: Union[int, Response, None] = None,
-                mode: int = 0, omega: Optional[Sequence[float]] = None) -> Predicted:
-        """Predicts numbers with their standard deviations; the arguments are those of Measured.
+                mode: int = 0, omega: Optional[Sequence[float]] = None, data_set: int = -1) -> Predicted:
+        """Predicts numbers with their standard deviations; the arguments are those of Measured. Unknowns of one data set act where
+        `data_set` is its number; -1: none of them.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
@@ -180,13 +181,15 @@ class Fit:
         at = np.atleast_1d(np.asarray(x, float))
         wanted = Measured(kind, at, np.zeros(len(at)), 1.0, force=force, response=response, mode=mode, omega=omega)
         solver = _solver_options("predict", {name: value for name, value in self._options.items() if name not in _OF_FIT})
-        parameters = [one.parameter._description() for one in self.unknowns]
+        own = [k for k, one in enumerate(self.unknowns) if one.data_set in (-1, data_set)]
+        parameters = [self.unknowns[k].parameter._description() for k in own]
+        theta, covariance = self.theta[own], np.ascontiguousarray(self.covariance[np.ix_(own, own)])
         p, rows = len(parameters), 2 * len(at)
         values, sigma, shift = np.zeros((3, rows))
         with _Guard() as guard:
             hooks = _hooks(guard, None, None, LogLevel.INFO, None, None)
             _call("hbvib_predict", self._original.handle, solver, wanted._description(), hooks,
-                  (structs["hbvib_parameter"] * p)(*parameters), p, self.theta, self.covariance, rows, values, sigma, shift,
+                  (structs["hbvib_parameter"] * p)(*parameters), p, theta, covariance, rows, values, sigma, shift,
                   guard=guard)
         first, second = [part[0::2] for part in (values, sigma, shift)], [part[1::2] for part in (values, sigma, shift)]
         if wanted.kind == DataKind.RESPONSE:
@@ -241,9 +244,10 @@ class Fit:
             return float(self._original.fit(fixed, self.data, **self._options).info.loss) + known
         # Without anything that is free only the residuals are needed: those of predictions.
         total = known
-        for one in self.data:
+        for number_of_set, one in enumerate(self.data):
             at = self._with(np.array([float(u.start or 0.0) for u in fixed])).predict(
-                one.kind, one.x, force=one.force, response=one.response, mode=one.mode, omega=one.omega if any(one.omega) else None)
+                one.kind, one.x, force=one.force, response=one.response, mode=one.mode, omega=one.omega if any(one.omega) else None,
+                data_set=number_of_set)
             numbers = one._residuals(at.value, at.second)
             size, limit = np.abs(numbers), self._options["huber"]
             total += float(np.where((limit > 0) & (size > limit), 2 * limit * size - limit ** 2, size ** 2).sum())

@@ -98,6 +98,7 @@ class Unknown(NamedTuple):
     prior          (mean, standard deviation) of what is known of it beside the data, or None.
     scale          "automatic": logarithmic for what is positive; "linear", "log"; or a Scale.
     tied_to        number of an earlier unknown, which it follows in the ratio of their starts; -1: none.
+    data_set       number of the data set that alone has it, as each test its residual state; -1: all have it.
 
     >>> import hbvib
     >>> hbvib.Unknown(hbvib.Parameter("kt", 0), 0.5, lower=0.1).start
@@ -110,6 +111,7 @@ class Unknown(NamedTuple):
     prior: Optional[tuple[float, float]] = None
     scale: Scales = Scale.AUTOMATIC
     tied_to: int = -1
+    data_set: int = -1
 
     def _description(self) -> Any:
         given: dict[str, Any] = {}
@@ -119,7 +121,8 @@ class Unknown(NamedTuple):
                 given[name], given["has_" + name] = value, 1
         if self.prior is not None:
             given["prior_mean"], given["prior_sigma"] = self.prior
-        return _new("hbvib_unknown", scale=_member(Scale, self.scale), tied_to=self.tied_to, **given)
+        return _new("hbvib_unknown", scale=_member(Scale, self.scale), tied_to=self.tied_to,
+                    data_set=self.data_set, **given)
 
 
 #: What Model.fit takes as unknowns: each an Unknown or a Parameter; or names with the number of a contact, "all" or "factor".

@@ -17,13 +17,16 @@ import numpy as np
 
 try:
     from ._test_files import TestFunction, read_uff
+    from ._test_modes import TestMode, read_uff_modes
+    from ._test_tables import coherence_sigma, read_columns
 except ImportError:  # this file alone, without the package: it reads and writes matrices
     pass
 
 if TYPE_CHECKING:
     from ._results import IntArray
 
-__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "TestFunction", "WriteError", "read", "read_uff", "write", "write_universal"]
+__all__ = ["Matrices", "ReadError", "SuspiciousMatrices", "TestFunction", "TestMode", "WriteError", "coherence_sigma", "read", "read_columns",
+           "read_uff", "read_uff_modes", "write", "write_universal"]
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 _FOLDERS = ("", "../../target/release", "../../target/debug", "../../../lib", "../../lib")

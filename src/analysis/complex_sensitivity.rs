@@ -7,8 +7,9 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::{Measure, Response};
 use crate::results::Branch;
-use crate::sensitivity::{ForcedPoint, Parameter, Reason, TotalDerivative, contact_at_onset};
+use crate::sensitivity::{ForcedPoint, Parameter, Reason, TotalDerivative, WaveMatrices, contact_at_onset};
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 const CONTEXT: &str = "the derivatives of a complex amplitude";
 
@@ -75,19 +76,79 @@ pub fn complex_sensitivity_with(
             .map_err(|e| e.at(format_args!("parameter {i}")))?;
     }
     interrupt.phase(Phase::Results, 0.0)?;
-    complex_at(model, (branch, point), response, parameters, (true, interrupt))
+    let mut matrices = WaveMatrices::default();
+    let at = (branch, point);
+    let omega = branch.omega_at(point).unwrap_or_default();
+    let mut equations = Equations {
+        range: (omega, omega),
+        at: None,
+    };
+    complex_at(
+        model,
+        at,
+        response,
+        (parameters, &mut matrices),
+        (true, &mut equations, interrupt),
+    )
+}
+
+/// Equations of a curve near its points that derivatives were made of, and the frequencies between which they hold.
+pub(super) struct Equations<'a> {
+    pub range: (f64, f64),
+    /// Those of the point before.
+    pub at: Option<ForcedPoint<'a>>,
+}
+
+impl<'a> Equations<'a> {
+    /// Those of a point that watch a response; the last ones where they are the same.
+    fn of(
+        &mut self,
+        (branch, point): (&'a Branch, usize),
+        response: &Response<'_>,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<&mut ForcedPoint<'a>> {
+        let (condensed, samples) = (branch.condensed_at(point), branch.samples_at(point));
+        let at = match self.at.take() {
+            Some(at) if at.are_of(condensed, samples) => at,
+            _ => {
+                let dof = branch.response_dof();
+                let at = ForcedPoint::over(condensed, (dof, samples), self.range, interrupt)?;
+                at.watching((response, dof), samples)?
+            }
+        };
+        Ok(self.at.insert(at))
+    }
+
+    /// The complex amplitude of a response at a stored point.
+    ///
+    /// # Errors
+    /// As [`complex_sensitivity_with`].
+    pub fn amplitude(
+        &mut self,
+        (branch, point): (&'a Branch, usize),
+        response: &Response<'_>,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<Complex64> {
+        let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
+            return fail!(Index, "point = {point}, needs 0 .. {}", branch.stored());
+        };
+        self.of((branch, point), response, interrupt)?
+            .complex_amplitude(motion, omega)
+    }
 }
 
 /// The same without checks; without `two_sided` a contact at the onset of slip has the derivatives of the side that its evaluation takes.
+/// The matrices of the structure are kept in `matrices` for further points of the same model, and the equations in `equations` for those of
+/// the same branch and response.
 ///
 /// # Errors
 /// As [`complex_sensitivity_with`].
-pub(super) fn complex_at(
+pub(super) fn complex_at<'a>(
     model: &Model,
-    (branch, point): (&Branch, usize),
+    (branch, point): (&'a Branch, usize),
     response: &Response<'_>,
-    parameters: &[Parameter<'_>],
-    (two_sided, interrupt): (bool, &Interrupt<'_>),
+    (parameters, matrices): (&[Parameter<'_>], &mut WaveMatrices),
+    (two_sided, equations, interrupt): (bool, &mut Equations<'a>, &'a Interrupt<'a>),
 ) -> Result<ComplexSensitivities> {
     let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
         return fail!(Index, "point = {point}, needs 0 .. {}", branch.stored());
@@ -106,9 +167,7 @@ pub(super) fn complex_at(
              harmonics, tolerance = 0"
         );
     }
-    let dof = branch.response_dof();
-    let at = ForcedPoint::new(condensed, (dof, samples), omega, interrupt)?;
-    let mut at = at.watching((response, dof), samples)?;
+    let at = equations.of((branch, point), response, interrupt)?;
     let nothing = Complex64::new(f64::NAN, f64::NAN);
     let mut found = ComplexSensitivities {
         value: nothing,
@@ -131,11 +190,23 @@ pub(super) fn complex_at(
         return Ok(found);
     }
     let models = (model, &*at_frequency);
-    let mut of_real = TotalDerivative::new(models, solution, &real, interrupt)?;
-    let mut of_imaginary = TotalDerivative::new(models, solution, &imaginary, interrupt)?;
+    // The matrices at a frequency hold there alone.
+    let mut own = WaveMatrices::default();
+    let matrices = match at_frequency {
+        Cow::Borrowed(_) => matrices,
+        Cow::Owned(_) => &mut own,
+    };
+    let of_real = TotalDerivative::new(models, solution, &real, interrupt)?;
+    let mut of_real = of_real.with_matrices(core::mem::take(matrices));
     for ((value, reason), parameter) in found.values.iter_mut().zip(&mut found.reasons).zip(parameters) {
         (value.re, *reason) = of_real.by(parameter)?;
+    }
+    *matrices = of_real.into_matrices();
+    let of_imaginary = TotalDerivative::new(models, solution, &imaginary, interrupt)?;
+    let mut of_imaginary = of_imaginary.with_matrices(core::mem::take(matrices));
+    for (value, parameter) in found.values.iter_mut().zip(parameters) {
         value.im = of_imaginary.by(parameter)?.0;
     }
+    *matrices = of_imaginary.into_matrices();
     Ok(found)
 }

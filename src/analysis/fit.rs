@@ -12,7 +12,9 @@ mod identifiability;
 mod marquardt_step;
 mod predicted_data;
 mod prediction;
+mod shared_work;
 mod suspected_units;
+mod thinned_data;
 
 pub use crate::analysis::fit::fit_data::{DataKind, FitData};
 pub use crate::analysis::fit::fit_options::{FitOptions, Loss};
@@ -33,12 +35,16 @@ use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::Phase;
 use crate::model::Model;
 use crate::options::SolverOptions;
-use crate::sensitivity::{Parameter, design};
+use crate::sensitivity::Parameter;
 
 const CONTEXT: &str = "a fit";
 
 /// χ² over the degrees of freedom above which units are suspected and other starts are tried.
 const FIT_POOR: f64 = 9.0;
+
+/// Limit of the robust loss of the search that begins where the fit is poor: points that another branch of the model is nearest to do not
+/// lead it.
+const FIT_ROBUST: f64 = 1.345;
 
 /// Fall of the loss from which a state with slip is preferred to one without: three standard deviations.
 const FIT_TELLS: f64 = 9.0;
@@ -90,7 +96,7 @@ pub struct Fit {
     pub slips: Vec<bool>,
     /// Units that the data may have.
     pub suspicion: Suspicion,
-    /// The model with the values.
+    /// The model with the values of the parameters that all data sets have.
     pub model: Model,
 }
 
@@ -109,7 +115,7 @@ impl Fit {
 }
 
 /// Fits parameters of `model` to data. With a tolerance of the solver it is lowered where the errors by harmonics would exceed a third
-/// of the standard deviations. Where the given start fits poorly, or friction is not seen from it, starts towards sliding and sticking
+/// of the standard deviations. Many data are searched by a share of them first. Where the given start fits poorly, or friction is not seen from it, starts towards sliding and sticking
 /// are tried; `options.starts` adds others.
 ///
 /// # Errors
@@ -133,12 +139,15 @@ pub fn fit(
     for (i, set) in data.iter().enumerate() {
         set.check(model, true).map_err(|e| e.at(format_args!("data set {i}")))?;
     }
-    let unknowns = Unknowns::new(model, parameters, unknowns)?;
+    let unknowns = Unknowns::new(model, (parameters, unknowns), data.len())?;
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Results, 0.0)?;
+    // Bases of waves are shared by all designs of the fit, and leave the caller's model as it is.
+    let own = model.separate_clone()?;
     let predictor = Predictor {
-        model,
+        model: &own,
         parameters,
+        scopes: &unknowns.scopes,
         data,
         solver: SolverOptions {
             tolerance: tolerance_of(data, solver.tolerance),
@@ -155,6 +164,12 @@ pub fn fit(
     for free in &unknowns.free {
         try_push(&mut z, free.start, CONTEXT)?;
     }
+    let mut stopped = false;
+    let explains = |search: &Search<'_>, state: &State| !is_poor(search, state) && !unseen(state);
+    let mut told = |i: usize, state: &State| report(hooks, (i, state), &mut stopped);
+    if let Some(nearer) = thinned_data::start(&search, &z, explains, &mut told)? {
+        z = nearer;
+    }
     let Some(first) = search.at(z)? else {
         return fail!(
             NoConvergence,
@@ -162,7 +177,7 @@ pub fn fit(
         );
     };
 
-    let ended = best_of(&search, &first, hooks)?;
+    let ended = best_of(&search, &first, (hooks, stopped))?;
     let suspicion = if is_poor(&search, &ended.found.state) {
         suspected(&predictor, &first.theta)?
     } else {
@@ -217,10 +232,18 @@ struct Ended {
 }
 
 /// The best end of the searches from all starts.
-fn best_of(search: &Search<'_>, first: &State, hooks: &mut Hooks<'_>) -> Result<Ended> {
-    let mut stopped = false;
+fn best_of(search: &Search<'_>, first: &State, (hooks, mut stopped): (&mut Hooks<'_>, bool)) -> Result<Ended> {
     let mut starts = 1;
-    let mut best = search.from(first.clone(), &mut |i, state| report(hooks, (i, state), &mut stopped))?;
+    let mut best = search.from(first.clone(), &mut |i, state| {
+        stopped || report(hooks, (i, state), &mut stopped)
+    })?;
+    if !stopped && is_poor(search, &best.state) && search.options.loss == Loss::Square {
+        starts += 1;
+        let found = by_robust_loss(search, first, &mut |i, state| report(hooks, (i, state), &mut stopped))?;
+        if found.state.cost < best.state.cost {
+            best = found;
+        }
+    }
     let poor = is_poor(search, &best.state) || unseen(&best.state);
     if !stopped && (poor || search.options.starts > 1) {
         for state in further_starts(search, first, poor)? {
@@ -241,6 +264,26 @@ fn best_of(search: &Search<'_>, first: &State, hooks: &mut Hooks<'_>) -> Result<
         starts,
         stopped,
     })
+}
+
+/// The search from where a robust one ends. Beyond a fold of the model the solution nearest to a datum lies on another branch; such data
+/// pull least squares away from the truth, and are outliers to a robust loss until the fold has moved.
+fn by_robust_loss(search: &Search<'_>, first: &State, report: &mut dyn FnMut(usize, &State) -> bool) -> Result<Found> {
+    let options = FitOptions {
+        loss: Loss::Huber(FIT_ROBUST),
+        ..*search.options
+    };
+    let robust = Search {
+        options: &options,
+        ..*search
+    };
+    let mut stopped = false;
+    let mut report = |i: usize, state: &State| {
+        stopped |= report(i, state);
+        stopped
+    };
+    let found = robust.from(robust.weighed(first.clone()), &mut report)?;
+    search.from(search.weighed(found.state), &mut report)
 }
 
 /// The result with its covariance.
@@ -291,7 +334,7 @@ fn result(search: &Search<'_>, ended: Ended, suspicion: Suspicion) -> Result<Fit
     };
     Ok(Fit {
         status,
-        model: design(predictor.model, predictor.parameters, &best.state.theta)?,
+        model: predictor.common_model(&best.state.theta)?,
         covariance,
         at_bound,
         chi2,

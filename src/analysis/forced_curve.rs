@@ -44,7 +44,7 @@ pub(super) fn alone(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
-    with_detail(model, solver, range, (Detail::Curve, None), hooks)
+    with_detail(model, solver, range, (Detail::Curve, None), (None, hooks))
 }
 
 /// The curve that is entered inside the range near the guess, and the harmonics that the branch does not have which it leaves. Where
@@ -59,7 +59,7 @@ pub(super) fn forced_from_inside(
     inside: &Inside<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Option<(Branch, Option<Dropped>)>> {
-    let outcome = with_detail(model, solver, range, (Detail::Curve, Some(inside)), hooks);
+    let outcome = with_detail(model, solver, range, (Detail::Curve, Some(inside)), (None, hooks));
     match (outcome, inside.entry.get()) {
         (Err(_), Entry::Known) => Ok(None),
         (Ok(branch), Entry::Followed(dropped)) => Ok(Some((branch, dropped))),
@@ -79,7 +79,26 @@ pub(super) fn special_points(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
-    with_detail(model, solver, range, (Detail::SpecialPoints, None), hooks)
+    with_detail(model, solver, range, (Detail::SpecialPoints, None), (None, hooks))
+}
+
+/// The same with modes of `waves`, which curves of the same structure, contacts and response degree of freedom have left there.
+///
+/// # Errors
+/// As [`crate::analysis::forced_response()`].
+pub(super) fn special_points_with(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ForcedOptions<'_>,
+    (waves, hooks): (&SharedWaves, &mut Hooks<'_>),
+) -> Result<Branch> {
+    with_detail(
+        model,
+        solver,
+        range,
+        (Detail::SpecialPoints, None),
+        (Some(waves), hooks),
+    )
 }
 
 fn with_detail(
@@ -87,7 +106,7 @@ fn with_detail(
     solver: &SolverOptions,
     range: &ForcedOptions<'_>,
     (detail, inside): (Detail, Option<&Inside<'_>>),
-    hooks: &mut Hooks<'_>,
+    (waves, hooks): (Option<&SharedWaves>, &mut Hooks<'_>),
 ) -> Result<Branch> {
     solver.check()?;
     range.check()?;
@@ -121,7 +140,16 @@ fn with_detail(
         ..*solver
     };
     let outcome = with_samples(&with_exchange, |solver| {
-        follow(model, solver, (range, detail, inside), hooks, &interrupt, trace)
+        let own = SharedWaves::default();
+        let waves = waves.unwrap_or(&own);
+        follow(
+            model,
+            solver,
+            (range, detail, inside),
+            (waves, hooks),
+            &interrupt,
+            trace,
+        )
     });
     completed(outcome, model, solver)
 }
@@ -179,17 +207,16 @@ fn follow(
     model: &Model,
     solver: &SolverOptions,
     (range, detail, inside): (&ForcedOptions<'_>, Detail, Option<&Inside<'_>>),
-    hooks: &mut Hooks<'_>,
+    (waves, hooks): (&SharedWaves, &mut Hooks<'_>),
     interrupt: &Interrupt<'_>,
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let sweep = (range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;
-    let waves = SharedWaves::default();
     let condensed = |harmonics, reference, fewer: Option<&Condensed>| {
         let options = SolverOptions { harmonics, ..*solver };
-        condensed((model, &options), sweep, (reference, fewer), &waves, interrupt)
+        condensed((model, &options), sweep, (reference, fewer), waves, interrupt)
     };
     let levels = HarmonicLevels::new(model, solver, &forced, |highest, fewer| condensed(highest, None, fewer))?;
     let stuck = |highest, fewer: Option<&Condensed>| condensed(highest, Some(Reference::Stuck), fewer);
@@ -214,7 +241,7 @@ fn follow(
     let entry = given.as_deref().filter(|_| inside.is_some());
     let entry = entry.map(|guess| try_copy(guess, "the guess")).transpose()?;
     let extended = extended_models(solver.estimate_error || levels.is_automatic())?;
-    let models = (&levels, &stuck, (&extended, &waves));
+    let models = (&levels, &stuck, (&extended, waves));
     let mut response = boxed(|| {
         ForcedDiscretised::new(
             model,

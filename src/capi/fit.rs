@@ -67,11 +67,13 @@ pub struct hbvib_unknown {
     pub has_upper: i32,
     /// Must be 0.
     pub reserved: i32,
+    /// Number of the data set that alone has it, as each test its residual state; -1: all have it.
+    pub data_set: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_unknown {
     const NAME: &'static str = "hbvib_unknown";
-    const FIRST_SIZE: usize = 72;
+    const FIRST_SIZE: usize = 80;
 
     fn defaults() -> Self {
         Self {
@@ -87,6 +89,7 @@ unsafe impl VersionedStruct for hbvib_unknown {
             has_lower: 0,
             has_upper: 0,
             reserved: 0,
+            data_set: -1,
         }
     }
 }
@@ -251,7 +254,8 @@ pub unsafe extern "C" fn hbvib_fit_info_init(i: *mut hbvib_fit_info, size_of_i: 
 /// residuals      receives the residuals in standard deviations, two for each point, set after
 ///                set, 0 for a number that is no datum; or NULL.
 /// values         receives the numbers of the model, likewise; or NULL.
-/// out            receives the model with the values; or NULL. Free it by hbvib_model_free.
+/// out            receives the model with the values that all data sets have; or NULL. Free it by
+///                hbvib_model_free.
 /// HBVIB_STOPPED_MAX_POINTS: the iterations did not suffice; HBVIB_STOPPED_STALLED: no step
 /// lowers the loss any more; HBVIB_STOPPED_BY_CALLER: by progress, with the best values so far;
 /// by other hooks nothing is written.
@@ -532,6 +536,13 @@ fn unknown(u: &hbvib_unknown) -> Result<Unknown> {
             other => match usize::try_from(other) {
                 Ok(number) => Some(number),
                 Err(_) => return fail!(Argument, "tied_to = {other}, needs the number of a parameter, or -1"),
+            },
+        },
+        data_set: match u.data_set {
+            -1 => None,
+            other => match usize::try_from(other) {
+                Ok(number) => Some(number),
+                Err(_) => return fail!(Argument, "data_set = {other}, needs the number of a data set, or -1"),
             },
         },
     })

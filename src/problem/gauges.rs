@@ -282,34 +282,42 @@ impl<'a> Gauges<'a> {
 }
 
 impl Gauges<'_> {
-    /// The complex amplitude of the harmonic that a gauge measures at `v` = (u, ω), and the derivatives of its part along `turn`,
-    /// Re(turn* X): of the real part for 1, of the imaginary part for i. All 0 where the motion does not have the harmonic.
+    /// Position of the harmonic that a gauge measures; `None` where the motion does not have it.
+    #[must_use]
+    pub fn harmonic(&self, r: usize) -> Option<usize> {
+        let set = self.condensed.set();
+        match self.all[r].measure {
+            Measure::Harmonic(number) => set.numbers().binary_search(&number).ok(),
+            _ => Some(set.watched()),
+        }
+    }
+
+    /// The complex amplitude of the i-th carried harmonic, whose motion is x.
+    #[must_use]
+    pub fn amplitude(&self, r: usize, (i, omega): (usize, f64), x: &[Complex64]) -> Complex64 {
+        let gauge = &self.all[r];
+        gauge.factor(self.condensed.set().numbers()[i], omega).0 * gauge.along(i, x)
+    }
+
+    /// The derivatives of its part along `turn`, Re(turn* X), where the amplitude is X: of the real part for 1, of the imaginary part
+    /// for i.
     ///
     /// # Errors
-    /// As [`Self::read`].
-    pub fn part(&mut self, v: &[f64], r: usize, turn: Complex64) -> Result<(Complex64, Derivatives)> {
-        let mut seen = Vec::new();
-        let zero = try_vec(v.len(), 0.0, CONTEXT)?;
-        self.read(v, &zero, Some(r), &mut seen)?;
-        let (condensed, omega) = (self.condensed, v[v.len() - 1]);
-        let (set, n) = (condensed.set(), condensed.ndof());
-        let m = set.packed_len();
+    /// `OutOfMemory`.
+    pub fn part(
+        &self,
+        r: usize,
+        (i, omega): (usize, f64),
+        (turn, amplitude): (Complex64, Complex64),
+    ) -> Result<Derivatives> {
+        let (set, n) = (self.condensed.set(), self.condensed.ndof());
         let mut found = Derivatives {
-            value: 0.0,
+            value: (turn.conj() * amplitude).re,
             by_motion: try_vec(n.saturating_mul(set.numbers().len()), Complex64::ZERO, CONTEXT)?,
             by_omega: 0.0,
         };
         let gauge = &self.all[r];
-        let at = match gauge.measure {
-            Measure::Harmonic(number) => set.numbers().binary_search(&number).ok(),
-            _ => Some(set.watched()),
-        };
-        let Some(i) = at else {
-            return Ok((Complex64::ZERO, found));
-        };
-        let amplitude = set.get(&self.signals[r * m..(r + 1) * m], i);
         let (factor, d_factor) = gauge.factor(set.numbers()[i], omega);
-        found.value = (turn.conj() * amplitude).re;
         if factor != Complex64::ZERO {
             found.by_omega = (turn.conj() * d_factor * amplitude / factor).re;
             for (weight, row) in &gauge.rows[i] {
@@ -318,7 +326,7 @@ impl Gauges<'_> {
                 }
             }
         }
-        Ok((amplitude, found))
+        Ok(found)
     }
 }
 

@@ -75,10 +75,22 @@ impl Parameter<'_> {
 /// # Errors
 /// `Dimension` for another number of values; those of [`Parameter::apply`], naming the value.
 pub(crate) fn design(model: &Model, parameters: &[Parameter<'_>], values: &[f64]) -> Result<Model> {
+    with_values(model.separate_clone()?, parameters, values)
+}
+
+/// The same on the list of bases of the model itself, where the parameters leave its structure as it is: the next design has the bases
+/// that this one adds.
+///
+/// # Errors
+/// As [`design`].
+pub(crate) fn design_with_bases(model: &Model, parameters: &[Parameter<'_>], values: &[f64]) -> Result<Model> {
+    with_values(model.try_clone()?, parameters, values)
+}
+
+fn with_values(mut copy: Model, parameters: &[Parameter<'_>], values: &[f64]) -> Result<Model> {
     if values.len() != parameters.len() {
         return fail!(Dimension, "{} values for {} parameters", values.len(), parameters.len());
     }
-    let mut copy = model.separate_clone()?;
     for (i, (parameter, &value)) in parameters.iter().zip(values).enumerate() {
         parameter
             .apply(value, &mut copy)

@@ -35,10 +35,7 @@ pub(crate) struct ForcedPoint<'a> {
     by_omega: Vec<Complex64>,
     /// A response in place of the amplitude, with its derivatives at the point linearised last.
     watched: Option<(Box<Gauges<'a>>, Option<Derivatives>)>,
-    /// The part of the complex amplitude of the watched response that is differentiated instead of its measure.
-    turn: Option<Complex64>,
-    /// The complex amplitude that was read last, in the unit of lengths.
-    seen: Complex64,
+    samples: usize,
 }
 
 /// A result A − λᵀR whose adjoint motion is wanted.
@@ -75,13 +72,21 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(
+    pub fn new(condensed: &'a Condensed, at: (usize, usize), omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        Self::over(condensed, at, (omega, omega), interrupt)
+    }
+
+    /// The same for solutions at frequencies of a range, over which flexibilities are sums where the curve has them from sums.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn over(
         condensed: &'a Condensed,
         (response, samples): (usize, usize),
-        omega: f64,
+        range: (f64, f64),
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
-        let problem = HarmonicBalance::new(condensed, response, (omega, omega), samples, None, interrupt)?;
+        let problem = HarmonicBalance::new(condensed, response, range, samples, None, interrupt)?;
         let n = problem.size();
         let dofs = condensed.ndof().saturating_mul(condensed.blocks().len());
         Ok(Self {
@@ -95,9 +100,14 @@ impl<'a> ForcedPoint<'a> {
             by_omega: try_vec(dofs, Complex64::ZERO, CONTEXT)?,
             problem,
             watched: None,
-            turn: None,
-            seen: Complex64::ZERO,
+            samples,
         })
+    }
+
+    /// Whether these are the equations of another solution, too.
+    #[must_use]
+    pub fn are_of(&self, condensed: &Condensed, samples: usize) -> bool {
+        core::ptr::eq(self.condensed, condensed) && self.samples == samples
     }
 
     /// Differentiates a response instead of the amplitude; one without degrees of freedom has the `default` one.
@@ -132,15 +142,8 @@ impl<'a> ForcedPoint<'a> {
         };
         let mut v = try_copy(u, CONTEXT)?;
         try_push(&mut v, omega, CONTEXT)?;
-        let (value, found) = if let Some(turn) = self.turn {
-            let (amplitude, found) = gauges.part(&v, 0, turn)?;
-            self.seen = amplitude;
-            // The derivatives of a part do not vanish with it.
-            (1.0, found)
-        } else {
-            let found = gauges.derivatives(&v, 0)?;
-            (found.value, found)
-        };
+        let found = gauges.derivatives(&v, 0)?;
+        let value = found.value;
         let n = self.condensed.ndof();
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mut field = try_copy(&found.by_motion[i * n..(i + 1) * n], CONTEXT)?;
@@ -175,37 +178,97 @@ impl<'a> ForcedPoint<'a> {
         Ok(Some(adjoint))
     }
 
+    /// The complex amplitude of the watched response at the solution `u`; 0 where the motion does not have its harmonic.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn complex_amplitude(&mut self, u: &[f64], omega: f64) -> Result<Complex64> {
+        self.problem.evaluate(u, omega, &mut self.at)?;
+        let seen = self.observed_motion(u, omega)?;
+        Ok(seen.map_or(Complex64::ZERO, |(_, _, amplitude)| amplitude * self.condensed.length()))
+    }
+
+    /// The harmonic of the watched response, its motion and amplitude at the point evaluated last, whose factors the workspace then has.
+    fn observed_motion(&mut self, u: &[f64], omega: f64) -> Result<Option<(usize, Vec<Complex64>, Complex64)>> {
+        let condensed = self.condensed;
+        let Some(i) = self.watched.as_ref().and_then(|(gauges, _)| gauges.harmonic(0)) else {
+            return Ok(None);
+        };
+        let mut x = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
+        self.recover((u, omega), i, &mut x)?;
+        let amplitude = match &self.watched {
+            Some((gauges, _)) => gauges.amplitude(0, (i, omega), &x),
+            None => return fail!(Internal, "no response is watched"),
+        };
+        Ok(Some((i, x, amplitude)))
+    }
+
+    /// The motion of the i-th carried harmonic, in the unit of lengths, at the point evaluated last.
+    fn recover(&mut self, (u, omega): (&[f64], f64), i: usize, x: &mut [Complex64]) -> Result<()> {
+        let condensed = self.condensed;
+        let (set, m) = (condensed.set(), condensed.set().packed_len());
+        self.problem.contact_force(u, i, &mut self.w);
+        self.workspace
+            .recover(condensed, i, omega, &self.w, x, self.interrupt)?;
+        for (c, y) in self.w.iter_mut().enumerate() {
+            *y = set.get(&u[c * m..(c + 1) * m], i);
+        }
+        near_rigid_motion::correct(&mut self.workspace, condensed, (i, omega), &self.w, x, self.interrupt)
+    }
+
     /// The complex amplitude of the watched response at the solution `u`, and the adjoints of its real and of its imaginary part, from
-    /// one factorisation; `None` where Newton's matrix is singular.
+    /// one factorisation of Newton's matrix and one of each harmonic; `None` where Newton's matrix is singular.
     ///
     /// # Errors
     /// As [`Self::adjoint`].
     pub fn parts(&mut self, u: &[f64], omega: f64) -> Result<Option<(Complex64, [Adjoint; 2])>> {
-        self.turn = Some(Complex64::ONE);
-        let mut of_real = try_vec(u.len(), 0.0, CONTEXT)?;
-        let unit = self.linearise(u, omega, &mut of_real)?;
+        let condensed = self.condensed;
+        self.problem.evaluate(u, omega, &mut self.at)?;
+        self.system.active.fill(true);
+        self.problem.fill(&mut self.system.matrix, &mut self.system.active)?;
+        let seen = self.observed_motion(u, omega)?;
+        let amplitude = seen.as_ref().map_or(Complex64::ZERO, |(_, _, amplitude)| *amplitude);
+        let turns = [Complex64::ONE, Complex64::I];
+        let mut lambdas = [Vec::new(), Vec::new()];
+        let mut of_parts = [None, None];
+        for ((turn, lambda), part) in turns.into_iter().zip(&mut lambdas).zip(&mut of_parts) {
+            *lambda = try_vec(u.len(), 0.0, CONTEXT)?;
+            let (Some((gauges, _)), Some(&(i, ..))) = (&self.watched, seen.as_ref()) else {
+                continue;
+            };
+            let found = gauges.part(0, (i, omega), (turn, amplitude))?;
+            let n = condensed.ndof();
+            let mut field = try_copy(&found.by_motion[i * n..(i + 1) * n], CONTEXT)?;
+            // The factors are those of the motion.
+            self.workspace
+                .adjoint_with_factors(condensed, i, omega, &mut field, self.interrupt)?;
+            for (c, row) in condensed.blocks()[i].rows.iter().enumerate() {
+                let g = -row.along(&field).conj();
+                self.problem.forces().couple_scalar(i, (0, c), g, lambda, 1);
+            }
+            *part = Some(found);
+        }
         match self.system.factor(self.interrupt) {
             Err(e) if e.status == Status::Singular => return Ok(None),
             factored => factored?,
         }
-        self.system.solve_transposed(&mut of_real);
-        let by_real = self.watched.as_mut().and_then(|(_, known)| known.take());
-        self.turn = Some(Complex64::I);
-        let mut of_imaginary = try_vec(u.len(), 0.0, CONTEXT)?;
-        self.response_gradient(u, omega, &mut of_imaginary)?;
-        self.system.solve_transposed(&mut of_imaginary);
-        let by_imaginary = self.watched.as_mut().and_then(|(_, known)| known.take());
-        let wanted = [(&of_real, &by_real), (&of_imaginary, &by_imaginary)].map(|(lambda, watched)| Wanted {
-            amplitude: unit,
+        for lambda in &mut lambdas {
+            self.system.solve_transposed(lambda);
+        }
+        let [of_real, of_imaginary] = &lambdas;
+        let [by_real, by_imaginary] = &of_parts;
+        let wanted = [(of_real, by_real), (of_imaginary, by_imaginary)].map(|(lambda, watched)| Wanted {
+            // The derivatives of a part do not vanish with it.
+            amplitude: Complex64::ONE,
             lambda,
             watched: watched.as_ref(),
         });
-        let mut found = self.of_lambdas((u, omega), &wanted)?;
+        let known = seen.as_ref().map(|(i, x, _)| (*i, &x[..]));
+        let mut found = self.of_lambdas((u, omega), &wanted, known)?;
         let (Some(imaginary), Some(real)) = (found.pop(), found.pop()) else {
             return fail!(Internal, "an adjoint is missing");
         };
-        self.turn = None;
-        Ok(Some((self.seen * self.condensed.length(), [real, imaginary])))
+        Ok(Some((amplitude * condensed.length(), [real, imaginary])))
     }
 
     /// The derivatives of A − λᵀR by the motions and by ω, at a fixed λ.
@@ -262,7 +325,7 @@ impl<'a> ForcedPoint<'a> {
             lambda,
             watched: known.as_ref(),
         };
-        let found = self.of_lambdas(at, &[wanted]);
+        let found = self.of_lambdas(at, &[wanted], None);
         if let Some((_, place)) = &mut self.watched {
             *place = known;
         }
@@ -272,8 +335,14 @@ impl<'a> ForcedPoint<'a> {
         }
     }
 
-    /// The same for several λ of one point, with one factorisation per harmonic.
-    fn of_lambdas(&mut self, (u, omega): (&[f64], f64), wanted: &[Wanted<'_>]) -> Result<Vec<Adjoint>> {
+    /// The same for several λ of one point, with one factorisation per harmonic. Where the workspace has the factors of one harmonic with
+    /// its motion, it comes first.
+    fn of_lambdas(
+        &mut self,
+        (u, omega): (&[f64], f64),
+        wanted: &[Wanted<'_>],
+        known: Option<(usize, &[Complex64])>,
+    ) -> Result<Vec<Adjoint>> {
         let condensed = self.condensed;
         let mut found = Vec::new();
         for _ in wanted {
@@ -284,20 +353,19 @@ impl<'a> ForcedPoint<'a> {
             )?;
         }
         let set = condensed.set();
-        let (m, n) = (set.packed_len(), condensed.ndof());
+        let n = condensed.ndof();
         let length = condensed.length();
         let independent = condensed.degrees().independent();
         let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
         let mut field = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        for (i, block) in condensed.blocks().iter().enumerate() {
-            self.problem.contact_force(u, i, &mut self.w);
-            self.workspace
-                .recover(condensed, i, omega, &self.w, &mut x, self.interrupt)?;
-            for (c, y) in self.w.iter_mut().enumerate() {
-                *y = set.get(&u[c * m..(c + 1) * m], i);
+        let first = known.map(|(i, _)| i);
+        let others = (0..condensed.blocks().len()).filter(|i| Some(*i) != first);
+        for i in first.into_iter().chain(others) {
+            let block = &condensed.blocks()[i];
+            match known {
+                Some((own, motion)) if own == i => x.copy_from_slice(motion),
+                _ => self.recover((u, omega), i, &mut x)?,
             }
-            let at = (i, omega);
-            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, &mut x, self.interrupt)?;
             let load = &mut self.by_omega[i * n..(i + 1) * n];
             load.fill(Complex64::ZERO);
             self.workspace.add_frequency_slope(condensed, i, omega, &x, load);

@@ -30,12 +30,13 @@ pub(crate) mod tracked;
 mod tracked_response;
 
 pub(crate) use adjoint::Adjoint;
-pub(crate) use design::design;
+pub(crate) use design::{design, design_with_bases};
 pub(crate) use forced_point::ForcedPoint;
 pub(crate) use friction_work::work_at_fixed_motion;
 pub(crate) use mode_point::{ModePointAdjoint, ModeQuantity};
 pub(crate) use one_sided::contact_at_onset;
 pub use parameter::{Parameter, Reason};
 pub(crate) use peak_shift::peak_shift;
+pub(crate) use structure_products::WaveMatrices;
 pub(crate) use total_derivative::TotalDerivative;
 pub(crate) use tracked_response::{ResponsePoint, TrackedResponse, peak_row};

@@ -5,7 +5,7 @@
 //! matrices are set anew.
 
 use crate::condense::{Artificial, Condensed};
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::inner;
 use crate::linalg::matrix_view::MatrixView;
 use crate::linalg::sparse::Csc;
@@ -109,26 +109,59 @@ pub(super) fn with_direction(
     })
 }
 
+/// Matrices of waves that a factor multiplies, made once for all results and points of one model.
+#[derive(Debug, Default)]
+pub(crate) struct WaveMatrices {
+    known: Vec<(MatrixKind, usize, Vec<Csc>)>,
+}
+
+impl WaveMatrices {
+    /// The matrix of a harmonic, and those that are no part of it though the wave's matrix has them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    fn of(&mut self, model: &Model, which: MatrixKind, number: usize) -> Result<&[Csc]> {
+        let position = self.known.iter().position(|(a, b, _)| (*a, *b) == (which, number));
+        let position = match position {
+            Some(position) => position,
+            None => {
+                let structure = model.structure();
+                let mut made = Vec::new();
+                try_push(&mut made, structure.wave_matrix(which, number)?, CONTEXT)?;
+                if which == MatrixKind::Damping {
+                    let wave = Wave::Harmonic(number);
+                    let gyroscopic = structure.gyroscopic_at_speed(wave)?;
+                    let aero = structure.aero_of_wave(AeroForm::Velocity, wave)?;
+                    for part in [gyroscopic, aero].into_iter().flatten() {
+                        try_push(&mut made, part, CONTEXT)?;
+                    }
+                }
+                try_push(&mut self.known, (which, number, made), CONTEXT)?;
+                self.known.len() - 1
+            }
+        };
+        Ok(&self.known[position].2)
+    }
+}
+
 /// The product with the whole matrix, which a factor multiplies.
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(super) fn with_whole(model: &Model, condensed: &Condensed, adjoint: &Adjoint, which: MatrixKind) -> Result<f64> {
+pub(super) fn with_whole(
+    model: &Model,
+    condensed: &Condensed,
+    adjoint: &Adjoint,
+    (which, matrices): (MatrixKind, &mut WaveMatrices),
+) -> Result<f64> {
     sum(model, condensed, adjoint, which, |i, a, b| {
         let number = condensed.blocks()[i].number;
-        let matrix = model.structure().wave_matrix(which, number)?;
+        let Some((matrix, others)) = matrices.of(model, which, number)?.split_first() else {
+            return fail!(Internal, "a matrix is missing");
+        };
         let mut product = matrix.times(b, CONTEXT)?;
-        if which == MatrixKind::Damping
-            && let Some(gyroscopic) = model.structure().gyroscopic_at_speed(Wave::Harmonic(number))?
-        {
-            gyroscopic.multiply_add(-Complex64::ONE, b, &mut product);
-        }
-        if which == MatrixKind::Damping
-            && let Some(aero) = model
-                .structure()
-                .aero_of_wave(AeroForm::Velocity, Wave::Harmonic(number))?
-        {
-            aero.multiply_add(-Complex64::ONE, b, &mut product);
+        for other in others {
+            other.multiply_add(-Complex64::ONE, b, &mut product);
         }
         Ok(inner(a, &product))
     })
@@ -138,14 +171,19 @@ pub(super) fn with_whole(model: &Model, condensed: &Condensed, adjoint: &Adjoint
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(super) fn with_speed(model: &Model, condensed: &Condensed, adjoint: &Adjoint, speed: f64) -> Result<f64> {
+pub(super) fn with_speed(
+    model: &Model,
+    condensed: &Condensed,
+    adjoint: &Adjoint,
+    (speed, matrices): (f64, &mut WaveMatrices),
+) -> Result<f64> {
     let mut total = 0.0;
     for (which, scale) in [
         (MatrixKind::StiffnessSpeed2, 2.0 * speed),
         (MatrixKind::Gyroscopic, 1.0),
     ] {
         if model.structure().has(which) && scale != 0.0 {
-            total += scale * with_whole(model, condensed, adjoint, which)?;
+            total += scale * with_whole(model, condensed, adjoint, (which, &mut *matrices))?;
         }
     }
     Ok(total)

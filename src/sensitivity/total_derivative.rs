@@ -9,7 +9,7 @@ use crate::model::speed::Speed;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::contact_products::{ContactMotion, ContactProducts};
 use crate::sensitivity::parameter::{Parameter, Reason};
-use crate::sensitivity::structure_products::{with_direction, with_speed, with_whole};
+use crate::sensitivity::structure_products::{WaveMatrices, with_direction, with_speed, with_whole};
 use num_complex::Complex64;
 
 /// Derivatives of one result; products with a contact are computed once for all its constants.
@@ -21,6 +21,7 @@ pub(crate) struct TotalDerivative<'a> {
     samples: usize,
     adjoint: &'a Adjoint,
     products: Vec<Option<ContactProducts>>,
+    matrices: WaveMatrices,
     interrupt: &'a Interrupt<'a>,
 }
 
@@ -40,8 +41,21 @@ impl<'a> TotalDerivative<'a> {
             samples,
             adjoint,
             products: try_vec(model.contacts().len(), None, CONTEXT)?,
+            matrices: WaveMatrices::default(),
             interrupt,
         })
+    }
+
+    /// The same with matrices that other results of the same model have made.
+    #[must_use]
+    pub fn with_matrices(self, matrices: WaveMatrices) -> Self {
+        Self { matrices, ..self }
+    }
+
+    /// The matrices, for further results of the model.
+    #[must_use]
+    pub fn into_matrices(self) -> WaveMatrices {
+        self.matrices
     }
 
     /// The derivative by a parameter that [`Parameter::check`] accepts; NaN with a reason where there is none.
@@ -68,12 +82,13 @@ impl<'a> TotalDerivative<'a> {
                 sum
             }
             Parameter::Direction { which, direction } => -with_direction(model, condensed, adjoint, *which, direction)?,
-            Parameter::Factor { which } => -with_whole(model, condensed, adjoint, *which)?,
+            Parameter::Factor { which } => -with_whole(model, condensed, adjoint, (*which, &mut self.matrices))?,
             Parameter::Speed => {
                 let Speed::Fixed(speed) = self.model.speed() else {
                     return Ok((f64::NAN, Reason::ZeroConstant));
                 };
-                let mut sum = -with_speed(model, condensed, adjoint, speed)? + self.by_centrifugal(speed);
+                let mut sum = -with_speed(model, condensed, adjoint, (speed, &mut self.matrices))?;
+                sum += self.by_centrifugal(speed);
                 for load in self.model.speed_loads() {
                     let slope = 2.0 * load.per_speed2 * speed;
                     if slope == 0.0 {

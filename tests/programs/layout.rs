@@ -81,7 +81,7 @@ fn in_rust() -> String {
         hbvib_life_info { struct_size, reserved, steps, solutions, points, reached, largest, largest_at, amplitude_new, amplitude_worn }
         hbvib_best_load { struct_size, reserved, factor, amplitude, amplitude_new, amplitude_worn, lives }
         hbvib_data { struct_size, kind, force_factor, response, mode, omega_start, omega_stop, n, x, value, sigma, second_sigma }
-        hbvib_unknown { struct_size, scale, start, lower, upper, prior_mean, prior_sigma, tied_to, has_start, has_lower, has_upper, reserved }
+        hbvib_unknown { struct_size, scale, start, lower, upper, prior_mean, prior_sigma, tied_to, has_start, has_lower, has_upper, reserved, data_set }
         hbvib_fit_options { struct_size, scale_covariance, huber, starts, max_iterations, step }
         hbvib_fit_info { struct_size, suspicion, chi2, loss, degrees_of_freedom, data, free, iterations, starts, at_bound, slipping, aic, bic, condition, harmonic_error, suspected_factor }
         // END GENERATED

@@ -1,9 +1,9 @@
-//! Files with data of tests: CSV with named columns, and functions of universal files.
+//! Data of tests as the library takes them, from the columns of files.
 
 use crate::build::{Built, Outcome};
+use crate::fit_table::Table;
 use crate::job_fit::{DataName, DataPart};
 use hbvib::{DataKind, FitData, Response};
-use hbvib_io::read_universal;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -29,12 +29,7 @@ impl Data {
     pub fn read(part: &DataPart, built: &Built, folder: &Path) -> Outcome<Self> {
         let path = folder.join(&part.file);
         let said = |e: String| format!("{}: {e}", path.display());
-        let is_universal = path.extension().is_some_and(|end| end == "uff" || end == "unv");
-        let mut table = if is_universal {
-            universal(&path, part).map_err(said)?
-        } else {
-            csv(&path).map_err(said)?
-        };
+        let mut table = Table::read(&path, part).map_err(said)?;
         let rows = table.rows;
         if rows == 0 {
             return Err(said("holds no data".into()));
@@ -93,10 +88,21 @@ impl Data {
                 z.re.abs()
             }
         };
-        found.sigma = match (table.optional(sigma), part.sigma) {
-            (Some(column), _) => column.into_iter().map(|s| scale * s).collect(),
-            (None, Some(relative)) => found.value.iter().map(|z| relative * size(z)).collect(),
-            (None, None) => return Err(said(format!("has no column {sigma}: needs it, or the key sigma"))),
+        let coherence = table.optional("coherence");
+        let is_response = matches!(part.kind, DataName::Response | DataName::Amplitude);
+        found.sigma = match (table.optional(sigma), part.sigma, part.averages) {
+            (Some(column), ..) => column.into_iter().map(|s| scale * s).collect(),
+            (None, Some(relative), _) => found.value.iter().map(|z| relative * size(z)).collect(),
+            (None, None, Some(averages)) if is_response => {
+                let coherence = coherence.ok_or_else(|| said("has no coherence: needs it with averages".into()))?;
+                let sizes: Vec<f64> = found.value.iter().map(size).collect();
+                of_coherence(&sizes, &coherence, averages).map_err(said)?
+            }
+            (None, None, _) => {
+                return Err(said(format!(
+                    "has no column {sigma}: needs it, or the key sigma, or coherence and the key averages"
+                )));
+            }
         };
         let (of_second, scale) = match part.kind {
             DataName::Peak => (table.optional("sigma_hz"), TAU),
@@ -115,6 +121,7 @@ impl Data {
                 "sigma_hz",
                 "sigma_damping",
                 "log10_amplitude",
+                "coherence",
             ])
             .map_err(said)?;
         Ok(found)
@@ -148,110 +155,21 @@ impl Data {
     }
 }
 
-/// Columns with their names.
-#[derive(Default)]
-struct Table {
-    columns: Vec<(String, Vec<f64>)>,
-    rows: usize,
-}
-
-impl Table {
-    fn optional(&mut self, name: &str) -> Option<Vec<f64>> {
-        let found = self.columns.iter().find(|(own, _)| own == name);
-        found.map(|(_, values)| values.clone())
+/// Standard deviations of |H| from its coherence γ² and the number of averages n, |H| ((1 − γ²)/(γ² n))^½ (Bendat & Piersol 2010, Random
+/// Data, doi:10.1002/9781118032428, section 9.2).
+fn of_coherence(sizes: &[f64], coherence: &[f64], averages: f64) -> Outcome<Vec<f64>> {
+    if averages.is_nan() || averages <= 1.0 {
+        return Err(format!("averages = {averages}, needs a number > 1"));
     }
-
-    fn column(&mut self, name: &str) -> Outcome<Vec<f64>> {
-        self.optional(name).ok_or_else(|| format!("has no column {name}"))
-    }
-
-    /// Refuses columns that have no meaning.
-    fn used(&self, known: &[&str]) -> Outcome<()> {
-        match self.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {
-            Some((name, _)) => Err(format!("has a column {name}, needs some of {}", known.join(", "))),
-            None => Ok(()),
-        }
-    }
-}
-
-fn csv(path: &Path) -> Outcome<Table> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("cannot be read: {e}"))?;
-    let mut table = Table::default();
-    for (number, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let words: Vec<&str> = line.split(',').map(str::trim).collect();
-        if table.columns.is_empty() {
-            table.columns = words.iter().map(|word| ((*word).to_owned(), Vec::new())).collect();
-            continue;
-        }
-        if words.len() != table.columns.len() {
-            return Err(format!(
-                "line {} has {} numbers, needs {} as the first",
-                number + 1,
-                words.len(),
-                table.columns.len()
-            ));
-        }
-        for ((name, values), word) in table.columns.iter_mut().zip(words) {
-            let value: Result<f64, _> = word.parse();
-            values.push(value.map_err(|_| format!("line {}: {name} = {word}, needs a number", number + 1))?);
-        }
-        table.rows += 1;
-    }
-    Ok(table)
-}
-
-/// The function of a universal file as displacements along the positive axes: times the force of the test where it is a frequency
-/// response, and over iω for each order of a velocity or an acceleration.
-fn universal(path: &Path, part: &DataPart) -> Outcome<Table> {
-    const FREQUENCY_RESPONSE: i64 = 4;
-    const VELOCITY: i64 = 11;
-    const ACCELERATION: i64 = 12;
-    let all = read_universal(path).map_err(|e| e.to_string())?;
-    let is_wanted = |function: &&hbvib_io::Function| {
-        part.node.is_none_or(|node| function.response.0 == node)
-            && part.direction.is_none_or(|direction| function.response.1 == direction)
-    };
-    let Some(function) = all.functions.iter().find(is_wanted) else {
-        return Err("has no function (data set 58) at this node and direction".into());
-    };
-    let order = match function.quantity {
-        // Files that do not tell mean displacements, as Python's reader takes them.
-        0 | 8 => 0,
-        VELOCITY => 1,
-        ACCELERATION => 2,
-        other => {
-            return Err(format!(
-                "the function has values of type {other} (data set 58, ninth line), needs 8 (displacement), 11 (velocity) or 12 (acceleration)"
-            ));
+    let one = |(i, (size, squared)): (usize, (&f64, &f64))| {
+        if *squared > 0.0 && *squared < 1.0 {
+            Ok(size * ((1.0 - squared) / (squared * averages)).sqrt())
+        } else {
+            Err(format!(
+                "coherence = {squared} at value {}, needs 0 < coherence < 1",
+                i + 1
+            ))
         }
     };
-    let sense = |(_, direction): (i64, i64)| if direction < 0 { -1.0 } else { 1.0 };
-    let mut factor = sense(function.response);
-    if function.kind == FREQUENCY_RESPONSE {
-        factor *= part.frf_force * sense(function.reference);
-    }
-    if order > 0 && function.abscissa.contains(&0.0) {
-        return Err(
-            "has a velocity or an acceleration at 0 Hz, which tells no displacement; leave that line out".into(),
-        );
-    }
-    let values: Vec<Complex64> = function
-        .abscissa
-        .iter()
-        .zip(&function.values)
-        .map(|(hz, (re, im))| factor * Complex64::new(*re, *im) / Complex64::new(0.0, TAU * hz).powi(order))
-        .collect();
-    Ok(Table {
-        columns: vec![
-            ("hz".into(), function.abscissa.clone()),
-            ("re".into(), values.iter().map(|z| z.re).collect()),
-            ("im".into(), values.iter().map(|z| z.im).collect()),
-            ("amplitude".into(), values.iter().map(|z| z.norm()).collect()),
-        ],
-        rows: values.len(),
-    })
+    sizes.iter().zip(coherence).enumerate().map(one).collect()
 }

@@ -72,6 +72,7 @@ pub fn write(
         upper: part.upper,
         prior: part.prior.map(|[mean, sigma]| (mean, sigma)),
         tied_to: part.tied_to,
+        data_set: part.data_set,
         ..Unknown::default()
     };
     let unknowns: Vec<_> = part.parameter.iter().map(unknown).collect();
@@ -84,7 +85,12 @@ pub fn write(
         ..defaults
     };
     let found = fit(&built.model, (&parameters, &unknowns), &sets, &solver, &options, hooks).map_err(|e| said(&e))?;
-    let names: Vec<&str> = varied.iter().map(Varied::label).collect();
+    let named = |(one, of): (&Varied, &UnknownPart)| match of.data_set {
+        Some(set) => format!("{} of data set {}", one.label(), set + 1),
+        None => one.label().to_owned(),
+    };
+    let names: Vec<String> = varied.iter().zip(&part.parameter).map(named).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let text = report(&found, &names);
     files.write(part.report.as_deref(), &|path| {
         fs::write(path, &text).map_err(|e| e.to_string())

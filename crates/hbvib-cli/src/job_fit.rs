@@ -51,13 +51,15 @@ pub struct UnknownPart {
     pub prior: Option<[f64; 2]>,
     /// Number of an earlier unknown, from 0, which it follows in the ratio of their starts.
     pub tied_to: Option<usize>,
+    /// Number of the data set, from 0, that alone has it, as each test its residual state; all have it unless given.
+    pub data_set: Option<usize>,
 }
 
 /// Kind of data.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum DataName {
-    /// Complex amplitudes: columns hz, re, im, and sigma of |X|; or a universal file.
+    /// Complex amplitudes: columns hz, re and im, or a complex response, and sigma of |X| or coherence; or a universal file.
     #[default]
     Response,
     /// Amplitudes: columns hz, amplitude, sigma.
@@ -76,7 +78,8 @@ pub enum DataName {
 pub struct DataPart {
     #[serde(default)]
     pub kind: DataName,
-    /// CSV with the names of its columns in the first line, or a universal file (.uff, .unv) with data set 58.
+    /// CSV with the names of its columns in the first line, .mat (save -v7) or .npz with vectors of these names, or a universal file
+    /// (.uff, .unv): its functions, data set 58, or for linear_mode its modes, 55.
     pub file: PathBuf,
     /// Factor on the forces of the job.
     #[serde(default = "whole")]
@@ -88,6 +91,10 @@ pub struct DataPart {
     pub mode: usize,
     /// Standard deviation over each value, where the file has none.
     pub sigma: Option<f64>,
+    /// Number of independent averages of a response whose file has its coherence: the standard deviations follow from both.
+    pub averages: Option<f64>,
+    /// Number of the mode in a universal file; its first one unless given.
+    pub test_mode: Option<i64>,
     /// Range that is followed, for peaks.
     pub from_hz: Option<f64>,
     pub to_hz: Option<f64>,

@@ -35,6 +35,7 @@ mod figure;
 mod files;
 mod fit_files;
 mod fit_run;
+mod fit_table;
 mod frd;
 mod html_report;
 mod init;

@@ -138,6 +138,101 @@ fn universal_files_tell_displacements_along_the_axes() {
     assert!(!output.status.success() && said.contains("type 13"), "{said}");
 }
 
+/// A MATLAB file of version 5 with vectors, the imaginary part none for real numbers.
+fn matlab(vectors: &[(&str, Vec<f64>, Vec<f64>)]) -> Vec<u8> {
+    let mut file = format!("{:<116}", "MATLAB 5.0 MAT-file").into_bytes();
+    file.extend([0; 8]);
+    file.extend([0, 1, b'I', b'M']);
+    let element = |kind: u32, body: &[u8]| {
+        let mut bytes = kind.to_le_bytes().to_vec();
+        bytes.extend(u32::try_from(body.len()).unwrap().to_le_bytes());
+        bytes.extend(body);
+        bytes.resize(bytes.len().next_multiple_of(8), 0);
+        bytes
+    };
+    let numbers = |values: &[f64]| element(9, &values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<_>>());
+    for (name, real, imaginary) in vectors {
+        let class = if imaginary.is_empty() { 6_u32 } else { 6 | 0x0800 };
+        let mut body = element(6, &[class.to_le_bytes(), [0; 4]].concat());
+        let rows = u32::try_from(real.len()).unwrap();
+        body.extend(element(5, &[rows.to_le_bytes(), 1_u32.to_le_bytes()].concat()));
+        body.extend(element(1, name.as_bytes()));
+        body.extend(numbers(real));
+        if !imaginary.is_empty() {
+            body.extend(numbers(imaginary));
+        }
+        file.extend(element(14, &body));
+    }
+    file
+}
+
+#[test]
+fn vectors_of_matlab_have_their_deviations_from_coherence() {
+    let (mut hz, mut re, mut im) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..9 {
+        let omega = 0.9 + 0.03 * f64::from(i);
+        let (a, b) = (1.1 - omega * omega, 0.1 * omega);
+        hz.push(omega / std::f64::consts::TAU);
+        re.push(0.2 * a / (a * a + b * b));
+        im.push(-0.2 * b / (a * a + b * b));
+    }
+    // σ = |X| (0.2 / (0.8 · 25))^½ = 0.1 |X|
+    let vectors = [
+        ("hz", hz, vec![]),
+        ("response", re, im),
+        ("coherence", vec![0.8; 9], vec![]),
+        ("temperature", vec![20.0; 3], vec![]),
+    ];
+    let path = crate::common::empty_folder("fits", "matlab_file").join("test.mat");
+    fs::write(&path, matlab(&vectors)).unwrap();
+    let mut deviations = Vec::new();
+    for key in ["averages = 25.0", "sigma = 0.1"] {
+        let data = format!("{}'\n{key}\n", path.display());
+        let (output, folder) = run(&format!("matlab_{}", key.len()), "fit", &FIT.replace("FILE'\n", &data));
+        assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
+        let json: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.join("fit.json")).unwrap()).unwrap();
+        assert!((json["theta"][0].as_f64().unwrap() - 1.1).abs() < 1e-6, "{json}");
+        deviations.push(json["deviation"][0].as_f64().unwrap());
+    }
+    assert!((deviations[0] / deviations[1] - 1.0).abs() < 1e-9, "{deviations:?}");
+    let data = format!("{}'\naverages = 1.0\n", path.display());
+    let (output, _) = run("matlab_one", "fit", &FIT.replace("FILE'\n", &data));
+    let said = crate::common::printed(&output.stderr);
+    assert!(
+        !output.status.success() && said.contains("averages = 1, needs"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_mode_of_a_universal_file_is_a_datum() {
+    let mut text = format!("{:>6}\n{:>6}\nbending\nNONE\nNONE\nNONE\nNONE\n", -1, 55);
+    text += "         1         2         3         8         2         3\n         2         4         1         2\n";
+    let hz = 1.1_f64.sqrt() / std::f64::consts::TAU;
+    let _ = writeln!(text, "{hz:>13.5e}{:>13}{:>13}{:>13}", "1.0e0", "2.0e-2", "0.0e0");
+    text += "         7\n        1.0e0        0.0e0        0.0e0\n    -1\n";
+    let path = crate::common::empty_folder("fits", "mode_file").join("modes.uff");
+    fs::write(&path, text).unwrap();
+    let job = format!(
+        "[[contact]]\nkind = 'jenkins'\na = [0]\nb = [-1]\nkt = 0.2\nmu = 0.3\npreload = 1.0\n\
+         [fit]\nharmonics = 1\njson = 'fit.json'\n[[fit.parameter]]\nparameter = 'stiffness'\ndata_set = 0\n\
+         [[data]]\nkind = 'linear_mode'\nfile = '{}'\ntest_mode = 2\nsigma = 1e-4\n",
+        path.display()
+    );
+    let (output, folder) = run("mode", "fit", &job);
+    let text = crate::common::printed(&output.stdout);
+    assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
+    assert!(text.contains("of data set 1"), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&fs::read_to_string(folder.join("fit.json")).unwrap()).unwrap();
+    // Stiffness and contact together are 1.1.
+    assert!((json["theta"][0].as_f64().unwrap() - 0.9).abs() < 1e-4, "{json}");
+    let other = job.replace("test_mode = 2", "test_mode = 3");
+    let (output, _) = run("mode_3", "fit", &other);
+    let said = crate::common::printed(&output.stderr);
+    assert!(!output.status.success() && said.contains("no mode"), "{said}");
+}
+
 #[test]
 fn a_fit_that_cannot_be_computed_is_refused_by_its_part() {
     for (name, parts, words) in [

@@ -6,6 +6,7 @@ use crate::bytes_read::{Kind, at, whole_file};
 use crate::error::Error;
 use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
 use crate::named_matrices::sorted;
+use crate::number_arrays::NumberArray;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 use std::path::Path;
@@ -40,6 +41,7 @@ pub(crate) fn matrices(path: &Path) -> Result<Matrices> {
         found: Vec::new(),
         others: Vec::new(),
         dofs: Vec::new(),
+        vectors: None,
     };
     let outcome = file.variables(&bytes).and_then(|()| {
         let mut all = sorted(file.found, file.others)?;
@@ -55,12 +57,32 @@ pub(crate) fn matrices(path: &Path) -> Result<Matrices> {
     outcome.map_err(|reason| Error::new(path, 0, format_args!("MATLAB file: {reason}")))
 }
 
+/// The vectors of numbers of a file, among which columns of tests; all else is left out.
+///
+/// # Errors
+/// File, variable and reason.
+pub(crate) fn vectors(path: &Path, bytes: &[u8]) -> Result<Vec<NumberArray>> {
+    let mut file = Contents {
+        little: bytes.get(126..128) == Some(b"IM"),
+        length: bytes.len(),
+        found: Vec::new(),
+        others: Vec::new(),
+        dofs: Vec::new(),
+        vectors: Some(Vec::new()),
+    };
+    file.variables(bytes)
+        .map_err(|reason| Error::new(path, 0, format_args!("MATLAB file: {reason}")))?;
+    Ok(file.vectors.unwrap_or_default())
+}
+
 struct Contents {
     little: bool,
     length: usize,
     found: Vec<(String, Matrix)>,
     others: Vec<String>,
     dofs: Vec<Dof>,
+    /// Vectors alone are wanted.
+    vectors: Option<Vec<NumberArray>>,
 }
 
 /// An element: its type, its bytes, and those after it.
@@ -148,7 +170,11 @@ impl Contents {
             size: (rows, columns),
             is_complex,
         };
-        if class == SPARSE {
+        if let Some(vectors) = &mut self.vectors {
+            if NUMBERS.contains(&class) && (rows == 1 || columns == 1) {
+                vectors.push(variable.vector(name.rest)?);
+            }
+        } else if class == SPARSE {
             let matrix = variable.sparse(name.rest, self.length)?;
             self.found.push((text, matrix));
         } else if NUMBERS.contains(&class) && text == "dofs" && columns == 2 {
@@ -239,6 +265,17 @@ impl<'v> Variable<'_> {
             return Err(format!("{}: {count} numbers, needs {least}", self.name));
         }
         Ok((re, im))
+    }
+
+    fn vector(&self, bytes: &'v [u8]) -> Told<NumberArray> {
+        let count = self.count()?;
+        let (re, im) = self.both(bytes, count)?;
+        Ok(NumberArray {
+            name: self.name.to_owned(),
+            shape: vec![count],
+            real: (0..count).map(|k| re.value(k)).collect(),
+            imaginary: im.map_or_else(Vec::new, |im| (0..count).map(|k| im.value(k)).collect()),
+        })
     }
 
     fn add(&self, matrix: &mut Matrix, (row, column): (usize, usize), value: (f64, f64)) -> Told<()> {

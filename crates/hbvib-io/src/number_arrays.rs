@@ -1,8 +1,9 @@
-//! Arrays of numbers of a NumPy archive (.npz), for callers that know its names.
+//! Arrays of numbers of a NumPy archive (.npz) and vectors of a MATLAB file, for callers that know their names.
 
 use crate::Result;
 use crate::bytes_read::whole_file;
 use crate::error::Error;
+use crate::matlab;
 use crate::npy::{Npy, array};
 use crate::zip_archive::members;
 use std::path::Path;
@@ -20,12 +21,15 @@ pub struct NumberArray {
     pub imaginary: Vec<f64>,
 }
 
-/// Reads the arrays of numbers of an archive; texts and objects are left out.
+/// Reads the arrays of numbers of an archive, or the vectors of a MATLAB file of version 5 (`save -v7`); all else is left out.
 ///
 /// # Errors
 /// File, array and reason.
 pub fn read_number_arrays(path: &Path) -> Result<Vec<NumberArray>> {
     let bytes = whole_file(path)?;
+    if matlab::is_head(&bytes) {
+        return matlab::vectors(path, &bytes);
+    }
     let said = |reason: String| Error::new(path, 0, format_args!("NumPy file: {reason}"));
     let mut all = Vec::new();
     for member in members(&bytes).map_err(said)? {

@@ -986,6 +986,7 @@ struct hbvib_unknown
     has_lower::Int32
     has_upper::Int32
     reserved::Int32
+    data_set::Int64
 end
 hbvib_unknown() = initialised(hbvib_unknown, dlsym_(:hbvib_unknown_init))
 

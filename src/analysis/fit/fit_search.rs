@@ -92,13 +92,18 @@ impl Search<'_> {
             state.slopes[row * n + k] = if free.is_log { value } else { 1.0 } / sigma;
             row += 1;
         }
-        // A prior is no outlier.
-        state.cost = state.residuals[..rows]
-            .iter()
-            .map(|r| self.options.loss.cost(*r))
-            .sum::<f64>()
-            + state.residuals[rows..].iter().map(|r| r * r).sum::<f64>();
+        let state = self.weighed(state);
         Ok(state.cost.is_finite().then_some(state))
+    }
+
+    /// The state with its loss.
+    #[must_use]
+    pub fn weighed(&self, mut state: State) -> State {
+        // A prior is no outlier.
+        let (data, priors) = state.residuals.split_at(self.predictor.rows());
+        let of_data: f64 = data.iter().map(|r| self.options.loss.cost(*r)).sum();
+        state.cost = of_data + priors.iter().map(|r| r * r).sum::<f64>();
+        state
     }
 
     /// JᵀWJ and JᵀWr, the priors with weight 1; without `robust` all weights are 1.
@@ -164,6 +169,11 @@ impl Search<'_> {
             };
             let in_sigmas = along(&step).max(0.0).sqrt();
             let foretold = -(2.0 * step.iter().zip(&g).map(|(s, g)| s * g).sum::<f64>() + along(&step));
+            if in_sigmas < self.options.step && lambda <= FIT_DAMPING.0 {
+                // A state that differs by less than the step takes as long as any other.
+                converged = true;
+                break;
+            }
             let trial = self.at(z)?;
             let better = trial.as_ref().is_some_and(|t| t.cost <= state.cost);
             if let (true, Some(trial)) = (better, trial) {

@@ -36,6 +36,8 @@ pub struct Unknown {
     pub scale: Scale,
     /// Number of an earlier parameter whose value it follows, in the ratio of their starts.
     pub tied_to: Option<usize>,
+    /// Number of the data set that alone has it, as each test its residual state; `None`: all have it.
+    pub data_set: Option<usize>,
 }
 
 /// A parameter in words.
@@ -118,12 +120,18 @@ pub(super) struct Free {
 pub(super) struct Unknowns {
     entries: Vec<Entry>,
     pub free: Vec<Free>,
+    /// The data set of each parameter that has one.
+    pub scopes: Vec<Option<usize>>,
 }
 
 impl Unknowns {
     /// # Errors
     /// `Dimension`, `Argument` or `NotFinite`, naming the unknown; `OutOfMemory`.
-    pub fn new(model: &Model, parameters: &[Parameter<'_>], unknowns: &[Unknown]) -> Result<Self> {
+    pub fn new(
+        model: &Model,
+        (parameters, unknowns): (&[Parameter<'_>], &[Unknown]),
+        data_sets: usize,
+    ) -> Result<Self> {
         if unknowns.len() != parameters.len() {
             return fail!(
                 Dimension,
@@ -135,13 +143,22 @@ impl Unknowns {
         let mut found = Self {
             entries: Vec::new(),
             free: Vec::new(),
+            scopes: Vec::new(),
         };
         let mut starts: Vec<f64> = Vec::new();
         for (i, (parameter, unknown)) in parameters.iter().zip(unknowns).enumerate() {
-            if let Some(j) = parameters[..i]
-                .iter()
-                .position(|other| parameter.sets_the_same_as(other))
-            {
+            if let Some(set) = unknown.data_set.filter(|set| *set >= data_sets) {
+                return fail!(
+                    Argument,
+                    "unknown {i}, {}: data_set = {set}, needs a number below {data_sets}, that of the data sets",
+                    Named(parameter)
+                );
+            }
+            let is_apart = |j: usize| match (unknown.data_set, unknowns[j].data_set) {
+                (Some(a), Some(b)) => a != b,
+                _ => false,
+            };
+            if let Some(j) = (0..i).find(|&j| parameter.sets_the_same_as(&parameters[j]) && !is_apart(j)) {
                 return fail!(
                     Argument,
                     "unknown {i}: {} is that of unknown {j} already",
@@ -154,6 +171,7 @@ impl Unknowns {
                 .entry(parameter, unknown, (i, start), &starts)
                 .map_err(|e| e.at(format_args!("unknown {i}, {}", Named(parameter))))?;
             try_push(&mut found.entries, entry, CONTEXT)?;
+            try_push(&mut found.scopes, unknown.data_set, CONTEXT)?;
         }
         if found.free.is_empty() {
             return fail!(Argument, "every unknown is fixed; needs one that is free");

@@ -3,21 +3,22 @@
 //! Each set is one curve over its range, on which every solution at the frequencies or amplitudes of the data is stored. Where a curve
 //! turns back there are several; the one nearest to the datum is taken, of complex data in the complex plane.
 
-use crate::analysis::complex_sensitivity::{ComplexSensitivities, complex_at};
+use crate::analysis::complex_sensitivity::{Equations, complex_at};
 use crate::analysis::fit::fit_data::{DataKind, FitData};
 use crate::analysis::fit::fit_unknowns::Named;
-use crate::analysis::forced_curve::special_points;
+use crate::analysis::fit::shared_work::SharedWork;
+use crate::analysis::forced_curve::special_points_with;
 use crate::analysis::forced_response::forced_response;
 use crate::analysis::nonlinear_mode::nonlinear_mode;
 use crate::analysis::sensitivity_analysis::{Quantity, sensitivity_with};
-use crate::error::{Result, Status, fail, try_copy, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::mode_branch::ModeField;
 use crate::results::{Branch, Special};
-use crate::sensitivity::{Parameter, Reason, design};
+use crate::sensitivity::{Parameter, Reason, design_with_bases};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the predicted data";
@@ -47,6 +48,8 @@ pub(super) struct Predicted {
 pub(super) struct Predictor<'a> {
     pub model: &'a Model,
     pub parameters: &'a [Parameter<'a>],
+    /// The data set of each parameter that only one has; empty where all have all.
+    pub scopes: &'a [Option<usize>],
     pub data: &'a [FitData<'a>],
     pub solver: SolverOptions,
     pub interrupt: &'a Interrupt<'a>,
@@ -59,6 +62,9 @@ struct Into<'a> {
     theta: &'a [f64],
     harmonic_error: &'a mut f64,
     slips: &'a mut [bool],
+    shared: &'a mut SharedWork,
+    /// The parameters of the set, and their numbers among all.
+    own: (&'a [Parameter<'a>], &'a [usize]),
 }
 
 impl Predictor<'_> {
@@ -79,9 +85,20 @@ impl Predictor<'_> {
             harmonic_error: f64::NAN,
             slips: try_vec(self.model.contacts().len(), false, CONTEXT)?,
         };
-        let model = design(self.model, self.parameters, theta)?;
+        let model = self.common_model(theta)?;
+        let mut shared = SharedWork::default();
         let mut row = 0;
         for (number, set) in self.data.iter().enumerate() {
+            let (own, numbers) = self.parameters_of(Some(number))?;
+            let of_test;
+            let mut apart = SharedWork::default();
+            let (model, shared) = match self.model_of(&model, number, theta)? {
+                Some(other) => {
+                    of_test = other;
+                    (&of_test, &mut apart)
+                }
+                None => (&model, &mut shared),
+            };
             let next = row + 2 * set.x.len();
             let into = Into {
                 values: &mut found.values[row..next],
@@ -93,12 +110,15 @@ impl Predictor<'_> {
                 theta,
                 harmonic_error: &mut found.harmonic_error,
                 slips: &mut found.slips,
+                shared,
+                own: (&own, &numbers),
             };
             let scaled;
             let of_set = if set.force_factor.to_bits() == 1.0_f64.to_bits() {
-                &model
+                model
             } else {
-                let mut other = model.separate_clone()?;
+                // Another force leaves the bases of the structure as they are.
+                let mut other = model.try_clone()?;
                 other.scale_forces(set.force_factor)?;
                 scaled = other;
                 &scaled
@@ -119,6 +139,57 @@ impl Predictor<'_> {
             row = next;
         }
         Ok(Some(found))
+    }
+
+    /// The model with the values of the parameters that all data sets have.
+    ///
+    /// # Errors
+    /// Those of the model.
+    pub fn common_model(&self, theta: &[f64]) -> Result<Model> {
+        if self.scopes.iter().all(Option::is_none) {
+            return design_with_bases(self.model, self.parameters, theta);
+        }
+        let mut parameters = Vec::new();
+        let mut values = Vec::new();
+        for (k, (parameter, value)) in self.parameters.iter().zip(theta).enumerate() {
+            if self.scopes[k].is_none() {
+                try_push(&mut parameters, *parameter, CONTEXT)?;
+                try_push(&mut values, *value, CONTEXT)?;
+            }
+        }
+        design_with_bases(self.model, &parameters, &values)
+    }
+
+    /// The common model with the values that one data set alone has; `None` where it has none.
+    fn model_of(&self, common: &Model, number: usize, theta: &[f64]) -> Result<Option<Model>> {
+        let mut parameters = Vec::new();
+        let mut values = Vec::new();
+        for (k, _) in self
+            .scopes
+            .iter()
+            .enumerate()
+            .filter(|(_, scope)| **scope == Some(number))
+        {
+            try_push(&mut parameters, self.parameters[k], CONTEXT)?;
+            try_push(&mut values, theta[k], CONTEXT)?;
+        }
+        if parameters.is_empty() {
+            return Ok(None);
+        }
+        design_with_bases(common, &parameters, &values).map(Some)
+    }
+
+    /// The parameters that act in a data set, and their numbers.
+    fn parameters_of(&self, set: Option<usize>) -> Result<(Vec<Parameter<'_>>, Vec<usize>)> {
+        let (mut parameters, mut numbers) = (Vec::new(), Vec::new());
+        for (k, parameter) in self.parameters.iter().enumerate() {
+            let scope = self.scopes.get(k).copied().flatten();
+            if scope.is_none() || scope == set {
+                try_push(&mut parameters, *parameter, CONTEXT)?;
+                try_push(&mut numbers, k, CONTEXT)?;
+            }
+        }
+        Ok((parameters, numbers))
     }
 
     fn set(&self, model: &Model, set: &FitData<'_>, into: Into<'_>) -> Result<bool> {
@@ -159,11 +230,19 @@ impl Predictor<'_> {
             responses: if is_plain { &[] } else { &watched },
             ..ForcedOptions::default()
         };
-        let solve = if is_plain { special_points } else { forced_response };
-        let branch = solve(model, &solver, &range, hooks)?;
+        let branch = if is_plain {
+            let waves = into.shared.waves(solver.response_dof)?;
+            special_points_with(model, &solver, &range, (waves, hooks))?
+        } else {
+            forced_response(model, &solver, &range, hooks)?
+        };
         let measured = |special: &Special| match branch.responses().first() {
             Some(series) => series.values().get(special.point).copied().unwrap_or(f64::NAN),
             None => special.amplitude,
+        };
+        let mut equations = Equations {
+            range: (omega_start, omega_stop),
+            at: None,
         };
         for i in 0..set.x.len() {
             let datum = set.value.get(i).copied();
@@ -219,7 +298,7 @@ impl Predictor<'_> {
                     }
                     special.point
                 }
-                _ => match self.complex_row(model, (&branch, i), (set, datum), &mut into)? {
+                _ => match self.complex_row(model, (&branch, i, &mut equations), (set, datum), &mut into)? {
                     Some(point) => point,
                     None => return Ok(false),
                 },
@@ -230,44 +309,48 @@ impl Predictor<'_> {
     }
 
     /// The complex amplitude at one frequency; the number of its point.
-    fn complex_row(
-        &self,
+    fn complex_row<'b>(
+        &'b self,
         model: &Model,
-        (branch, i): (&Branch, usize),
+        (branch, i, equations): (&'b Branch, usize, &mut Equations<'b>),
         (set, datum): (&FitData<'_>, Option<Complex64>),
         into: &mut Into<'_>,
     ) -> Result<Option<usize>> {
         let p = self.parameters.len();
-        let parameters = if into.slopes.is_empty() { &[] } else { self.parameters };
-        let mut best: Option<(f64, usize, ComplexSensitivities)> = None;
-        for special in branch.at(i) {
-            let found = complex_at(
-                model,
-                (branch, special.point),
-                &set.response,
-                parameters,
-                (false, self.interrupt),
-            )?;
+        let all = branch.at(i);
+        let mut best: Option<(f64, usize, Complex64)> = None;
+        for special in all.iter().filter(|_| all.len() > 1 || into.slopes.is_empty()) {
+            let value = equations.amplitude((branch, special.point), &set.response, self.interrupt)?;
             let gap = match datum {
-                Some(z) => (found.value - z).norm(),
-                None => -found.value.norm(),
+                Some(z) => (value - z).norm(),
+                None => -value.norm(),
             };
-            if best.as_ref().is_none_or(|(least, ..)| gap < *least) {
-                best = Some((gap, special.point, found));
+            if best.is_none_or(|(least, ..)| gap < least) {
+                best = Some((gap, special.point, value));
             }
         }
-        let Some((_, point, found)) = best else { return Ok(None) };
+        let nearest = best.map(|(_, point, _)| point);
+        let Some(point) = nearest.or_else(|| all.first().map(|special| special.point)) else {
+            return Ok(None);
+        };
+        if into.slopes.is_empty() {
+            let value = best.map_or(Complex64::ZERO, |(.., value)| value);
+            (into.values[2 * i], into.values[2 * i + 1]) = (value.re, value.im);
+            return Ok(value.is_finite().then_some(point));
+        }
+        let (parameters, numbers) = into.own;
+        let found = complex_at(
+            model,
+            (branch, point),
+            &set.response,
+            (parameters, &mut into.shared.matrices),
+            (false, equations, self.interrupt),
+        )?;
         if !found.value.is_finite() {
             return Ok(None);
         }
         (into.values[2 * i], into.values[2 * i + 1]) = (found.value.re, found.value.im);
-        for (k, (slope, reason)) in found
-            .values
-            .iter()
-            .zip(&found.reasons)
-            .enumerate()
-            .take(parameters.len())
-        {
+        for ((slope, reason), &k) in found.values.iter().zip(&found.reasons).zip(numbers) {
             let factor = self.usable(k, *reason, into.theta)?;
             into.slopes[2 * i * p + k] = factor.map_or(0.0, |f| f * slope.re);
             into.slopes[(2 * i + 1) * p + k] = factor.map_or(0.0, |f| f * slope.im);
@@ -296,9 +379,10 @@ impl Predictor<'_> {
         (of, row): (Quantity, usize),
         into: &mut Into<'_>,
     ) -> Result<()> {
-        let found = sensitivity_with(model, branch, point, self.parameters, of, self.interrupt)?;
+        let (parameters, numbers) = into.own;
+        let found = sensitivity_with(model, branch, point, parameters, of, self.interrupt)?;
         let p = self.parameters.len();
-        for (k, (slope, reason)) in found.values.iter().zip(&found.reasons).enumerate() {
+        for ((slope, reason), &k) in found.values.iter().zip(&found.reasons).zip(numbers) {
             let factor = self.usable(k, *reason, into.theta)?;
             into.slopes[row * p + k] = factor.map_or(0.0, |f| f * slope);
         }

@@ -74,9 +74,11 @@ pub fn predict(
         second_sigma: &[],
         ..*wanted
     }];
+    let own = model.separate_clone()?;
     let predictor = Predictor {
-        model,
+        model: &own,
         parameters,
+        scopes: &[],
         data: &set,
         solver: *solver,
         interrupt: &interrupt,

@@ -4,6 +4,7 @@ use super::follow;
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced_discretised::ForcedDiscretised;
+use crate::condense::wave_cache::SharedWaves;
 use crate::contact::Contact;
 use crate::continuation::Point;
 use crate::continuation::step_control::Detail;
@@ -166,7 +167,7 @@ fn misled(at: usize, found_then: usize, (from, to): (f64, f64)) -> (Branch, bool
         &model(),
         &solver,
         (&range, Detail::Curve, None),
-        &mut hooks,
+        (&SharedWaves::default(), &mut hooks),
         &interrupt,
         |tracer, response, first, hooks| {
             let mut misled = Misled {

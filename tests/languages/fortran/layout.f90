@@ -832,6 +832,7 @@ contains
       call field('has_lower', c_loc(s), c_loc(s%has_lower), c_sizeof(s%has_lower))
       call field('has_upper', c_loc(s), c_loc(s%has_upper), c_sizeof(s%has_upper))
       call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('data_set', c_loc(s), c_loc(s%data_set), c_sizeof(s%data_set))
    end subroutine unknown
 
    subroutine fit_options()

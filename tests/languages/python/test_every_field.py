@@ -591,6 +591,7 @@ TABLE = {
         "has_lower": [(refused("start"), of("unknown", unknown=dict(lower=0.5)), 1), (refused("has_lower"), of("unknown"), 2)],
         "has_upper": [(refused("start"), of("unknown", unknown=dict(upper=0.1)), 1), (refused("has_upper"), of("unknown"), 2)],
         "reserved": [(refused("reserved"), of("unknown"), 1)],
+        "data_set": [(refused("data_set = 1"), of("unknown"), 1), (refused("data_set"), of("unknown"), -2)],
     },
     "hbvib_fit_options": {
         "struct_size": [(refused("struct_size"), of("options"), 8)],
