@@ -122,23 +122,22 @@ impl WaveMatrices {
     /// `OutOfMemory`.
     fn of(&mut self, model: &Model, which: MatrixKind, number: usize) -> Result<&[Csc]> {
         let position = self.known.iter().position(|(a, b, _)| (*a, *b) == (which, number));
-        let position = match position {
-            Some(position) => position,
-            None => {
-                let structure = model.structure();
-                let mut made = Vec::new();
-                try_push(&mut made, structure.wave_matrix(which, number)?, CONTEXT)?;
-                if which == MatrixKind::Damping {
-                    let wave = Wave::Harmonic(number);
-                    let gyroscopic = structure.gyroscopic_at_speed(wave)?;
-                    let aero = structure.aero_of_wave(AeroForm::Velocity, wave)?;
-                    for part in [gyroscopic, aero].into_iter().flatten() {
-                        try_push(&mut made, part, CONTEXT)?;
-                    }
+        let position = if let Some(position) = position {
+            position
+        } else {
+            let structure = model.structure();
+            let mut made = Vec::new();
+            try_push(&mut made, structure.wave_matrix(which, number)?, CONTEXT)?;
+            if which == MatrixKind::Damping {
+                let wave = Wave::Harmonic(number);
+                let gyroscopic = structure.gyroscopic_at_speed(wave)?;
+                let aero = structure.aero_of_wave(AeroForm::Velocity, wave)?;
+                for part in [gyroscopic, aero].into_iter().flatten() {
+                    try_push(&mut made, part, CONTEXT)?;
                 }
-                try_push(&mut self.known, (which, number, made), CONTEXT)?;
-                self.known.len() - 1
             }
+            try_push(&mut self.known, (which, number, made), CONTEXT)?;
+            self.known.len() - 1
         };
         Ok(&self.known[position].2)
     }
