@@ -44,6 +44,10 @@
 #include <variant>
 #include <vector>
 
+#if __cplusplus >= 202002L && __has_include(<ranges>)
+#include <ranges>
+#endif
+
 namespace hbvib {
 
 using Index = std::int64_t;
@@ -1087,7 +1091,51 @@ struct ContactForce {
 
 class Model;
 
-/// A branch of solutions. Its points never change, so that all methods are const and may run at once.
+/// A point of the curve of a branch: its number for the results of the branch, and both fields.
+struct CurvePoint {
+  Index point;
+  double omega, amplitude;
+};
+
+/// Goes over the points of a curve, which it makes of the fields of the branch. It keeps their memory alive.
+class CurveIterator {
+ public:
+  using iterator_concept = std::random_access_iterator_tag;
+  using iterator_category = std::input_iterator_tag;  // C++17 wants a reference of the others
+  using value_type = CurvePoint;
+  using difference_type = std::ptrdiff_t;
+  using pointer = void;
+  using reference = CurvePoint;
+
+  CurveIterator() noexcept = default;
+  CurveIterator(View<const double> omega, View<const double> amplitude, Index place)
+      : omega_(std::move(omega)), amplitude_(std::move(amplitude)), place_(place) {}
+  CurvePoint operator*() const { return (*this)[0]; }
+  CurvePoint operator[](difference_type n) const { return {place_ + n, omega_[place_ + n], amplitude_[place_ + n]}; }
+  CurveIterator& operator+=(difference_type n) { return place_ += n, *this; }
+  CurveIterator& operator-=(difference_type n) { return *this += -n; }
+  CurveIterator& operator++() { return *this += 1; }
+  CurveIterator& operator--() { return *this += -1; }
+  CurveIterator operator++(int) { return std::exchange(*this, *this + 1); }
+  CurveIterator operator--(int) { return std::exchange(*this, *this - 1); }
+  friend CurveIterator operator+(CurveIterator a, difference_type n) { return a += n; }
+  friend CurveIterator operator+(difference_type n, CurveIterator a) { return a += n; }
+  friend CurveIterator operator-(CurveIterator a, difference_type n) { return a -= n; }
+  friend difference_type operator-(const CurveIterator& a, const CurveIterator& b) { return a.place_ - b.place_; }
+  friend bool operator==(const CurveIterator& a, const CurveIterator& b) { return a.place_ == b.place_; }
+  friend bool operator!=(const CurveIterator& a, const CurveIterator& b) { return a.place_ != b.place_; }
+  friend bool operator<(const CurveIterator& a, const CurveIterator& b) { return a.place_ < b.place_; }
+  friend bool operator>(const CurveIterator& a, const CurveIterator& b) { return b < a; }
+  friend bool operator<=(const CurveIterator& a, const CurveIterator& b) { return !(b < a); }
+  friend bool operator>=(const CurveIterator& a, const CurveIterator& b) { return !(a < b); }
+
+ private:
+  View<const double> omega_, amplitude_;
+  Index place_ = 0;
+};
+
+/// A branch of solutions. Its points never change, so that all methods are const and may run at once; it is a range of the points of its
+/// curve: for (const auto p : branch).
 /// Results may call user forces again, whose exceptions leave them as well.
 class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
  public:
@@ -1102,6 +1150,9 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   std::string sentence() const { return static_cast<void>(status()), last_error(); }
   /// Points on the curve.
   Index points() const { return use(hbvib_branch_points); }
+  /// The points of the curve as a range; in C++20 one with random access.
+  CurveIterator begin() const { return {field(HBVIB_OMEGA), field(HBVIB_AMPLITUDE), 0}; }
+  CurveIterator end() const { return {field(HBVIB_OMEGA), field(HBVIB_AMPLITUDE), points()}; }
   /// All stored points: the curve, then peaks, folds and requested solutions.
   Index stored() const { return use(hbvib_branch_stored); }
   /// A field of the curve where it lies, without a copy: points, or points x contacts.
@@ -1996,5 +2047,17 @@ inline std::uint32_t version() noexcept { return hbvib_version(); }
 inline const char* version_string() noexcept { return hbvib_version_string(); }
 
 }  // namespace hbvib
+
+#if __cplusplus >= 202002L && defined(__cpp_lib_ranges)
+// Spans and views are cheap to copy, and iterators into them stay valid without them.
+template <class T>
+inline constexpr bool std::ranges::enable_view<hbvib::Span<T>> = true;
+template <class T>
+inline constexpr bool std::ranges::enable_view<hbvib::In<T>> = true;
+template <class T>
+inline constexpr bool std::ranges::enable_view<hbvib::View<T>> = true;
+template <class T>
+inline constexpr bool std::ranges::enable_borrowed_range<hbvib::Span<T>> = true;
+#endif
 
 #endif

@@ -430,6 +430,9 @@ static void give_count(Call *a, double result) {
   give_number(a, result);
 }
 
+/* The call that runs, whose `failure` a law fills; one at a time, as MATLAB has one thread. */
+static Call *current = NULL;
+
 /* ---- Hooks ---- */
 
 static int32_t on_phase(void *user, const hbvib_phase_report *report) {
@@ -459,6 +462,7 @@ static int32_t on_progress(void *user, const hbvib_progress *p) {
   in[1] = mxCreateStructMatrix(1, 1, 7, names);
   for (i = 0; i < 7; i++) mxSetFieldByNumber(in[1], 0, i, mxCreateDoubleScalar(values[i]));
   thrown = mexCallMATLABWithTrap(1, out, 2, in, "feval");
+  current = a; /* a call within the function has set it */
   mxDestroyArray(in[1]);
   if (thrown) {
     a->failure = thrown;
@@ -482,6 +486,134 @@ static const hbvib_hooks *hooks(Call *a, const char *name) {
     if (a->progress && !mxIsClass(a->progress, "function_handle")) refuse(a, "progress", "needs a function handle");
   }
   return &a->hooks;
+}
+
+/* ---- Laws of the caller ---- */
+
+/* An array of a period: its field of C, and the lengths of a sample, in letters of n and s; none is '1'. */
+typedef struct {
+  const char *name;
+  size_t offset;
+  char rows, columns;
+} Sampled;
+
+#define SAMPLED(name, rows, columns) {#name, offsetof(hbvib_force_call, name), rows, columns}
+static const Sampled READ[] = {SAMPLED(u, 'n', '1'), SAMPLED(v, 'n', '1')};
+static const Sampled WRITTEN[] = {
+    SAMPLED(f, 'n', '1'),          SAMPLED(df_du, 'n', 'n'), SAMPLED(df_dv, 'n', 'n'),        SAMPLED(z, 's', '1'),
+    SAMPLED(dz_dz, 's', 's'),      SAMPLED(dz_du, 's', 'n'), SAMPLED(dz_du_before, 's', 'n'), SAMPLED(dz_dv, 's', 'n'),
+    SAMPLED(dz_dv_before, 's', 'n'), SAMPLED(dz_domega, 's', '1'), SAMPLED(df_dz, 'n', 's')};
+
+static mwSize extent(const hbvib_force_call *call, char letter) {
+  return letter == 'n' ? (mwSize)call->n : letter == 's' ? (mwSize)call->states : 1;
+}
+
+static double *sampled(const hbvib_force_call *call, const Sampled *s) {
+  return *(double *const *)((const char *)call + s->offset);
+}
+
+/* A sentence as the failure of the call, for finish to throw. */
+static int32_t law_fails(const char *what, const char *name) {
+  static const char *names[] = {"message", "identifier"};
+  char sentence[160];
+  snprintf(sentence, sizeof sentence, "a law of the caller: %s%s", name, what);
+  if (current) {
+    current->failure = mxCreateStructMatrix(1, 1, 2, names);
+    mxSetField(current->failure, 0, "message", mxCreateString(sentence));
+    mxSetField(current->failure, 0, "identifier", mxCreateString("hbvib:input"));
+  }
+  return -1;
+}
+
+/* The numbers of a result: rows x columns x samples here, sample after sample and row after row in C. */
+static int read_result(const hbvib_force_call *call, const Sampled *s, const mxArray *m) {
+  const mwSize rows = extent(call, s->rows), columns = extent(call, s->columns), samples = (mwSize)call->samples;
+  double *to = sampled(call, s);
+  const double *from;
+  mwSize i, j, k;
+  if (!mxIsDouble(m) || mxIsComplex(m) || mxIsSparse(m) || mxGetNumberOfElements(m) != rows * columns * samples) return 0;
+  from = mxGetPr(m);
+  for (j = 0; j < samples; j++)
+    for (i = 0; i < rows; i++)
+      for (k = 0; k < columns; k++) to[(j * rows + i) * columns + k] = from[i + rows * (k + columns * j)];
+  return 1;
+}
+
+/* Runs a law, a function handle: call -> struct with f and the derivatives that are not 0, or [] where it cannot. */
+static int32_t on_force(void *user, const hbvib_force_call *call) {
+  static const char *names[] = {"omega", "u", "v", "z0"};
+  Call *outer = current;
+  mxArray *in[2], *out[1] = {NULL}, *thrown;
+  size_t i;
+  if (outer && outer->failure) return -1;
+  in[0] = user;
+  in[1] = mxCreateStructMatrix(1, 1, 4, names);
+  mxSetField(in[1], 0, "omega", mxCreateDoubleScalar(call->omega));
+  for (i = 0; i < sizeof READ / sizeof *READ; i++) {
+    const double *from = sampled(call, &READ[i]);
+    mxArray *m = mxCreateDoubleMatrix((mwSize)call->n, from ? (mwSize)call->samples : 0, mxREAL);
+    if (from) memcpy(mxGetPr(m), from, (size_t)(call->n * call->samples) * sizeof *from);
+    mxSetField(in[1], 0, READ[i].name, m);
+  }
+  {
+    mxArray *m = mxCreateDoubleMatrix((mwSize)call->states, 1, mxREAL);
+    if (call->z0) memcpy(mxGetPr(m), call->z0, (size_t)call->states * sizeof *call->z0);
+    mxSetField(in[1], 0, "z0", m);
+  }
+  thrown = mexCallMATLABWithTrap(1, out, 2, in, "feval");
+  current = outer; /* a call within the law has set it */
+  mxDestroyArray(in[1]);
+  if (thrown) {
+    if (outer) outer->failure = thrown;
+    return -1;
+  }
+  if (!out[0] || mxIsEmpty(out[0])) return 1;
+  if (mxIsStruct(out[0]) && mxGetField(out[0], 0, "failure")) { /* of internal.tried */
+    if (outer) outer->failure = mxDuplicateArray(mxGetField(out[0], 0, "failure"));
+    return -1;
+  }
+  if (!mxIsStruct(out[0])) return law_fails("gives no struct with the field f", "");
+  for (i = 0; i < sizeof WRITTEN / sizeof *WRITTEN; i++) {
+    const mxArray *m = mxGetField(out[0], 0, WRITTEN[i].name);
+    if (!m || mxIsEmpty(m) || !sampled(call, &WRITTEN[i])) continue;
+    if (!read_result(call, &WRITTEN[i], m)) return law_fails(" has another shape than rows x columns x samples", WRITTEN[i].name);
+  }
+  mxDestroyArray(out[0]);
+  return 0;
+}
+
+/* hbvib_mex('model_add_user_force', model, struct('dofs', ..., 'uses_velocity', ...), law) -> number, status. The law is kept until
+ * MATLAB ends, because copies and branches of the model may call it. */
+static void call_model_add_user_force(Call *a) {
+  static const char *known[] = {"dofs", "uses_velocity", "is_odd", "states", "samples"};
+  hbvib_model *model = handle(a, "model");
+  const mxArray *given = next(a), *law = next(a);
+  hbvib_user_force force;
+  mxArray *kept;
+  int64_t id = 0;
+  hbvib_status status;
+  int k;
+  hbvib_user_force_init(&force, sizeof force);
+  if (!mxIsStruct(given) || mxGetNumberOfElements(given) != 1) refuse(a, "o", "needs a struct");
+  if (!mxIsClass(law, "function_handle")) refuse(a, "law", "needs a function handle");
+  for (k = 0; k < mxGetNumberOfFields(given); k++) {
+    const char *key = mxGetFieldNameByNumber(given, k);
+    const mxArray *value = mxGetFieldByNumber(given, 0, k);
+    if (!strcmp(key, known[0])) force.dofs = wholes_of(a, key, value), force.n = (int64_t)mxGetNumberOfElements(value);
+    else if (!strcmp(key, known[1])) force.uses_velocity = whole32_of(a, key, value);
+    else if (!strcmp(key, known[2])) force.is_odd = whole32_of(a, key, value);
+    else if (!strcmp(key, known[3])) force.states = whole_of(a, key, value);
+    else if (!strcmp(key, known[4])) force.samples = whole_of(a, key, value);
+    else mexErrMsgIdAndTxt("hbvib:input", "%s: there is no '%s', needs dofs, uses_velocity, is_odd, states, samples", a->name, key);
+  }
+  kept = mxDuplicateArray(law);
+  mexMakeArrayPersistent(kept);
+  force.force = on_force;
+  force.user = kept;
+  status = hbvib_model_add_user_force(model, &force, &id);
+  if (status < 0) mxDestroyArray(kept);
+  give_number(a, (double)id);
+  finish(a, status);
 }
 
 /* BEGIN GENERATED by crates/bindings from hbvib.h */
@@ -3578,6 +3710,7 @@ static int named(const Call *a, const char *name, const mxArray *m) {
 }
 
 void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
+  static const Function own = {"model_add_user_force", call_model_add_user_force, 3};
   Call a;
   char name[64];
   size_t i;
@@ -3585,8 +3718,8 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
   if (nrhs < 1 || !mxIsChar(prhs[0]) || mxGetString(prhs[0], name, sizeof name))
     mexErrMsgIdAndTxt("hbvib:input", "needs the name of a function of hbvib.h without hbvib_");
   if (!mexIsLocked()) mexLock(); /* `clear all` would take the library from under its objects */
-  for (i = 0; i < sizeof FUNCTIONS / sizeof *FUNCTIONS; i++) {
-    const Function *f = &FUNCTIONS[i];
+  for (i = 0; i <= sizeof FUNCTIONS / sizeof *FUNCTIONS; i++) {
+    const Function *f = i < sizeof FUNCTIONS / sizeof *FUNCTIONS ? &FUNCTIONS[i] : &own;
     if (strcmp(f->name, name)) continue;
     if (nrhs - 1 != f->inputs)
       mexErrMsgIdAndTxt("hbvib:input", "%s: has %d inputs, needs %d", name, nrhs - 1, f->inputs);
@@ -3594,7 +3727,9 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     a.name = f->name;
     a.inputs = nrhs - 1;
     a.in = prhs + 1;
+    current = &a;
     f->call(&a);
+    current = NULL;
     for (k = 0; k < a.outputs; k++) {
       if (k < (nlhs > 0 ? nlhs : 1)) plhs[k] = a.out[k];
       else mxDestroyArray(a.out[k]);

@@ -103,6 +103,7 @@ END
 }
 python_packages() {
     python=${PYTHON:-python3}
+    [ -z "${HBVIB_BUILT:-}" ] || export HBVIB_WHEEL_LIBRARIES="$HBVIB_BUILT/release"
     "$python" -m build --no-isolation --outdir dist "$root"
     "$python" -m venv fresh
     fresh/bin/pip install dist/*.whl

@@ -56,7 +56,7 @@ command octave --no-gui --no-init-file --quiet --interactive --path "$work/matla
     <"$work/lines" >"$work/stopped.log" 2>&1 &
 session=$!
 waited=0
-until grep -q solving "$work/stopped.log"; do
+until grep -q solving "$work/stopped.log" 2>/dev/null; do
     sleep 1
     waited=$((waited + 1))
     [ $waited -lt 60 ] || { cat "$work/stopped.log"; kill $session; exit 1; }

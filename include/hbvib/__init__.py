@@ -59,8 +59,10 @@ from ._sensitivity import ComplexSensitivities, Parameter, Sensitivities
 from ._static_history import StaticHistory
 from ._storage import SavedBranch, load
 from ._stored_point import StoredPoint
+from ._tables import from_dataframe, from_xarray
 from ._time_sweep import TimeSweep
 from ._types import *
+from ._units import Units
 from ._wheel_results import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
 __all__ = [
@@ -72,8 +74,9 @@ __all__ = [
     "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep", "RunUp", "Mission", "CampbellResponse",
     "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "Units",
     # functions
-    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "decay_backbone", "campbell_response",
+    "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "from_dataframe", "from_xarray", "decay_backbone", "campbell_response",
     "get_include",
     # the C interface
     "lib", "structs",

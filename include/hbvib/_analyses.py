@@ -50,7 +50,7 @@ class _Analyses(_Matrices):
         with _Guard() as guard:
             status = _call(name, self.handle, settings, options, _hooks(guard, *hooks), handle, guard=guard)
             if handle.value:
-                guard.branch = branch = Branch(handle.value, tuple(kept), _sentence(status) if status else "")
+                guard.branch = branch = Branch(handle.value, tuple(kept), _sentence(status) if status else "", self._units)
                 branch._at = np.array([] if at is None else at, float, ndmin=1)
                 branch._origin = origin
                 branch._responses = tuple(responses)

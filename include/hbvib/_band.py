@@ -8,10 +8,11 @@ import numpy as np
 
 from ._branch import Branch
 from ._c import BandOf, LogLevel, Status
-from ._calls import _call, _Guard, _hooks, _Owner
+from ._calls import _call, _Guard, _hooks
 from ._convert import _member
 from ._errors import Stopped, _sentence
 from ._structs import _new
+from ._units import _HasUnits
 
 if TYPE_CHECKING:
     from ._calls import CancelFlag, Hook
@@ -142,7 +143,7 @@ class BandCurve(NamedTuple):
         return ax
 
 
-class _Bands(_Owner):
+class _Bands(_HasUnits):
     """Methods of Model for residual forces."""
 
     def freedom(self, branch: Branch, point: int, *, phase: Hook = None,
@@ -220,7 +221,7 @@ class _Bands(_Owner):
                 placed = model.clone()
                 for slider, at in zip(sliders, place):
                     placed.set_slider(slider[0], at, direction=slider[1])
-                found = Branch(handle.value, tuple(self._kept), "")
+                found = Branch(handle.value, tuple(self._kept), "", self._units)
             ends.append(BandEnd(getattr(info, name), getattr(info, name + "_omega"), place[:len(sliders)].copy(),
                                 getattr(info, name + "_at_limit"), getattr(info, name + "_gain"), getattr(info, name + "_error"),
                                 placed, found))

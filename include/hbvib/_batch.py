@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ._analyses import _solver_options
 from ._branch import Branch
 from ._c import LogLevel, Status
-from ._calls import _call, _Guard, _hooks, _Owner
+from ._calls import _call, _Guard, _hooks
 from ._convert import _array, _range
 from ._errors import ArgumentError, _sentence
 from ._library import lib, structs
@@ -19,6 +19,7 @@ from ._results import Progress
 from ._sensitivity import Parameter
 from ._structs import _new, _with_options
 from ._types import SolverOptions
+from ._units import Units, _HasUnits
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -78,6 +79,7 @@ class Batch:
         self._branches: dict[int, Branch] = {}
         self._owner: Optional[_BatchHandle] = None
         self._kept: tuple[Any, ...] = ()
+        self._units = Units()
 
     @classmethod
     def _of(cls, handle: int, designs: int, kept: tuple[Any, ...], watched: Sequence[Response] = ()) -> Batch:
@@ -136,7 +138,7 @@ class Batch:
             handle = ctypes.c_void_p()
             _call("hbvib_batch_branch", self._owner.value, design, handle)
             assert handle.value is not None
-            self._branches[design] = Branch(handle.value, self._kept, self.reason(design))
+            self._branches[design] = Branch(handle.value, self._kept, self.reason(design), self._units)
         return self._branches[design]
 
     @staticmethod
@@ -178,7 +180,7 @@ class _BatchHandle:
         free(self.value)
 
 
-class _Batches(_Owner):
+class _Batches(_HasUnits):
     """Methods of Model for many designs."""
 
     @_with_options("hbvib_solver_options", SolverOptions)
@@ -230,5 +232,6 @@ class _Batches(_Owner):
                   guard=guard)
             if handle.value is not None:
                 found = guard.batch = Batch._of(handle.value, len(table), tuple(self._kept), watched)
+                found._units = self._units
         assert found is not None
         return found

@@ -15,13 +15,14 @@ from ._errors import ArgumentError, BusyError
 from ._library import lib
 from ._modal_coordinates import _ModalCoordinates
 from ._run_up import _RunUps
+from ._units import Units, _HasUnits
 
 if TYPE_CHECKING:
     from ._origin import Origin
     from ._responses import Response
 
 
-class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _ModalCoordinates, _RunUps):
+class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _ModalCoordinates, _RunUps, _HasUnits):
     """Solutions along a curve, from a forced response or a nonlinear mode; made by the solves.
 
     Fields (`omega`, `amplitude`, ...) are read-only arrays over the points of the curve without a copy: each keeps the
@@ -41,8 +42,8 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
 
     _release = staticmethod(lib.hbvib_branch_free)
 
-    def __init__(self, handle: int, kept: tuple[Any, ...], message: str) -> None:
-        self._handle, self._kept, self.message = handle, kept, message
+    def __init__(self, handle: int, kept: tuple[Any, ...], message: str, units: Units = Units()) -> None:
+        self._handle, self._kept, self.message, self._units = handle, kept, message, units
         self._leases: Any = weakref.WeakSet()
         self._living: Any = weakref.WeakSet()  # children that the caller has
         self._freeing = threading.RLock()  # of a signal's handler, too
@@ -179,7 +180,8 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
 
     def to_dataframe(self) -> Any:
         """A pandas.DataFrame, a row for each point of the curve: columns named as the fields, slip_fraction_0 and so on for
-        contacts; `attrs` has status and message. ImportError without pandas.
+        contacts; `attrs` has status and message, and what `hbvib.from_dataframe` needs to make a branch of it again.
+        ImportError without pandas.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
@@ -192,9 +194,12 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
         from . import _tables
         return _tables.dataframe(self)
 
-    def to_xarray(self) -> Any:
-        """An xarray.Dataset of the fields over point and contact, with omega (in a mode log10_amplitude) as coordinate.
-        ImportError without xarray.
+    def to_xarray(self, *, harmonics: bool = False) -> Any:
+        """An xarray.Dataset of the fields over point and contact, with omega (in a mode log10_amplitude) as coordinate, and units
+        where the model has them. `hbvib.from_xarray` makes a branch of it again. ImportError without xarray.
+
+        harmonics   with those of all stored points, (stored, harmonic, dof, part) with the parts "re" and "im", and with the bytes
+                    of the model.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
@@ -205,7 +210,7 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
         1
         """
         from . import _tables
-        return _tables.dataset(self)
+        return _tables.dataset(self, harmonics)
 
     def plot(self, ax: Any = None, *, hertz: bool = False, **line: Any) -> Any:
         """Draws the branch with matplotlib: amplitude over angular frequency, peaks as dots; of a nonlinear mode

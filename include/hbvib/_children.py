@@ -24,6 +24,7 @@ class _BranchChildren(_Owner):
     _responses: Any
     _leases: Any
     _living: Any
+    _units: Any
     _parent: Optional[Branch] = None  # a child's, which frees it
     message: str
 
@@ -47,7 +48,7 @@ class _BranchChildren(_Owner):
             handle = ctypes.c_void_p()
             self._call("hbvib_branch_child", number, handle)
             assert handle.value is not None
-            child = type(self)(handle.value, self._kept, "")  # type: ignore[call-arg]
+            child = type(self)(handle.value, self._kept, "", self._units)  # type: ignore[call-arg]
             child._parent = cast("Branch", self)
             self._living.add(child)
             found.append(child)  # type: ignore[arg-type]

@@ -70,6 +70,9 @@ def _array(name: str, value: Any, dtype: Any = np.float64, shape: Optional[Seque
 def _numbers(name: str, value: Any, dtype: Any) -> np.ndarray:
     if np.ma.is_masked(value):
         raise TypeError(f"{name} has masked entries")
+    # Tensors of other packages that know this protocol alone; without a copy.
+    if hasattr(value, "__dlpack__") and not hasattr(value, "__array__") and hasattr(np, "from_dlpack"):
+        value = np.from_dlpack(value)
     array = np.asarray(value)
     if array.size and not np.can_cast(array.dtype, dtype, "safe"):
         raise TypeError(f"{name} holds {array.dtype}, which is not {np.dtype(dtype)} without loss")

@@ -81,7 +81,7 @@ class _Fits(_Owner):
         if handle.value is None:
             raise Stopped(_sentence(status), Status(status), 0)
         fitted = type(model).__new__(type(model))
-        fitted._handle, fitted._kept = handle.value, list(model._kept)
+        fitted._handle, fitted._kept, fitted._units = handle.value, list(model._kept), model._units
         suspicion = Suspicion(info.suspicion)
         if suspicion == Suspicion.RESPONSE:
             warnings.warn(SuspiciousUnits(f"responses of the data are about {info.suspected_factor:g} times those of the model: "

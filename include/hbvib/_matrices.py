@@ -8,17 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._c import Block, MatrixKind, Part
-from ._calls import _call, _Owner
+from ._calls import _call
 from ._convert import _array, _member, _whole
 from ._results import Forces, Springs
 from ._structs import _matrix
+from ._units import _HasUnits
 
 if TYPE_CHECKING:
     from ._choices import Blocks, MatrixKinds, Parts
     from ._results import ComplexArray, FloatArray
 
 
-class _Matrices(_Owner):
+class _Matrices(_HasUnits):
     """Methods of Model for its structure and the forces on it."""
 
     @property

@@ -190,7 +190,7 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         handle, kept = ctypes.c_void_p(), self._kept
         self._call("hbvib_model_clone", handle)
         copy = type(self).__new__(type(self))
-        copy._handle, copy._kept = handle.value, list(kept)
+        copy._handle, copy._kept, copy._units = handle.value, list(kept), self._units
         return copy
 
     def longer_period(self, periods: int) -> Model:
@@ -206,7 +206,7 @@ class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sens
         handle, kept = ctypes.c_void_p(), self._kept
         self._call("hbvib_model_longer_period", _whole(periods, 64, "periods"), handle)
         copy = type(self).__new__(type(self))
-        copy._handle, copy._kept = handle.value, list(kept)
+        copy._handle, copy._kept, copy._units = handle.value, list(kept), self._units
         return copy
 
     __copy__ = clone

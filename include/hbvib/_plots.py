@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 import numpy as np
 
-from ._errors import ArgumentError
-from ._results import Campbell, Interference
+from ._errors import ArgumentError, UnsupportedError
+from ._results import Campbell, Interference, Points
+from ._units import Units, label
 
 if TYPE_CHECKING:
     from ._branch import Branch
@@ -33,12 +34,25 @@ def through(x: Any, y: Any, peak_x: Any, peak_y: Any) -> tuple[Any, Any]:
     return x, y
 
 
+def frequency(hertz: bool, units: Units) -> tuple[float, str]:
+    """What angular frequencies are divided by, and their label."""
+    return (2 * np.pi, "frequency / Hz") if hertz else (1.0, label("angular frequency omega", units.speed))
+
+
+def peaks_of(branch: Branch) -> Points:
+    """The peaks, none where the branch comes from a table that has fields alone."""
+    try:
+        return branch.peaks()
+    except UnsupportedError:
+        return Points(np.empty(0), np.empty(0), np.empty(0, np.int64))
+
+
 def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
     """See Branch.plot."""
-    unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
+    unit, name = frequency(hertz, branch.units)
     if branch.is_mode:
         above, below = axes(2) if ax is None else ax
-        largest = [branch.mode_point(int(point)) for point in branch.peaks().point]
+        largest = [branch.mode_point(int(point)) for point in peaks_of(branch).point]
         place, ratio = np.log10([p.modal_amplitude for p in largest]), [p.damping_ratio for p in largest]
         x, y = through(np.log10(branch.modal_amplitude), branch.damping_ratio, place, ratio)
         above.semilogx(branch.modal_amplitude, branch.omega / unit, **line)
@@ -47,7 +61,7 @@ def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
         below.set(xlabel="modal amplitude", ylabel="damping ratio / %")
         return above, below
     ax = axes() if ax is None else ax
-    peaks = branch.peaks()
+    peaks = peaks_of(branch)
     drawn: Any = None
     for unstable, omega, amplitude in stretches(branch):
         if drawn is not None:
@@ -56,7 +70,7 @@ def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
         x, y = through(omega, amplitude, peaks.omega, peaks.amplitude) if len(omega) == len(branch) else (omega, amplitude)
         (drawn,) = ax.plot(x / unit, y, **{**line, **style})
     ax.plot(peaks.omega / unit, peaks.amplitude, "o", color=drawn.get_color(), markersize=4)
-    ax.set(xlabel=name, ylabel="peak amplitude of harmonic 1")
+    ax.set(xlabel=name, ylabel=label("peak amplitude of harmonic 1", branch.units.length))
     return ax
 
 
@@ -64,10 +78,10 @@ def stretches(branch: Branch) -> list[tuple[bool, Any, Any]]:
     """The curve in parts, each with True where it is unstable; they meet at the bifurcations."""
     try:
         unstable = branch.unstable_directions > 0
-    except ArgumentError:
+        turns = branch.bifurcations()
+    except (ArgumentError, UnsupportedError):  # no stability, or a table that has fields alone
         return [(False, branch.omega, branch.amplitude)]
     found, first = [], 0
-    turns = branch.bifurcations()
     changes = (turns.unstable_before > 0) != (turns.unstable_after > 0)
     joints = iter(zip(turns.omega[changes], turns.amplitude[changes]))
     head: list[tuple[float, float]] = []
@@ -84,7 +98,8 @@ def loop(branch: Branch, point: int, contact: int, direction: int, n: int, ax: A
     ax = axes() if ax is None else ax
     motion, force, _ = branch.loop(point, contact, direction, n)
     ax.plot(np.append(motion, motion[0]), np.append(force, force[0]), **line)
-    ax.set(xlabel="relative motion", ylabel=f"force of contact {contact}")
+    units = branch.units
+    ax.set(xlabel=label("relative motion", units.length), ylabel=label(f"force of contact {contact}", units.force))
     return ax
 
 

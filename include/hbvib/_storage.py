@@ -17,23 +17,28 @@ from ._responses import Response, WatchedResponse
 from ._responses import contents as response_contents
 from ._results import Bifurcations, HigherPeaks, Kinks, LimitCycles, Loop, Optima, Points, Turns, Wanted
 from ._stored_point import requests
-from ._tables import fields
+from ._tables import FORMAT, fields
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction
+from ._units import Units
 
 if TYPE_CHECKING:
     from ._choices import Fields
     from ._results import ComplexArray, FloatArray
 
-_FORMAT = 2
+_FORMAT = FORMAT
 _List = TypeVar("_List", bound="tuple[Any, ...]")
 
 
 def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
     """All that a file holds of a branch."""
+    if isinstance(branch, SavedBranch):
+        known = dict(branch._about, units=list(branch.units))
+        kept = {name: values for name, values in branch._arrays.items() if harmonics or name not in ("harmonics", "model")}
+        return {**kept, "about": np.array(json.dumps(known))}
     stored = branch.stored
     about: dict[str, Any] = dict(
         format=_FORMAT, version=__version__, status=int(branch.status), message=branch.message, points=len(branch),
-        stored=stored, is_mode=branch.is_mode, reduction=branch.reduction._asdict(), at=0)
+        stored=stored, is_mode=branch.is_mode, reduction=branch.reduction._asdict(), at=0, units=list(branch.units))
     arrays: dict[str, np.ndarray] = {"field/" + name: values for name, values in fields(branch).items()}
     lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds(), bifurcations=branch.bifurcations(),
                                  optima=branch.optima(), turns=branch.turns(), higher_peaks=branch.higher_peaks())
@@ -65,8 +70,6 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
 
 def _model_of(branch: Branch) -> tuple[int, str, Optional[np.ndarray]]:
     """Samples of the solve, the reason why there is no model, and the bytes of the model."""
-    if isinstance(branch, SavedBranch):
-        return branch._about.get("samples", 0), branch._about.get("no_model", ""), branch._arrays.get("model")
     if branch._origin is None:
         return 0, "each point of this branch has a model of its own", None
     try:
@@ -131,7 +134,7 @@ class SavedBranch(Branch):
         about = json.loads(str(arrays["about"]))
         if about["format"] != _FORMAT:
             raise ValueError(f"format {about['format']}, needs {_FORMAT}: saved by hbvib {about['version']}")
-        super().__init__(0, (), about["message"])
+        super().__init__(0, (), about["message"], Units(*about.get("units", ())))
         self._arrays, self._about, self._handle = arrays, about, None
         self._at = arrays["at_values"]
         self._solved: Optional[tuple[int, Branch]] = None
@@ -142,7 +145,7 @@ class SavedBranch(Branch):
         return None
 
     def __reduce__(self) -> tuple[Callable[..., SavedBranch], tuple[Any, ...]]:
-        return SavedBranch, (self._arrays,)
+        return SavedBranch, (contents(self),)
 
     @property
     def handle(self) -> NoReturn:
@@ -210,6 +213,8 @@ class SavedBranch(Branch):
 
     @property
     def reduction(self) -> Reduction:
+        if "reduction" not in self._about:
+            raise UnsupportedError("a branch from a table does not tell the size of its problem", Status.E_UNSUPPORTED)
         values = dict(self._about["reduction"])
         # Earlier files do not know it.
         way = FlexibilityWay(values.pop("flexibility_way", values.pop("reserved2", 0)))
@@ -219,6 +224,8 @@ class SavedBranch(Branch):
     def mode_info(self) -> ModeInfo:
         if not self.is_mode:
             raise UnsupportedError("a forced response has no mode_info", Status.E_UNSUPPORTED)
+        if "mode_info" not in self._about:
+            raise UnsupportedError("a branch from a table has no mode_info", Status.E_UNSUPPORTED)
         values = dict(self._about["mode_info"])
         return ModeInfo(**dict(values, multiple=ModeMultiple(values["multiple"])))
 
@@ -252,6 +259,9 @@ class SavedBranch(Branch):
         return np.asarray((np.exp(phase) @ x).real)
 
     def _list(self, kind: type[_List], name: str) -> _List:
+        if f"{name}/{kind._fields[0]}" not in self._arrays:  # type: ignore[attr-defined]
+            raise UnsupportedError(f"this branch has no {name}: it comes from a table that has fields alone; save and hbvib.load keep all",
+                                   Status.E_UNSUPPORTED)
         return kind(*(self._arrays[f"{name}/{key}"].copy() for key in kind._fields))  # type: ignore[attr-defined]
 
     def _again(self, point: int) -> Branch:
@@ -309,7 +319,7 @@ class SavedBranch(Branch):
         return self._list(Optima, "optima")
 
     def turns(self) -> Turns:
-        if "turns/parameter" not in self._arrays:  # a file of version 0.1
+        if "turns/parameter" not in self._arrays and "peaks/point" in self._arrays:  # a file of version 0.1
             none = np.empty(0)
             return Turns(none, none, none, np.empty(0, "U7"), np.empty(0, np.int64))
         return self._list(Turns, "turns")

@@ -8,7 +8,9 @@ import numpy as np
 
 from ._branch import Branch
 from ._c import Status
+from ._errors import UnsupportedError
 from ._model import Model
+from ._units import after
 
 
 def counted(number: int, one: str) -> str:
@@ -22,7 +24,9 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
     rows = [("degrees of freedom", str(model.ndof))]
     if model.sectors > 1:
         rows += [("sectors", str(model.sectors)), ("engine order", str(model.engine_order))]
-    return rows + [("contacts", str(model.contacts)), ("forces", str(len(model.forces.dof)))]
+    rows += [("contacts", str(model.contacts)), ("forces", str(len(model.forces.dof)))]
+    names = [f"{kind} {name}" for kind, name in model.units._asdict().items() if name]
+    return rows + [("units", ", ".join(names))] * bool(names)
 
 
 def line(shown: Any) -> str:
@@ -49,7 +53,9 @@ def model_parts(model: Model) -> list[str]:
     parts = [counted(model.ndof, "degree of freedom")]
     if model.sectors > 1:
         parts += [counted(model.sectors, "sector"), f"engine order {model.engine_order}"]
-    return [*parts, counted(model.contacts, "contact")]
+    parts.append(counted(model.contacts, "contact"))
+    names = [name for name in model.units if name]
+    return parts + ["units " + " ".join(names)] * bool(names)
 
 
 def branch_rows(branch: Branch) -> list[tuple[str, str]]:
@@ -61,15 +67,20 @@ def branch_rows(branch: Branch) -> list[tuple[str, str]]:
     parameter, name = branch.omega, "omega"
     if branch.is_mode:
         parameter, name = branch.log10_amplitude, "log10_amplitude"
-    rows.append((name, f"{parameter[0]:.6g} to {parameter[-1]:.6g}"))
-    peaks = branch.peaks()
+    units = branch.units
+    rows.append((name, after(f"{parameter[0]:.6g} to {parameter[-1]:.6g}", "" if branch.is_mode else units.speed)))
+    try:
+        peaks = branch.peaks()
+    except UnsupportedError:  # a table with fields alone
+        return rows
     if len(peaks.point) and branch.is_mode:
         ratios = [branch.mode_point(int(point)).damping_ratio for point in peaks.point]
         best = int(np.argmax(ratios))
-        rows.append(("largest damping ratio", f"{ratios[best]:.4g} at omega = {peaks.omega[best]:.6g}"))
+        rows.append(("largest damping ratio", f"{ratios[best]:.4g} at omega = {after(f'{peaks.omega[best]:.6g}', units.speed)}"))
     elif len(peaks.point):
         best = int(np.argmax(peaks.amplitude))
-        rows.append(("peak", f"{peaks.amplitude[best]:.6g} at omega = {peaks.omega[best]:.6g}"))
+        height = after(f"{peaks.amplitude[best]:.6g}", units.length)
+        rows.append(("peak", f"{height} at omega = {after(f'{peaks.omega[best]:.6g}', units.speed)}"))
     return rows
 
 

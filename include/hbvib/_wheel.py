@@ -34,7 +34,7 @@ class _Wheels(_Owner):
         self._call("hbvib_wheel_new", handle)
         model = cast("Model", self)
         wheel = type(model).__new__(type(model))
-        wheel._handle, wheel._kept = handle.value, list(model._kept)
+        wheel._handle, wheel._kept, wheel._units = handle.value, list(model._kept), model._units
         return wheel
 
     def mistune(self, sector: Model, kind: Mistunings, delta: ArrayLike, *, dofs: Optional[ArrayLike] = None,

@@ -10,13 +10,14 @@ import numpy as np
 from ._analyses import _solver_options
 from ._branch import Branch
 from ._c import LogLevel, Status
-from ._calls import _call, _Guard, _hooks, _Owner
+from ._calls import _call, _Guard, _hooks
 from ._convert import _array, _range
 from ._errors import ArgumentError, _sentence
 from ._responses import Response, structures
 from ._sensitivity import Parameter
 from ._structs import _new, _with_options
 from ._types import SolverOptions
+from ._units import _HasUnits
 from ._wheel_results import WheelPeaks, WheelStudy, WorstPattern
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ _DIFFERENCE = 1e-5
 Blade = Union[int, Response]
 
 
-class _WheelStudies(_Owner):
+class _WheelStudies(_HasUnits):
     """Methods of Model for studies of mistuned wheels."""
 
     @_with_options("hbvib_solver_options", SolverOptions)
@@ -72,7 +73,7 @@ class _WheelStudies(_Owner):
                            frequency, error, count, info, handle, guard=guard)
         assert handle.value is not None and kept
         n = sector.ndof
-        branch = Branch(handle.value, tuple(self._kept), _sentence(int(status)) if status else "")
+        branch = Branch(handle.value, tuple(self._kept), _sentence(int(status)) if status else "", self._units)
         branch._responses = tuple(_of_sector(_blade(blade), s * n) for s in range(sectors))
         return WheelPeaks(amplitude, frequency, error, info.blade, info.tuned, info.amplification, branch)
 

@@ -149,10 +149,37 @@ classdef Model < handle
       number = hbvib_mex('model_add_contact', self.id, law) + 1;
     end
 
+    function number = add_user_force(self, dofs, law, varargin)
+    %ADD_USER_FORCE  A force of your own on some degrees of freedom, each over the ground; returns its number among the contacts.
+    %   law       a function handle: result = law(call). call has u and v (n x N, a column for each of the N samples of a period),
+    %             omega, and z0 where there are states. result is a struct with f (n x N) and the derivatives that are not 0:
+    %             df_du(i, k, j) of f(i, j) by u(k, j), df_dv; with states z (s x N), dz_dz, dz_du, dz_du_before, dz_dv,
+    %             dz_dv_before, dz_domega, df_dz. [] where it cannot at this motion; an error ends the solve.
+    %   options   uses_velocity, is_odd, states, samples, as in hbvib_user_force.
+    %   check_jacobian compares the derivatives with difference quotients. The law is kept until the session ends.
+      [~, given] = hbvib.internal.options('add_user_force', varargin, struct(), true);
+      given.dofs = hbvib.internal.zero('dofs', dofs(:), self.ndof);
+      if ~isa(law, 'function_handle'), error('hbvib:input', 'add_user_force: law needs a function handle'); end
+      number = hbvib_mex('model_add_user_force', self.id, given, @(call) hbvib.internal.tried(law, call)) + 1;
+    end
+
+    function gap = check_jacobian(self, contact, omega, amplitude)
+    %CHECK_JACOBIAN  The derivative of a force of your own that lies farthest from its difference quotient; gap.gap below 1e-6 is right.
+      contact = hbvib.internal.zero('contact', contact, self.contacts);
+      gap = hbvib_mex('check_jacobian', self.id, contact, omega, amplitude, numel(amplitude));
+    end
+
     function set_preload(self, contact, preload)
     %SET_PRELOAD  Changes the normal load of a contact.
       contact = hbvib.internal.zero('contact', contact, self.contacts);
       hbvib_mex('model_set_preload', self.id, contact, preload);
+    end
+
+    function set_slider(self, contact, place, direction)
+    %SET_SLIDER  The place at which the slider of a contact begins, along direction 1 (left out) or 2: its residual state.
+      if nargin < 4, direction = 1; end
+      contact = hbvib.internal.zero('contact', contact, self.contacts);
+      hbvib_mex('model_set_slider', self.id, contact, hbvib.internal.zero('direction', direction, 2), place);
     end
 
     function [omega, shapes] = linear_modes(self, count, varargin)
@@ -220,6 +247,41 @@ classdef Model < handle
       rows = branch.reduction.harmonics_asked + 1;
       n = rows * self.ndof;
       [~, errors, info] = hbvib_mex('verify', self.id, branch.id, branch.from_one(point), rest, [], n, n, rows, rows);
+    end
+
+    function sliders = freedom(self, branch, point)
+    %FREEDOM  The sliders of a point that stick through the period and change its vibration: contact, direction, place, derivative.
+    %   Each may lie anywhere within the limit of its friction; band has the ends of what follows from that. direction is 1 or 2.
+      point = branch.from_one(point);
+      room = 2 * self.contacts;
+      [contact, direction, place, derivative, count] = ...
+          hbvib_mex('branch_freedom', self.id, branch.id, point, room, room, room, room, room, []);
+      sliders = struct('contact', contact(1:count) + 1, 'direction', direction(1:count) + 1, 'place', place(1:count), ...
+                       'derivative', derivative(1:count));
+    end
+
+    function found = band(self, branch, point, varargin)
+    %BAND  The least and the largest result at a point over all residual forces that its sticking contacts may keep.
+    %   options  of: 'amplitude', 'peak_amplitude' or 'peak_omega'; contacts: whose sliders are free, all where left out; starts.
+    %   found    lower, upper and their errors, omega and gains, complete; contact and direction of the free sliders with
+    %            lower_place and upper_place; branches lower_branch and upper_branch, [] where there is none.
+      own = struct('of', 'amplitude', 'contacts', [], 'starts', 3);
+      own = hbvib.internal.options('band', varargin, own, false);
+      options = struct('of', ['band_', own.of], 'starts', own.starts);
+      if ~isempty(own.contacts), options.contacts = hbvib.internal.zero('contacts', own.contacts(:), self.contacts); end
+      room = 2 * self.contacts;
+      [found, contact, direction, lower, upper, ~, low, high] = ...
+          hbvib_mex('band', self.id, branch.id, branch.from_one(point), [], options, [], room, room, room, room, room, 0, 0);
+      count = 1:found.sliders;
+      found.contact = contact(count) + 1;
+      found.direction = direction(count) + 1;
+      found.lower_place = lower(count);
+      found.upper_place = upper(count);
+      ends = {low, high};
+      for k = 1:2
+        if ends{k} ~= 0, ends{k} = hbvib.Branch(ends{k}, 0); else, ends{k} = []; end
+      end
+      [found.lower_branch, found.upper_branch] = ends{:};
     end
 
     function bytes = to_bytes(self)

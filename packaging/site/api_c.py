@@ -2,6 +2,8 @@
 import re
 from pathlib import Path
 
+from api_python import fenced
+
 
 def pages(header: Path) -> list[tuple[str, str, str]]:
     """(name of the file, title, text) of each section."""
@@ -26,5 +28,5 @@ def items(body: str) -> list[str]:
         named = re.search(r"\b(hbvib_\w+)\(", code) if code.startswith(("hbvib_status ", "int", "uint", "const", "size_t")) else None
         named = named or re.search(r"(hbvib_\w+);\s*$", code) or re.search(r"\(\*(hbvib_\w+)\)", code)
         if named:
-            found.append(f"## {named[1]}\n\n```text\n{doc}\n```\n\n```c\n{code}\n```\n")
+            found.append(f"## {named[1]}\n\n{fenced(doc)}\n```c\n{code}\n```\n")
     return found

@@ -84,7 +84,22 @@ def entry(name: str, item: Any, level: int = 2) -> str:
 
 
 def fenced(body: str) -> str:
-    """The first paragraph as prose, all else as it is set."""
-    first, _, rest = body.strip().partition("\n\n")
-    escaped = re.sub(r"([<>*_`\[\]])", r"\\\1", " ".join(first.split()))
-    return escaped + "\n" + (f"\n```text\n{rest.rstrip()}\n```\n" if rest.strip() else "")
+    """Paragraphs as prose, but those with columns or indented lines as they are set."""
+    found: list[tuple[bool, str]] = []
+    for paragraph in re.split(r"\n\s*\n", body.strip("\n").rstrip()):
+        lines = paragraph.splitlines()
+        is_set = any(re.match(r"\s", line) or re.search(r"\S {2,}\S", line) for line in lines)
+        text = paragraph if is_set else prose(" ".join(paragraph.split()))
+        if is_set and found and found[-1][0]:
+            found[-1] = (True, f"{found[-1][1]}\n\n{text}")
+        else:
+            found.append((is_set, text))
+    return "\n".join(f"```text\n{text}\n```\n" if is_set else f"{text}\n" for is_set, text in found)
+
+
+def prose(text: str) -> str:
+    """Text for Markdown: code between backticks, all other marks as they are."""
+    parts = text.split("`")
+    if len(parts) % 2 == 0:
+        parts = [text.replace("`", "'")]
+    return "".join(f"`{part}`" if k % 2 else re.sub(r"([<>*_\[\]])", r"\\\1", part) for k, part in enumerate(parts))

@@ -52,7 +52,7 @@ const DIRECT_UP_TO: usize = 20_000;
 
 /// Error with rounding, as the certificate tells it, beyond which a basis is not used in place of factors, and beyond which it is not used
 /// at all: stiffness of a penalty is lost in the soft motions of the basis, while factors keep them.
-const ROUNDED_BASIS: f64 = 1e-6;
+const ROUNDED_BASIS: f64 = 1e-5;
 const USELESS_BASIS: f64 = 1e-2;
 
 /// Forces on more degrees of freedom than this in one harmonic count as one vector.
@@ -130,15 +130,16 @@ pub(super) fn reduced_blocks(
             Err(e) => return Err(e),
         };
         worst = worst.max(error);
-        if is_optional && (error.basis > limit(request) || error.total > ROUNDED_BASIS) {
+        if is_optional && (error.basis > limit(request) || error.total > ROUNDED_BASIS || error.total.is_nan()) {
             return Ok(None);
         }
         // NaN is no certificate either.
-        if !(error.total <= USELESS_BASIS) {
+        if error.total.is_nan() || error.total > USELESS_BASIS {
             return fail!(
                 NoConvergence,
-                "flexibility on a basis: rounding makes an error of {:e} of its motions, needs at most {USELESS_BASIS}; some stiffness is far above \
-                 that of the structure, as of a penalty: make what it connects one degree of freedom, or take flexibility = direct",
+                "flexibility on a basis: its motions err by {:e}, rounding included, needs at most {USELESS_BASIS}; take flexibility = direct, \
+                 or a narrower range. Where some stiffness is far above that of the structure, as of a penalty, make what it connects \
+                 one degree of freedom",
                 error.total
             );
         }

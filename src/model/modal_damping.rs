@@ -1,7 +1,7 @@
 //! Damping ratios of natural modes as a damping matrix: C = Σ 2 ζ_r ω_r (M φ_r)(M φ_r)ᴴ with φ_rᴴ M φ_r = 1, for each
 //! nodal diameter. Motions outside these modes are not damped (Wilson & Penzien 1972, doi:10.1002/eqe.4290010305).
 
-use crate::error::{Error, Result, Status, fail, try_push};
+use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::kept_matrix::KeptMatrix;
 use crate::linalg::sparse::Csc;
@@ -14,7 +14,7 @@ use num_complex::Complex64;
 /// Degrees of freedom up to which the matrix, which has no zero entries, is affordable.
 const MODAL_DAMPING_MOST: usize = 2000;
 
-/// Entries of the matrix below this share of the largest are rounding.
+/// Entries of the matrix below this share of those on the diagonal of their row and column are rounding.
 const MODAL_DAMPING_ROUNDING: f64 = 1e-16;
 
 const CONTEXT: &str = "the modal damping";
@@ -118,13 +118,16 @@ impl Model {
                 *v += factor * inertia[*i] * inertia[*j].conj();
             }
         }
-        let largest = entries.iter().fold(0.0_f64, |m, (.., v)| m.max(v.norm()));
+        let mut own = try_vec(n, 0.0, CONTEXT)?;
+        for (own, (.., v)) in own.iter_mut().zip(entries.iter().step_by(n + 1)) {
+            *own = v.re.sqrt();
+        }
         if is_real {
             for (.., v) in &mut entries {
                 v.im = 0.0;
             }
         }
-        entries.retain(|(.., v)| v.norm() > MODAL_DAMPING_ROUNDING * largest);
+        entries.retain(|(i, j, v)| v.norm() > MODAL_DAMPING_ROUNDING * own[*i] * own[*j]);
         KeptMatrix::new(Csc::from_triplets(n, n, entries)?)
     }
 }

@@ -11,4 +11,5 @@ mod rotating_wheel;
 mod senses_of_crossings;
 mod signed_diameters;
 mod start_mode;
+mod units;
 mod unstable_and_held;

@@ -21,17 +21,21 @@ const FILES: [(&str, &str); 4] = [
     ),
 ];
 
-/// Writes the files into a new folder, runs the job, and opens its report where that is asked for; returns the exit code.
+/// Writes the files into a new folder, made with the folders above it, runs the job, and opens its report where that is asked for;
+/// returns the exit code.
 ///
 /// # Errors
 /// A sentence where the folder is there already or cannot be written.
 pub fn demo(folder: &Path, open: bool) -> Outcome<u8> {
     let place = folder.display();
+    if let Some(above) = folder.parent() {
+        fs::create_dir_all(above).map_err(|e| format!("{}: no folder can be made there: {e}", above.display()))?;
+    }
     fs::create_dir(folder).map_err(|e| match e.kind() {
         ErrorKind::AlreadyExists => {
             format!("{place} is there already, and a demo overwrites nothing: name another folder")
         }
-        _ => format!("{place}: {e}"),
+        _ => format!("{place}: no folder can be made there: {e}"),
     })?;
     for (name, text) in FILES {
         fs::write(folder.join(name), text).map_err(|e| format!("{}: {e}", folder.join(name).display()))?;

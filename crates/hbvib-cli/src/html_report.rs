@@ -30,7 +30,7 @@ const STYLE: &str = "body{font-family:sans-serif;max-width:62em;margin:2em auto;
 h1{font-size:1.5em}h2{font-size:1.2em;border-bottom:1px solid #ccc;margin-top:2em}\
 table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .6em;text-align:right}\
 th{background:#f2f2f2}td:first-child,th:first-child{text-align:left}\
-pre{background:#f7f7f7;padding:1em;overflow-x:auto}.warning{color:#a00}svg{max-width:100%;height:auto}";
+pre{background:#f7f7f7;padding:1em;white-space:pre-wrap}.warning{color:#a00}svg{max-width:100%;height:auto}";
 
 /// Writes the report that a job names. A part that cannot be made says so in its place.
 pub fn write(job: &Job, curve: &Curve<'_>, built: &Built, files: &mut Files<'_>) {

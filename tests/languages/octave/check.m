@@ -64,6 +64,63 @@ function check(file)
   same(turned.omega, r.omega);
   same(turned.amplitude, r.amplitude);
 
+  % Free sliders and their band.
+  r = wanted.wedge;
+  wedge = hbvib.Model('mass', diag([1 0.01 0.01]), 'damping', diag([0.04 0.004 0.004]), 'stiffness', diag([1 1e-3 1e-3]));
+  wedge.add_contact('friction_2d', [2 3 -1], [-1 -1 -1], 'kt', 1, 'kn', 1.5, 'mu', 0.6, 'normal', [1 -1 0], 'tangent', [1 1 0]);
+  wedge.add_contact('friction_2d', [2 3 -1], [1 -1 -1], 'kt', 1, 'kn', 1.5, 'mu', 0.15, 'normal', [-1 -1 0], 'tangent', [-1 1 0]);
+  wedge.add_force(3, 1, 0);
+  wedge.add_force(1, 0.02);
+  sweep = wedge.forced_response([1.2 1.3], 'harmonics', 7);
+  point = sweep.peaks().point(1);
+  sliders = wedge.freedom(sweep, point);
+  assert(numel(sliders.contact) > 0);
+  same(sliders.contact - 1, r.contact);
+  same(sliders.place, r.place);
+  same(sliders.derivative, r.derivative);
+  found = wedge.band(sweep, point);
+  same([found.lower; found.upper], r.ends);
+  same(found.lower_place, r.lower);
+  assert(found.lower < found.upper && found.complete == 1);
+  same(found.lower_branch.amplitude, r.low);
+  wedge.set_slider(found.contact(1), found.lower_place(1), found.direction(1));
+  throws(@() wedge.set_slider(3, 0), 'hbvib:E_INDEX', '');
+  throws(@() wedge.band(sweep, point, 'off', 'amplitude'), 'hbvib:input', 'needs one of');
+
+  % Laws of the caller: numbers of Python, derivatives, errors that come out as they are, models and branches that outlive the handle.
+  r = wanted.own;
+  own = hbvib.Model('mass', eye(2), 'stiffness', [2 -1; -1 2], 'rayleigh', [0 0.02]);
+  number = own.add_user_force(1, @(call) struct('f', 0.5 * call.v .* abs(call.v), 'df_dv', abs(call.v)), 'uses_velocity', 1, 'is_odd', 1);
+  assert(number == 1);
+  number = own.add_user_force([1 2], @cubic_between, 'is_odd', 1);
+  own.add_force(1, 0.2);
+  assert(own.check_jacobian(number, 1, [0.3 0.2]).gap < 1e-6);
+  solved = own.forced_response([0.8 1.2], 'harmonics', 5);
+  near(solved.omega, r.omega);
+  near(solved.amplitude, r.amplitude);
+  own.free();
+  near(solved.summary(solved.peaks().point(1), 1).work, r.work);
+  own = hbvib.Model('mass', 1, 'stiffness', 1, 'damping', 0.1);
+  own.add_force(1, 0.2);
+  wrong = own.clone();
+  wrong.add_user_force(1, @(call) struct('f', 2 * call.u, 'df_du', ones(size(call.u))));
+  assert(wrong.check_jacobian(1, 1, 0.3).gap > 0.1);
+  failing = own.clone();
+  failing.add_user_force(1, @(call) error('user:law', 'of the law'));
+  throws(@() failing.forced_response([0.8 1.2]), 'user:law', 'of the law');
+  bad = own.clone();
+  bad.add_user_force(1, @(call) struct('f', [1 2 3]));
+  throws(@() bad.forced_response([0.8 1.2]), 'hbvib:input', 'f has another shape');
+  refusing = own.clone();
+  refusing.add_user_force(1, @(call) []);
+  throws(@() refusing.forced_response([0.8 1.2]), 'hbvib:E_CALLBACK', '');
+  nested = own.clone();
+  nested.add_user_force(1, @(call) calls_the_library(call, own));
+  throws(@() nested.forced_response([0.8 1.2]), 'user:nested', 'after a call within');
+  throws(@() own.add_user_force(2, @(call) []), 'hbvib:E_INDEX', '');
+  throws(@() own.add_user_force(1, 'f'), 'hbvib:input', 'function handle');
+  throws(@() own.add_user_force(1, @(call) [], 'odd', 1), 'hbvib:input', 'needs dofs');
+
   % Errors: identifier and sentence, with indices from 1; an error of a callback comes out as it is.
   throws(@() model.add_force(4, 1), 'hbvib:E_INDEX', 'dof = 4, needs 1 .. 3');
   throws(@() model.add_force(0, 1), 'hbvib:E_INDEX', 'dof = 0, needs 1 .. 3');
@@ -86,6 +143,24 @@ function check(file)
   assert(copy.contacts == 2);
   throws(@() model.linear_modes(1), 'hbvib:E_HANDLE', '');
   disp('check passed');
+end
+
+% A cubic spring between two degrees of freedom.
+function result = cubic_between(call)
+  d = call.u(1, :) - call.u(2, :);
+  result.f = [d .^ 3; -d .^ 3];
+  slope = reshape(3 * d .^ 2, 1, 1, []);
+  result.df_du = [slope, -slope; -slope, slope];
+end
+
+% A law that solves a linear model, catches an error of the library, and then fails.
+function result = calls_the_library(~, model)
+  model.linear_modes(1);
+  try
+    model.add_force(9, 1);
+  catch
+  end
+  error('user:nested', 'after a call within');
 end
 
 % Numbers from the hexadecimal digits of their bits.

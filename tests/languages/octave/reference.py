@@ -56,6 +56,42 @@ wheel.add_force(0, 0.1)
 turned = wheel.forced_response((0.9, 2.0), harmonics=5)
 out["wheel"] = dict(omega=turned.omega.tolist(), amplitude=turned.amplitude.tolist())
 
+# A wedge between two inclined planes, of which one sticks: free sliders and their band.
+wedge = hbvib.Model(mass=np.diag([1, 0.01, 0.01]), damping=np.diag([0.04, 0.004, 0.004]), stiffness=np.diag([1, 1e-3, 1e-3]))
+wedge.add_contact("friction_2d", [1, 2, -1], [-1, -1, -1], kt=1, kn=1.5, mu=0.6, normal=(1, -1, 0), tangent=(1, 1, 0))
+wedge.add_contact("friction_2d", [1, 2, -1], [0, -1, -1], kt=1, kn=1.5, mu=0.15, normal=(-1, -1, 0), tangent=(-1, 1, 0))
+wedge.add_force(2, 1, harmonic=0)
+wedge.add_force(0, 0.02)
+sweep = wedge.forced_response((1.2, 1.3), harmonics=7)
+point = int(sweep.peaks().point[0])
+sliders, band = wedge.freedom(sweep, point), wedge.band(sweep, point)
+out["wedge"] = dict(
+    contact=[float(one.contact) for one in sliders], place=[one.place for one in sliders],
+    derivative=[one.derivative for one in sliders], ends=[band.lower.value, band.upper.value],
+    lower=np.asarray(band.lower.places, float).tolist(), low=band.lower.branch.amplitude.tolist() if band.lower.branch else [])
+
+
+# Laws of the caller: a damper with the square of the velocity, and a play with an internal state.
+def damper(call):
+    call.f[:] = 0.5 * call.v * abs(call.v)
+    call.df_dv[:, 0, 0] = abs(call.v[:, 0])
+
+
+def two(call):  # a cubic spring between two degrees of freedom
+    d = call.u[:, 0] - call.u[:, 1]
+    call.f[:, 0], call.f[:, 1] = d**3, -(d**3)
+    for i, k, sign in ((0, 0, 1), (0, 1, -1), (1, 0, -1), (1, 1, 1)):
+        call.df_du[:, i, k] = sign * 3 * d * d
+
+
+own = hbvib.Model(mass=np.eye(2), stiffness=np.array([[2.0, -1], [-1, 2]]), rayleigh=(0, 0.02))
+own.add_user_force([0], damper, uses_velocity=True, is_odd=True)
+own.add_user_force([0, 1], two, is_odd=True)
+own.add_force(0, 0.2)
+solved = own.forced_response((0.8, 1.2), harmonics=5)
+out["own"] = dict(omega=solved.omega.tolist(), amplitude=solved.amplitude.tolist(),
+                  work=solved.summary(solved.peaks().point[0], 0).work)
+
 
 def bits(value):
     """Numbers as the hexadecimal digits of their bits, which no reader rounds."""

@@ -193,4 +193,41 @@ close(
     1e-14,
 )
 
-finish(117)  # 8 more with scipy
+# Other packages: DLPack and the protocol of buffers, both ways and without a copy.
+
+
+class Tensor:
+    """A tensor that is known by DLPack alone."""
+
+    def __init__(self, array):
+        self.array, self.asked = array, 0
+
+    def __dlpack__(self, **request):
+        self.asked += 1
+        return self.array.__dlpack__(**request)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+tensor = Tensor(np.ascontiguousarray(STIFFNESS))
+model.set_matrix("stiffness", tensor)
+check("a tensor is taken by DLPack", tensor.asked == 1 and bits(solve(model)) == reference)
+if hasattr(np, "from_dlpack"):
+    wide = Tensor(np.zeros((2, 2), np.int64))
+    check("its memory is not copied", np.shares_memory(hbvib._convert._numbers("matrix", wide, np.float64), wide.array))
+model.set_matrix("stiffness", memoryview(np.ascontiguousarray(STIFFNESS)))
+check("a buffer is taken", bits(solve(model)) == reference)
+shown = solve(model)
+view = memoryview(shown.omega)
+check("a field is a buffer, read-only", view.readonly and view.format == "d" and np.shares_memory(np.asarray(view), shown.omega))
+del view
+if np.lib.NumpyVersion(np.__version__) >= "2.1.0":  # those before cannot tell that an array is read-only
+    given = np.from_dlpack(shown.omega)
+    check("a field goes out by DLPack without a copy", np.shares_memory(given, shown.omega) and not given.flags.writeable)
+    raises("and keeps the memory of its branch", BufferError, shown.free)
+    del given
+    shown.free()
+    check("until it is gone", shown.is_freed)
+
+finish(122)  # 8 more with scipy

@@ -78,12 +78,81 @@ table = branch.to_dataframe()
 check("a row a point", table.index.name == "point" and len(table) == len(branch))
 check("columns are fields", {"omega", "amplitude", "slip_fraction_0", "error_estimate"} <= set(table.columns), table.columns)
 check("values are the same", (table["amplitude"].to_numpy() == branch.amplitude).all())
-check("status goes along", table.attrs == dict(status="OK", message=""))
+check("status goes along", table.attrs["status"] == "OK" and table.attrs["message"] == "")
 check("a mode has its fields", {"damping_ratio", "modal_amplitude"} <= set(mode.to_dataframe().columns))
 dataset = branch.to_xarray()
 check("a dataset over points and contacts", dict(dataset.sizes) == dict(point=len(branch), contact=1))
 check("its coordinate is the frequency", (dataset["omega"].to_numpy() == branch.omega).all())
 check("that of a mode is the amplitude", "log10_amplitude" in mode.to_xarray().coords)
+
+# And back: a table that was not changed is the branch, in all that its file would hold.
+
+
+def same_branch(name, back, wanted):
+    check(f"{name}: the same fields, special points and energies", digest(back) == digest(wanted))
+    check(f"{name}: peaks, folds and what else lies beside the curve", all(
+        (a == b).all() for a, b in zip([*back.peaks(), *back.folds(), *back.at(0)], [*wanted.peaks(), *wanted.folds(), *wanted.at(0)])))
+    check(f"{name}: shown as it was", repr(back).replace("Saved", "") == repr(wanted), repr(back))
+
+
+stable = solve(ring_damper(), at=[1310.0], stability="wave", freedom=1)
+table = pickle.loads(pickle.dumps(stable.to_dataframe()))
+check("a field of contacts in two directions is in the table", {"d_amplitude_by_place_0_t1", "slip_fraction_0"} <= set(table.columns))
+back = hbvib.from_dataframe(table)
+check("a table gives every field to the bit", all(
+    back.field(name).tobytes() == values.tobytes() for name, values in hbvib._tables.fields(stable).items()))
+check("and peaks, energies, slip of stored points", (back.peaks().omega == stable.peaks().omega).all()
+      and back.energy(back.stored - 1) == stable.energy(stable.stored - 1) and back.plot() is not None)
+raises("harmonics are in no table", NotImplementedError, back.harmonics, 0, words="no harmonics")
+same_branch("a dataset with harmonics", hbvib.from_xarray(branch.to_xarray(harmonics=True)), branch)
+again = hbvib.from_xarray(hbvib.from_xarray(branch.to_xarray(harmonics=True)).to_xarray(harmonics=True))
+same_branch("there and back twice", again, branch)
+close("loops follow from its harmonics and model", again.loop(peak, 0).force, branch.loop(peak, 0).force, 1e-9)
+back = hbvib.from_dataframe(mode.to_dataframe())
+check("a mode comes back", back.is_mode and back.mode_info == mode.mode_info and back.mode_point(1) == mode.mode_point(1)
+      and repr(back).replace("Saved", "") == repr(mode), repr(back))
+with tempfile.TemporaryDirectory() as folder:
+    name = os.path.join(folder, "branch.nc")
+    branch.to_xarray(harmonics=True).to_netcdf(name, engine="scipy")
+    import xarray
+
+    with xarray.open_dataset(name, engine="scipy") as read:
+        same_branch("through NetCDF", hbvib.from_xarray(read.load()), branch)
+    name = os.path.join(folder, "branch.csv")
+    branch.to_dataframe().to_csv(name)
+    import pandas
+
+    plain = hbvib.from_dataframe(pandas.read_csv(name, index_col="point", engine="python"))
+check("through CSV fields have the same bits", (plain.amplitude == branch.amplitude).all() and (plain.slip_fraction == branch.slip_fraction).all())
+check("and are all that there is", "peak" not in repr(plain) and f"{len(branch)} points" in repr(plain), repr(plain))
+for call in (plain.peaks, plain.folds, plain.turns, plain.bifurcations):
+    raises("what a table lacks is refused in words", NotImplementedError, call, words="fields alone")
+raises("energies, too", NotImplementedError, plain.energy, 0, words="no energy")
+raises("and the size of the problem", NotImplementedError, lambda: plain.reduction, words="table")
+check("a figure is drawn without peaks", len(plain.plot().lines[0].get_xdata()) == len(branch))
+check("it goes to a table again", hbvib.from_dataframe(plain.to_dataframe()).omega.tobytes() == branch.omega.tobytes())
+part = hbvib.from_dataframe(branch.to_dataframe().iloc[3:])
+check("a part is no longer the branch", len(part) == len(branch) - 3, len(part))
+raises("so that no peak is told of another curve", NotImplementedError, part.peaks, words="fields alone")
+scaled = branch.to_dataframe()
+scaled["amplitude"] *= 1000
+raises("nor of other units", NotImplementedError, hbvib.from_dataframe(scaled).peaks, words="fields alone")
+raises("another table is refused by what it lacks", ValueError, hbvib.from_dataframe, table[["omega"]], words="no amplitude")
+
+# Units are shown, and convert nothing.
+named = ring_damper()
+named.units = hbvib.Units("m", "N", "s")
+shown = solve(named)
+check("numbers are those without units", (shown.amplitude == branch.amplitude[: len(shown)]).all() or len(shown) != len(branch))
+check("a model tells its units", repr(named).endswith("units m N s>") and "length m, force N, time s" in named._repr_html_(), repr(named))
+check("a branch tells them with its numbers", "to 1325.75 rad/s" in repr(shown) and " m at omega = " in repr(shown), repr(shown))
+check("axes are labelled", shown.plot().get_ylabel().endswith("/ m") and shown.plot_loop(0, 0).get_ylabel().endswith("/ N"))
+check("xarray has them", shown.to_xarray()["amplitude"].attrs["units"] == "m" and shown.to_xarray()["omega"].attrs["units"] == "rad/s")
+check("they stay in copies, files and tables", all(one.units == named.units for one in (
+    named.clone(), shown, pickle.loads(pickle.dumps(shown)), hbvib.from_dataframe(shown.to_dataframe()))))
+check("and without names nothing is shown", "units" not in ring_damper()._repr_html_() and hbvib.Units("mm").work == "")
+raises("a word is no list of units", TypeError, lambda: setattr(named, "units", "mm"), words="hbvib.Units")
+raises("nor are four", TypeError, lambda: setattr(named, "units", "abcd"), words="up to three")
 
 # In one line and as HTML.
 check("a branch tells range, peak and status", "omega 1300.62 to 1325.75, peak " in repr(branch) and ", OK>" in repr(branch))
@@ -130,4 +199,4 @@ for package, call in (
     del sys.modules[package]
     sys.modules.update(kept)
 
-finish(40)
+finish(85)

@@ -152,7 +152,7 @@ def give_back(shared):
     return True
 
 
-omega = branch.omega.tobytes()
+omega = solve(model, harmonics=9).omega.tobytes()
 with concurrent.futures.ThreadPoolExecutor(8) as pool:
     jobs = []
     for _ in range(100):

@@ -121,6 +121,51 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
     })
 }
 
+/// The same where degrees of freedom have units of their own, as rotations beside translations: where masses differ by far and their
+/// stiffness differs alike, each motion is measured in a unit, a power of two, in which its own mass is about 1. A mass that is
+/// small in its unit alone would be taken for none.
+///
+/// # Errors
+/// As [`generalised`].
+pub fn generalised_in_units(
+    k: &DMatrix<Complex64>,
+    m: &DMatrix<Complex64>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Pairs> {
+    let Some(units) = units(k, m)? else {
+        return generalised(k, m, interrupt);
+    };
+    let n = k.nrows();
+    let scaled = |a: &DMatrix<Complex64>| filled(n, n, |i, j| a[(i, j)] * units[i] * units[j]);
+    let mut pairs = generalised(&scaled(k)?, &scaled(m)?, interrupt)?;
+    for mut column in pairs.vectors.column_iter_mut() {
+        for (z, unit) in column.iter_mut().zip(&units) {
+            *z *= *unit;
+        }
+    }
+    Ok(pairs)
+}
+
+/// Powers of two near 1/√M_ii; `None` where the masses are about alike, where one is zero or negative, and where one is so small beside
+/// its own stiffness that it is none.
+fn units(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>) -> Result<Option<Vec<f64>>> {
+    let (mass, stiffness) = (m.diagonal(), k.diagonal());
+    let range = |numbers: &mut dyn Iterator<Item = f64>| {
+        numbers.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)))
+    };
+    let masses = range(&mut mass.iter().map(|z| z.re));
+    let shares = range(&mut mass.iter().zip(stiffness.iter()).map(|(m, k)| m.re / k.re));
+    let are_usable = masses.0 > 0.0 && shares.0 > MASSLESS * shares.1 && shares.1.is_finite();
+    if !are_usable || stiffness.iter().any(|k| k.re <= 0.0) || masses.0 > REGULAR * masses.1 {
+        return Ok(None);
+    }
+    let mut units = try_vec(mass.len(), 1.0, CONTEXT)?;
+    for (unit, mass) in units.iter_mut().zip(mass.iter()) {
+        *unit = (-0.5 * mass.re.log2()).round().exp2();
+    }
+    Ok(Some(units))
+}
+
 /// The pairs by M = L Lᴴ; `None` where M is not definite, or its smallest pivot is not above a share `regular` of the largest.
 ///
 /// # Errors
