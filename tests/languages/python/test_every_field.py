@@ -563,7 +563,7 @@ TABLE = {
         "kind": [(CHANGES, fitted({**BODIES, "value": abs(HEARD) + 0j}), 1), (refused("kind"), fitted(), 5)],
         "force_factor": [(CHANGES, fitted(), 1.1), (refused("force_factor"), fitted(), NAN)],
         "response": [(CHANGES, fitted(), np.frombuffer(OTHER_DOF, np.uint8))],
-        "mode": [(refused("mode 0"), fitted(MODAL, kinds=(3,)), 0), (refused("mode"), fitted(MODAL, kinds=(3,)), -1)],
+        "mode": [(refused("no point depends on it"), fitted(MODAL, kinds=(3,)), 0), (refused("mode"), fitted(MODAL, kinds=(3,)), -1)],
         "omega_start": [(refused("no solution"), fitted({**NEAR, "omega_start": 0.5, "omega_stop": 1.2}), 1.1), (refused("range"), fitted(), 1.0)],
         "omega_stop": [(refused("range"), fitted({**NEAR, "omega_start": 0.5, "omega_stop": 1.2}), 0.4)],
         "n": [(CHANGES, fitted(), 3), (refused("n = 0"), fitted(), 0), (refused("n"), fitted(), -1)],
