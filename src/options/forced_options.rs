@@ -5,12 +5,15 @@ use crate::options::response::Response;
 use crate::options::solver_options::{MAX_HARMONIC, SolverOptions};
 use num_complex::Complex64;
 
+/// Width of a range, relative, that is rounding of its ends.
+const NARROWEST_RANGE: f64 = 1e-12;
+
 /// Options of a forced response over a range of frequency.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ForcedOptions<'a> {
     /// First angular frequency, rad per time unit, above zero.
     pub omega_start: f64,
-    /// Last angular frequency; below the first for a downward sweep, equal to it for one point.
+    /// Last angular frequency; below the first for a downward sweep, equal to it for one point. It differs by more than 1e-12 of itself.
     pub omega_stop: f64,
     /// Angular frequencies within the range at which every solution on the branch is stored.
     pub at: &'a [f64],
@@ -61,6 +64,16 @@ impl ForcedOptions<'_> {
             if value <= 0.0 {
                 return fail!(Argument, "{name} = {value}, needs an angular frequency > 0");
             }
+        }
+        // A curve of a few roundings has no direction.
+        let width = (self.omega_stop - self.omega_start).abs();
+        if width > 0.0 && width <= NARROWEST_RANGE * self.omega_stop {
+            return fail!(
+                Argument,
+                "omega_stop = {:?} is omega_start = {:?} but for rounding, needs to be equal to it, for one frequency, or farther away",
+                self.omega_stop,
+                self.omega_start
+            );
         }
         if self.branches > 3 {
             return fail!(Argument, "branches = {}, needs 0, 1, 2 or 3", self.branches);

@@ -132,6 +132,7 @@ fn every_bad_range_is_refused_by_name() {
     let cases = [
         (range(0.0, OMEGA), Status::Argument, "omega_start"),
         (range(OMEGA, -1.0), Status::Argument, "omega_stop"),
+        (range(OMEGA, OMEGA * (1.0 + 1e-14)), Status::Argument, "omega_stop"),
         (range(f64::NAN, OMEGA), Status::NotFinite, "omega_start"),
         (range(OMEGA, f64::INFINITY), Status::NotFinite, "omega_stop"),
         (
