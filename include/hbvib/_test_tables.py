@@ -29,10 +29,10 @@ def read_columns(path: Any) -> dict[str, Union[FloatArray, ComplexArray]]:
     lower = str(name).lower()
     found: dict[str, Any] = {}
     if lower.endswith(".mat"):
-        import scipy.io
+        from scipy.io import loadmat  # type: ignore[import-untyped, unused-ignore]
 
         try:
-            found = scipy.io.loadmat(name)
+            found = loadmat(name)
         except NotImplementedError:
             raise ValueError(f"{name}: a file of save -v7.3; save it with -v7") from None
     elif lower.endswith(".npz"):
