@@ -110,20 +110,7 @@ impl Data {
             _ => (None, 1.0),
         };
         found.second_sigma = of_second.unwrap_or_default().into_iter().map(|s| scale * s).collect();
-        table
-            .used(&[
-                "hz",
-                "re",
-                "im",
-                "sigma",
-                "amplitude",
-                "damping",
-                "sigma_hz",
-                "sigma_damping",
-                "log10_amplitude",
-                "coherence",
-            ])
-            .map_err(said)?;
+        table.used().map_err(said)?;
         Ok(found)
     }
 

@@ -7,6 +7,20 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::path::Path;
 
+/// Names that columns may have.
+const NAMES: [&str; 10] = [
+    "hz",
+    "re",
+    "im",
+    "sigma",
+    "amplitude",
+    "damping",
+    "sigma_hz",
+    "sigma_damping",
+    "log10_amplitude",
+    "coherence",
+];
+
 /// Columns with their names.
 #[derive(Default)]
 pub struct Table {
@@ -47,9 +61,9 @@ impl Table {
     ///
     /// # Errors
     /// A sentence with the column.
-    pub fn used(&self, known: &[&str]) -> Outcome<()> {
-        match self.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {
-            Some((name, _)) => Err(format!("has a column {name}, needs some of {}", known.join(", "))),
+    pub fn used(&self) -> Outcome<()> {
+        match self.columns.iter().find(|(name, _)| !NAMES.contains(&name.as_str())) {
+            Some((name, _)) => Err(format!("has a column {name}, needs some of {}", NAMES.join(", "))),
             None => Ok(()),
         }
     }
@@ -88,18 +102,6 @@ fn csv(path: &Path) -> Outcome<Table> {
 /// Vectors of a MATLAB or NumPy file that have the names of columns; a complex `response` is re and im. Others are left out: such files
 /// hold what else the test has.
 fn arrays(path: &Path) -> Outcome<Table> {
-    const NAMES: [&str; 10] = [
-        "hz",
-        "re",
-        "im",
-        "sigma",
-        "amplitude",
-        "damping",
-        "sigma_hz",
-        "sigma_damping",
-        "log10_amplitude",
-        "coherence",
-    ];
     let mut table = Table::default();
     for array in read_number_arrays(path).map_err(|e| e.to_string())? {
         let is_vector = array.shape.iter().filter(|n| **n != 1).count() <= 1;
