@@ -39,11 +39,18 @@ pub(super) struct Certificate {
 }
 
 impl Certificate {
-    /// The larger errors of two.
+    /// The larger errors of two; one that is not a number is larger than all.
     pub fn max(self, other: Self) -> Self {
+        let larger = |a: f64, b: f64| {
+            if a.is_nan() || b.is_nan() {
+                f64::INFINITY
+            } else {
+                a.max(b)
+            }
+        };
         Self {
-            basis: self.basis.max(other.basis),
-            total: self.total.max(other.total),
+            basis: larger(self.basis, other.basis),
+            total: larger(self.total, other.total),
         }
     }
 

@@ -369,7 +369,7 @@ impl Pencil {
             d
         };
         let Some(weight) = &self.weight else {
-            let pairs = eigen::generalised_in_units(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
+            let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
             return self.modes(&pairs);
         };
         // At a speed tied to the frequency the inertia may be negative: such a motion has no frequency. The pencil is

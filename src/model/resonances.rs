@@ -275,7 +275,7 @@ fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt
         a.add_to_dense(Complex64::ONE, d.as_mut_slice());
         d
     };
-    eigen::generalised_in_units(&dense(k), &dense(m), interrupt).map(Some)
+    eigen::generalised(&dense(k), &dense(m), interrupt).map(Some)
 }
 
 /// The damping from which half widths follow.

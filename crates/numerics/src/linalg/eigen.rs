@@ -36,13 +36,32 @@ const MASSLESS: f64 = 1e-12;
 
 /// All finite eigenpairs of Hermitian K and positive semidefinite Hermitian M.
 ///
-/// M is diagonalised first, M = U Λ Uᴴ; massless directions are condensed statically onto the
-/// others (their rows carry K only), and the rest is scaled by Λ^(-1/2).
+/// Where masses differ by far and their stiffness differs alike, as rotations beside translations, each motion is measured in a unit,
+/// a power of two, in which its own mass is about 1: a mass that is small in its unit alone would be taken for none.
 ///
 /// # Errors
 /// `NotPositiveDefinite` when M has a negative eigenvalue, `Singular` when K cannot be condensed
 /// onto the directions with mass, `NoConvergence` from the eigensolver; `StoppedByCaller`.
 pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    let Some(units) = units(k, m)? else {
+        return in_one_unit(k, m, interrupt);
+    };
+    let n = k.nrows();
+    let scaled = |a: &DMatrix<Complex64>| filled(n, n, |i, j| a[(i, j)] * units[i] * units[j]);
+    let mut pairs = in_one_unit(&scaled(k)?, &scaled(m)?, interrupt)?;
+    for mut column in pairs.vectors.column_iter_mut() {
+        for (z, unit) in column.iter_mut().zip(&units) {
+            *z *= *unit;
+        }
+    }
+    Ok(pairs)
+}
+
+/// The pairs of matrices whose motions have masses that may be compared.
+///
+/// M is diagonalised first, M = U Λ Uᴴ; massless directions are condensed statically onto the
+/// others (their rows carry K only), and the rest is scaled by Λ^(-1/2).
+fn in_one_unit(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     let n = k.nrows();
     if n > SMALL_UP_TO
         && let Some(pairs) = with_definite_mass(k, m, REGULAR, interrupt)?
@@ -119,31 +138,6 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
         values,
         vectors: product(&u, &stacked, interrupt)?,
     })
-}
-
-/// The same where degrees of freedom have units of their own, as rotations beside translations: where masses differ by far and their
-/// stiffness differs alike, each motion is measured in a unit, a power of two, in which its own mass is about 1. A mass that is
-/// small in its unit alone would be taken for none.
-///
-/// # Errors
-/// As [`generalised`].
-pub fn generalised_in_units(
-    k: &DMatrix<Complex64>,
-    m: &DMatrix<Complex64>,
-    interrupt: &Interrupt<'_>,
-) -> Result<Pairs> {
-    let Some(units) = units(k, m)? else {
-        return generalised(k, m, interrupt);
-    };
-    let n = k.nrows();
-    let scaled = |a: &DMatrix<Complex64>| filled(n, n, |i, j| a[(i, j)] * units[i] * units[j]);
-    let mut pairs = generalised(&scaled(k)?, &scaled(m)?, interrupt)?;
-    for mut column in pairs.vectors.column_iter_mut() {
-        for (z, unit) in column.iter_mut().zip(&units) {
-            *z *= *unit;
-        }
-    }
-    Ok(pairs)
 }
 
 /// Powers of two near 1/√M_ii; `None` where the masses are about alike, where one is zero or negative, and where one is so small beside

@@ -148,7 +148,7 @@ fn all_of(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<P
         a.add_to_dense(Complex64::ONE, d.as_mut_slice());
         d
     };
-    let mut pairs = eigen::generalised_in_units(&dense(k), &dense(m), interrupt)?;
+    let mut pairs = eigen::generalised(&dense(k), &dense(m), interrupt)?;
     pairs.values.truncate(count);
     let kept = pairs.values.len();
     pairs.vectors = pairs.vectors.columns(0, kept).into_owned();
