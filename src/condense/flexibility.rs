@@ -47,10 +47,12 @@ impl Table {
 
 /// Which derivatives of a table are made.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Slopes {
+pub enum Slopes {
+    /// None of them.
     None,
     /// Those of the response degree of freedom: the others are as many as contacts, for each contact.
     OfResponse,
+    /// All of them.
     All,
 }
 

@@ -24,6 +24,9 @@ const CONTEXT: &str = "the contact flexibility";
 /// factorisation, and they take three quarters of the work where contacts are many.
 const ALL_SLOPES_UP_TO: usize = 64;
 
+/// The same for sums over modes, whose slopes along one motion take products with vectors alone.
+const ALL_MODAL_SLOPES_UP_TO: usize = 8;
+
 /// Deviation of a sum from a refined solution over the error of a factorisation.
 const BEYOND_FACTORS: f64 = 10.0;
 
@@ -33,7 +36,8 @@ pub struct FrequencyCache {
     current: Vec<Table>,
     /// Per harmonic the table from modes, where it is used.
     modal: Vec<Option<ModalTable>>,
-    modal_work: ModalWork,
+    /// Work space of all of them; where slopes along a motion follow, of each.
+    modal_work: Vec<ModalWork>,
     /// The same tables of all harmonics at once, where each is from modes of a single contact.
     lanes: Option<SingleContactLanes>,
     /// Whether the tables from modes have slopes.
@@ -46,8 +50,9 @@ pub struct FrequencyCache {
     is_stiff: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
     constant: Vec<bool>,
-    /// Per harmonic, whether its table has the slopes of the response degree of freedom only.
+    /// Per harmonic, whether its table has the slopes of the response degree of freedom only, and whether it is from modes.
     lacks_slopes: Vec<bool>,
+    is_modal: Vec<bool>,
     /// Frequency of the current tables, and how they were made.
     tabulated: Option<(f64, Way)>,
     way: Way,
@@ -78,14 +83,18 @@ impl FrequencyCache {
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
         let (mut is_quicker, mut is_stiff) = (false, false);
         let mut told = None;
-        let (mut waves, mut modal_work) = (Vec::new(), ModalWork::default());
         let count = condensed.blocks().len();
+        let mut waves = Vec::new();
+        let mut modal_work = Vec::new();
+        for _ in 0..count.max(1) {
+            try_push(&mut modal_work, ModalWork::default(), CONTEXT)?;
+        }
         for i in 0..count {
             interrupt.part(Phase::Condensation, i, count)?;
             try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
             try_push(&mut constant, false, CONTEXT)?;
             let from_modes = if sweep {
-                let known = (&mut waves, &mut modal_work, &mut workspace);
+                let known = (&mut waves, &mut modal_work[0], &mut workspace);
                 of_wave((condensed, i, response), range, known, interrupt)?
             } else {
                 None
@@ -115,6 +124,7 @@ impl FrequencyCache {
             told: told.unwrap_or_default(),
             is_stiff,
             lacks_slopes: try_vec(constant.len(), false, CONTEXT)?,
+            is_modal: try_vec(constant.len(), false, CONTEXT)?,
             constant,
             tabulated: None,
             // Without a sweep no slope is used.
@@ -189,6 +199,10 @@ impl FrequencyCache {
         let Some((omega, _)) = self.tabulated.filter(|_| self.lacks_slopes[i]) else {
             return Ok(());
         };
+        if let Some(Some(modal)) = self.modal.get(i).filter(|_| self.is_modal[i]) {
+            modal.slope_along(omega, &mut self.modal_work[i], contact_force, change);
+            return Ok(());
+        }
         self.workspace
             .slope_along(condensed, (i, omega), contact_force, change, interrupt)
     }
@@ -220,7 +234,13 @@ impl FrequencyCache {
             self.tabulated = Some((omega, self.way));
             return Ok(());
         }
-        let (workspace, work) = (&mut self.workspace, &mut self.modal_work);
+        let workspace = &mut self.workspace;
+        let may_lack = !condensed.has_exchanges();
+        let of_modes = match self.modal_slopes {
+            false => Slopes::None,
+            true if may_lack && condensed.coordinates() > ALL_MODAL_SLOPES_UP_TO => Slopes::OfResponse,
+            true => Slopes::All,
+        };
         // A large structure takes its sums where a small one is factorised: they have as many digits, and cost less.
         let exactly =
             self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff;
@@ -230,9 +250,11 @@ impl FrequencyCache {
             }
             let block = &condensed.blocks()[i];
             if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
-                && modal.evaluate((omega, self.modal_slopes), work, table, interrupt)?
+                && let keeps = of_modes == Slopes::OfResponse
+                && let work = &mut self.modal_work[if keeps { i } else { 0 }]
+                && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
-                self.lacks_slopes[i] = false;
+                (self.lacks_slopes[i], self.is_modal[i]) = (keeps, true);
                 condensed.exchange(i, table);
                 continue;
             }
@@ -241,10 +263,10 @@ impl FrequencyCache {
             let slopes = self.way != Way::Pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
             let slopes = match slopes {
                 false => Slopes::None,
-                true if condensed.coordinates() > ALL_SLOPES_UP_TO && !condensed.has_exchanges() => Slopes::OfResponse,
+                true if may_lack && condensed.coordinates() > ALL_SLOPES_UP_TO => Slopes::OfResponse,
                 true => Slopes::All,
             };
-            self.lacks_slopes[i] = slopes == Slopes::OfResponse;
+            (self.lacks_slopes[i], self.is_modal[i]) = (slopes == Slopes::OfResponse, false);
             let found = workspace.tabulate(condensed, (i, omega), slopes, interrupt)?;
             table.value.copy_from_slice(&found.value);
             table.slope.copy_from_slice(&found.slope);
@@ -295,7 +317,8 @@ fn agreement(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<f64>> {
     let outputs = condensed.coordinates() + 1;
-    if !modal.evaluate((omega, *checks_slope), work, table, interrupt)? {
+    let slopes = if *checks_slope { Slopes::All } else { Slopes::None };
+    if !modal.evaluate((omega, slopes), work, table, interrupt)? {
         return Ok(Some(0.0));
     }
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;

@@ -12,7 +12,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products;
 use crate::linalg::lu::Lu;
@@ -93,14 +93,34 @@ impl Coefficients {
 pub struct LowRank {
     coordinates: usize,
     lu: Lu<Complex64>,
-    /// X and ∂X, e X and ∂(e X), one column for each contact and for the excitation.
+    /// X and e X, one column for each contact and for the excitation.
     inner: Vec<Complex64>,
-    d_inner: Vec<Complex64>,
     force: Vec<Complex64>,
-    d_force: Vec<Complex64>,
+    /// Made when all slopes are first wanted.
+    slopes: Option<Box<AllSlopes>>,
+}
+
+/// Memory for the slopes of all rows.
+struct AllSlopes {
+    /// ∂X and ∂(e X)
+    inner: Vec<Complex64>,
+    force: Vec<Complex64>,
     /// e X and ∂e X at all rows of T′, of which that of the response has no force, and products with them.
     forces: [Vec<Complex64>; 2],
     products: [Vec<Complex64>; 2],
+}
+
+impl AllSlopes {
+    fn new(order: usize, columns: usize) -> Result<Self> {
+        let narrow = || try_vec(order * columns, Complex64::ZERO, CONTEXT);
+        let wide = || try_vec((order + 1) * columns, Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            inner: narrow()?,
+            force: narrow()?,
+            forces: [wide()?, wide()?],
+            products: [wide()?, wide()?],
+        })
+    }
 }
 
 impl LowRank {
@@ -110,16 +130,12 @@ impl LowRank {
     /// `OutOfMemory`.
     pub fn new(coordinates: usize, order: usize) -> Result<Self> {
         let columns = || try_vec(order * (coordinates + 1), Complex64::ZERO, CONTEXT);
-        let wide = || try_vec((order + 1) * (coordinates + 1), Complex64::ZERO, CONTEXT);
         Ok(Self {
             coordinates,
             lu: Lu::new(order, coordinates + 1)?,
             inner: columns()?,
-            d_inner: columns()?,
             force: columns()?,
-            d_force: columns()?,
-            forces: [wide()?, wide()?],
-            products: [wide()?, wide()?],
+            slopes: None,
         })
     }
 
@@ -133,9 +149,19 @@ impl LowRank {
         &self.force
     }
 
+    /// X, column after column, after [`Self::add`].
+    pub fn inner(&self) -> &[Complex64] {
+        &self.inner
+    }
+
     /// Replaces motions z of the rows of B by (1 − G′ e)⁻¹ z, after [`Self::add`].
     pub fn solve_rows(&self, z: &mut [Complex64]) {
         self.lu.solve(z);
+    }
+
+    /// Replaces a row z of B by z (1 − G′ e)⁻¹, after [`Self::add`].
+    pub fn solve_row(&self, z: &mut [Complex64]) {
+        self.lu.solve_transposed(z);
     }
 
     /// Adds the term to a table that holds T′, and to its slope if `slopes`.
@@ -157,15 +183,20 @@ impl LowRank {
         self.copy_rows(&self.inner, &mut table.value);
         self.add_response(of, (plain.value, plain.rows), &self.force, &mut table.value);
         if slopes {
-            self.differentiate(of, plain, at, interrupt)?;
-            self.copy_rows(&self.d_inner, &mut table.slope);
+            let mut memory = match self.slopes.take() {
+                Some(made) => made,
+                None => boxed(|| AllSlopes::new(self.order(), self.coordinates + 1))?,
+            };
+            self.differentiate(of, plain, at, &mut memory, interrupt)?;
+            self.copy_rows(&memory.inner, &mut table.slope);
             // ∂T′_B e X of the response is made with the others.
             let outputs = self.coordinates + 1;
-            let made = self.products[0].chunks_exact(plain.rows);
+            let made = memory.products[0].chunks_exact(plain.rows);
             for (to, product) in table.slope.chunks_exact_mut(outputs).zip(made) {
                 to[self.coordinates] += product[self.coordinates];
             }
-            self.add_response(of, (plain.value, plain.rows), &self.d_force, &mut table.slope);
+            self.add_response(of, (plain.value, plain.rows), &memory.force, &mut table.slope);
+            self.slopes = Some(memory);
         }
         Ok(())
     }
@@ -201,10 +232,11 @@ impl LowRank {
         of: &Coefficients,
         plain: &Plain<'_>,
         at: Frequency,
+        memory: &mut AllSlopes,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
-        let [forces, d_forces] = &mut self.forces;
+        let [forces, d_forces] = &mut memory.forces;
         let columns = self.force.chunks_exact(order).zip(self.inner.chunks_exact(order));
         let wide = forces.chunks_exact_mut(rows).zip(d_forces.chunks_exact_mut(rows));
         for ((force, x), (forces, d_forces)) in columns.zip(wide) {
@@ -213,24 +245,24 @@ impl LowRank {
                 d_forces[of.row_of(p)] = of.d_entry(p, at.d_c) * x;
             }
         }
-        let [by_slope, by_value] = &mut self.products;
+        let [by_slope, by_value] = &mut memory.products;
         for (table, forces, out) in [(plain.slope, &*forces, by_slope), (plain.value, &*d_forces, by_value)] {
             interrupt.check_before((2 * rows * forces.len()) as u64)?;
             complex_products::multiply(table, forces, out, rows);
         }
-        let [by_slope, by_value] = &self.products;
-        for (k, sums) in self.d_inner.chunks_exact_mut(order).enumerate() {
+        let [by_slope, by_value] = &memory.products;
+        for (k, sums) in memory.inner.chunks_exact_mut(order).enumerate() {
             for (p, sum) in sums.iter_mut().enumerate() {
                 let at = k * rows + of.row_of(p);
                 *sum = plain.slope[at] + by_slope[at] + by_value[at];
             }
         }
-        self.lu.solve_columns(&mut self.d_inner, false, interrupt)?;
+        self.lu.solve_columns(&mut memory.inner, false, interrupt)?;
         for k in 0..=self.coordinates {
             for p in 0..order {
                 let x = self.inner[k * order + p];
-                let d_x = self.d_inner[k * order + p];
-                self.d_force[k * order + p] = of.entry(p, at.c) * d_x + of.d_entry(p, at.d_c) * x;
+                let d_x = memory.inner[k * order + p];
+                memory.force[k * order + p] = of.entry(p, at.c) * d_x + of.d_entry(p, at.d_c) * x;
             }
         }
         Ok(())

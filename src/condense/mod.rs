@@ -16,6 +16,7 @@ mod krylov_wave;
 mod low_rank;
 pub(crate) mod memory_limit;
 pub mod modal_rows;
+mod modal_slopes;
 pub mod modal_table;
 pub mod mode_flexibility;
 mod mode_sums;

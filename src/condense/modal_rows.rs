@@ -217,7 +217,8 @@ impl ModalRows {
         Ok(found)
     }
 
-    fn adjoint(&self) -> &[Complex64] {
+    /// The rows of the adjoint shapes, mode after mode.
+    pub(super) fn adjoint(&self) -> &[Complex64] {
         if self.adjoint.is_empty() {
             &self.left
         } else {

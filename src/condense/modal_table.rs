@@ -4,7 +4,7 @@
 //! T′ = L d⁻¹ Rᴴ, the excitation in place of the response among the inputs, and the low-rank term of `condense::low_rank`.
 
 use crate::condense::Condensed;
-use crate::condense::flexibility::Table;
+use crate::condense::flexibility::{Slopes, Table};
 use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
 use crate::condense::modal_rows::{ModalRows, terms_within};
 use crate::condense::single_contact::{Denominators, SingleContact};
@@ -23,11 +23,11 @@ const EXACT_SERIES: usize = 8;
 
 /// A harmonic with the modes of its wave.
 pub struct ModalTable {
-    rows: Arc<ModalRows>,
+    pub(super) rows: Arc<ModalRows>,
     number: f64,
     /// Terms of the series over stiff modes; none where all are summed.
     terms: usize,
-    coefficients: Coefficients,
+    pub(super) coefficients: Coefficients,
     /// The excitation seen by the adjoint shapes, and the one that grows with ω² over ω²; none where there is none.
     force: Vec<Complex64>,
     unbalance: Vec<Complex64>,
@@ -48,18 +48,23 @@ pub struct SinglePart<'a> {
 
 /// Work space of the tables of one structure, for one after the other; made when the first needs it.
 #[derive(Default)]
-pub struct ModalWork(Option<Box<Work>>);
+pub struct ModalWork(pub(super) Option<Box<Work>>);
 
-struct Work {
+pub(super) struct Work {
     /// 1/d, and −∂d/d².
-    inverse: Vec<Complex64>,
+    pub inverse: Vec<Complex64>,
     slopes: Vec<Complex64>,
     /// Rᴴ times one of them.
     weighted: Vec<Complex64>,
-    /// T′ and ∂T′, rows × rows.
-    plain: Vec<Complex64>,
+    /// T′, rows × rows.
+    pub plain: Vec<Complex64>,
+    /// ∂T′, made when all slopes are first wanted.
     d_plain: Vec<Complex64>,
-    low_rank: LowRank,
+    pub low_rank: LowRank,
+    /// Numbers of all modes, of all rows, and of the rows of B.
+    pub of_modes: [Vec<Complex64>; 2],
+    pub of_rows: [Vec<Complex64>; 2],
+    pub of_springs: Vec<Complex64>,
 }
 
 impl ModalWork {
@@ -81,8 +86,11 @@ impl Work {
             slopes: zeros(n)?,
             weighted: zeros(rows * (n + 1) + n)?,
             plain: zeros(rows * rows)?,
-            d_plain: zeros(rows * rows)?,
+            d_plain: Vec::new(),
             low_rank: LowRank::new(table.rows.coordinates(), table.coefficients.len())?,
+            of_modes: [zeros(n)?, zeros(n)?],
+            of_rows: [zeros(rows)?, zeros(rows)?],
+            of_springs: zeros(table.coefficients.len())?,
         })
     }
 
@@ -143,19 +151,19 @@ impl ModalTable {
         Arc::clone(&self.rows)
     }
 
-    /// Evaluates H at `omega`, and ∂H/∂ω if `slopes`; `false` so near a resonance of the structure with stuck contacts that
+    /// Evaluates H at `omega`, and of ∂H/∂ω what `slopes` says; `false` so near a resonance of the structure with stuck contacts that
     /// digits would be lost.
     ///
     /// # Errors
     /// `Singular` at an undamped resonance; `StoppedByCaller`.
     pub fn evaluate(
         &self,
-        (omega, slopes): (f64, bool),
+        (omega, slopes): (f64, Slopes),
         work: &mut ModalWork,
         table: &mut Table,
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
-        let at = self.rows.source().denominator(self.number, omega);
+        let at = self.denominator(omega);
         let nu = self.number * omega;
         let near = if self.rows.coordinates() == 0 {
             NEAR_ALONE
@@ -184,8 +192,11 @@ impl ModalTable {
                 .invert((at, nu, near), &mut work.inverse, &mut work.slopes);
             if is_clear {
                 interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
-                self.sum(work, (at, omega), slopes)?;
-                self.complete(work, (frequency, slopes), table, interrupt)?;
+                self.sum(work, (at, omega), slopes == Slopes::All)?;
+                self.complete(work, (frequency, slopes == Slopes::All), table, interrupt)?;
+                if slopes == Slopes::OfResponse {
+                    self.fill_slopes_of_response(work, (at, omega), table);
+                }
             }
             is_clear
         };
@@ -195,8 +206,15 @@ impl ModalTable {
         Ok(is_clear)
     }
 
+    pub(super) fn denominator(&self, omega: f64) -> Denominator {
+        self.rows.source().denominator(self.number, omega)
+    }
+
     /// T′, and ∂T′ if `slopes`.
     fn sum(&self, work: &mut Work, (at, omega): (Denominator, f64), slopes: bool) -> Result<()> {
+        if slopes && work.d_plain.is_empty() {
+            work.d_plain = try_vec(work.plain.len(), Complex64::ZERO, CONTEXT)?;
+        }
         let slope = slopes.then_some(&mut work.d_plain[..]);
         let soft = self.rows.add_stiff(at, self.terms, &mut work.plain, slope)?;
         self.rows.add(soft, &work.inverse, &mut work.weighted, &mut work.plain);
@@ -207,22 +225,28 @@ impl ModalTable {
         Ok(())
     }
 
+    /// The excitation seen by the k-th adjoint shape, and its derivative by ω.
+    pub(super) fn excitation(&self, k: usize, omega: f64) -> [Complex64; 2] {
+        let part = |of: &[Complex64]| of.get(k).copied().unwrap_or_default();
+        let unbalance = part(&self.unbalance);
+        [part(&self.force) + unbalance * (omega * omega), 2.0 * omega * unbalance]
+    }
+
     /// The column of the excitation, from all modes.
     fn excite(&self, work: &mut Work, omega: f64, slopes: bool) {
         let (rows, from) = (self.rows.count(), self.rows.coordinates() * self.rows.count());
         let value = &mut work.plain[from..from + rows];
-        let slope = &mut work.d_plain[from..from + rows];
         value.fill(Complex64::ZERO);
-        slope.fill(Complex64::ZERO);
+        if slopes {
+            work.d_plain[from..from + rows].fill(Complex64::ZERO);
+        }
         if self.force.is_empty() && self.unbalance.is_empty() {
             return;
         }
         let n = self.rows.terms();
         let (weights, memory) = work.weighted.split_at_mut(n);
-        let part = |of: &[Complex64], k: usize| of.get(k).copied().unwrap_or_default();
-        let force = |k: usize| part(&self.force, k) + part(&self.unbalance, k) * (omega * omega);
         for (k, (weight, inverse)) in weights.iter_mut().zip(&work.inverse).enumerate() {
-            *weight = force(k) * inverse;
+            *weight = self.excitation(k, omega)[0] * inverse;
         }
         complex_columns::multiply(self.rows.left(), rows, weights, value, &mut memory[..rows]);
         if !slopes {
@@ -230,8 +254,10 @@ impl ModalTable {
         }
         let factors = work.inverse.iter().zip(&work.slopes);
         for (k, (weight, (inverse, d_inverse))) in weights.iter_mut().zip(factors).enumerate() {
-            *weight = force(k) * d_inverse + 2.0 * omega * part(&self.unbalance, k) * inverse;
+            let [force, rate] = self.excitation(k, omega);
+            *weight = force * d_inverse + rate * inverse;
         }
+        let slope = &mut work.d_plain[from..from + rows];
         complex_columns::multiply(self.rows.left(), rows, weights, slope, &mut memory[..rows]);
     }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::condense::flexibility::Workspace;
+use crate::condense::modal_slopes::tests::assert_slopes;
 use crate::condense::test_chains::{DAMPED, chain, real_wheel, structure};
 use crate::condense::wave_cache::{SharedWaves, WaveCache};
 use crate::condense::{Condensed, Reference};
@@ -43,7 +44,7 @@ fn tables_from_modes_are_those_by_factorisation() {
                 let mut work = ModalWork::default();
                 let mut table = Table::new(condensed.coordinates()).unwrap();
                 for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
-                    let found = by_modes.evaluate((omega, true), &mut work, &mut table, &Interrupt::none());
+                    let found = by_modes.evaluate((omega, Slopes::All), &mut work, &mut table, &Interrupt::none());
                     assert!(found.unwrap(), "{sectors} sectors, {damping:?}, block {i} at {omega}");
                     let exact = direct.evaluate(&condensed, i, omega, true, &Interrupt::none()).unwrap();
                     let size = |z: &[Complex64]| z.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
@@ -58,6 +59,7 @@ fn tables_from_modes_are_those_by_factorisation() {
                             size(&off) / size(exact)
                         );
                     }
+                    assert_slopes((&by_modes, omega), exact, 1e-10);
                 }
             }
             // On eight sectors harmonics travel either way, with conjugate modes.
@@ -88,7 +90,7 @@ fn shared_rows_of_waves_with_the_same_real_matrices_are_their_own() {
             let work = &mut ModalWork::default();
             assert!(
                 by_modes
-                    .evaluate((0.9, false), work, &mut table, &Interrupt::none())
+                    .evaluate((0.9, Slopes::None), work, &mut table, &Interrupt::none())
                     .unwrap()
             );
             let exact = direct.evaluate(&condensed, i, 0.9, false, &Interrupt::none()).unwrap();
@@ -120,7 +122,7 @@ fn the_table_of_a_single_contact_is_that_by_factorisation() {
                 for omega in [0.05, 0.4, 1.3, 9.0] {
                     assert!(
                         by_modes
-                            .evaluate((omega, true), &mut work, &mut table, &Interrupt::none())
+                            .evaluate((omega, Slopes::All), &mut work, &mut table, &Interrupt::none())
                             .unwrap()
                     );
                     let exact = direct.evaluate(&condensed, i, omega, true, &Interrupt::none()).unwrap();
@@ -149,7 +151,12 @@ fn near_a_resonance_of_the_stuck_structure_nothing_is_told_that_lost_its_digits(
     let mut work = ModalWork::default();
     let mut table = Table::new(condensed.coordinates()).unwrap();
     for (factor, clear) in [(1.0, false), (1.0 + 1e-7, false), (1.01, true)] {
-        let found = by_modes.evaluate((factor * resonance, true), &mut work, &mut table, &Interrupt::none());
+        let found = by_modes.evaluate(
+            (factor * resonance, Slopes::All),
+            &mut work,
+            &mut table,
+            &Interrupt::none(),
+        );
         assert_eq!(found.unwrap(), clear, "{factor}");
     }
 }

@@ -410,7 +410,12 @@ impl ModeSums {
 }
 
 /// out = Eᴴ f for the rows E, mode after mode; `turned` is memory for −i f.
-fn multiply_adjoint(left: &[Complex64], force: &[Complex64], turned: &mut [Complex64], out: &mut [Complex64]) {
+pub(super) fn multiply_adjoint(
+    left: &[Complex64],
+    force: &[Complex64],
+    turned: &mut [Complex64],
+    out: &mut [Complex64],
+) {
     for (to, f) in turned.iter_mut().zip(force) {
         *to = Complex64::new(f.im, -f.re);
     }

@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::condense::Reference;
-use crate::condense::flexibility::{Table, Workspace};
+use crate::condense::flexibility::{Slopes, Table, Workspace};
 use crate::condense::modal_rows::ModalRows;
+use crate::condense::modal_slopes::tests::assert_slopes;
 use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::sum_terms::Source;
 use crate::condense::test_chains::{N, chain};
@@ -72,7 +73,7 @@ fn check(model: &Model, reference: Reference) -> usize {
         for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
             assert!(
                 by_poles
-                    .evaluate((omega, true), &mut work, &mut table, &interrupt)
+                    .evaluate((omega, Slopes::All), &mut work, &mut table, &interrupt)
                     .unwrap()
             );
             let exact = direct.evaluate(&condensed, i, omega, true, &interrupt).unwrap();
@@ -80,6 +81,7 @@ fn check(model: &Model, reference: Reference) -> usize {
                 let off = size(found.iter().zip(exact).map(|(a, b)| a - b)) / size(exact.iter().copied());
                 assert!(off <= 1e-11, "block {i} at {omega}: {off:e}");
             }
+            assert_slopes((&by_poles, omega), exact, 1e-11);
             count += 1;
         }
     }
