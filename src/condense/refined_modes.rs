@@ -31,6 +31,9 @@ const LARGEST_STEP: f64 = 0.1;
 const STEP_AGAIN: f64 = 1e-7;
 const MOST_STEPS: usize = 4;
 
+/// Share of entries of a matrix, inverse, above which products by blocks are quicker than by its entries.
+const MANY_ENTRIES: usize = 4;
+
 /// μ, rising, and φ of a Hermitian pencil, `mass` on the pattern of K.
 ///
 /// # Errors
@@ -88,10 +91,10 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
     let (mut strained, mut moved) = (zeros()?, zeros()?);
     let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
     let (sizes, mut size) = (moduli(&stiffness.values)?, try_vec(n, 0.0, CONTEXT)?);
-    let columns = strained.chunks_exact_mut(n).zip(moved.chunks_exact_mut(n));
-    for (x, (strained, moved)) in x.chunks_exact(n).zip(columns) {
+    multiply(stiffness, mass, x, &mut moved, interrupt)?;
+    multiply(stiffness, &stiffness.values, x, &mut strained, interrupt)?;
+    for (x, strained) in x.chunks_exact(n).zip(strained.chunks_exact_mut(n)) {
         interrupt.check_before(20 * stiffness.values.len() as u64)?;
-        multiply(stiffness, mass, x, moved);
         for (to, x) in size.iter_mut().zip(x) {
             *to = modulus(x);
         }
@@ -102,8 +105,6 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
             for (to, sum) in strained.iter_mut().zip(&sums) {
                 *to = sum.total();
             }
-        } else {
-            multiply(stiffness, &stiffness.values, x, strained);
         }
     }
     let (mut s, mut r) = (zeros()?, zeros()?);
@@ -157,14 +158,30 @@ fn moduli(of: &[Complex64]) -> Result<Vec<f64>> {
     Ok(found)
 }
 
-/// y ← A x for values on a pattern.
-fn multiply(pattern: &Csc, values: &[Complex64], x: &[Complex64], y: &mut [Complex64]) {
+/// Y ← A X for values on a pattern; as blocks where most entries are there.
+fn multiply(
+    pattern: &Csc,
+    values: &[Complex64],
+    x: &[Complex64],
+    y: &mut [Complex64],
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let n = pattern.rows;
+    if MANY_ENTRIES * values.len() > n * n {
+        interrupt.check_before(8 * (n * n * n) as u64)?;
+        complex_products::multiply(dense(pattern, values)?.as_slice(), x, y, n);
+        return Ok(());
+    }
     y.fill(Complex64::ZERO);
-    for (j, x) in x.iter().enumerate() {
-        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            y[pattern.row_idx[at]] += values[at] * x;
+    for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+        interrupt.check_before(8 * values.len() as u64)?;
+        for (j, x) in x.iter().enumerate() {
+            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                y[pattern.row_idx[at]] += values[at] * x;
+            }
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]
