@@ -1,6 +1,7 @@
 //! Tracing of a branch from its first point to the end of the range: points, folds, peaks, and solutions at requested
 //! parameter values. The tracer is the same for every analysis.
 
+use crate::adaptivity::closed_rounds::goes_round;
 use crate::adaptivity::controller::{AdaptivityController, Refined};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::inner_ends::{InnerEnd, InnerEnds};
@@ -229,6 +230,9 @@ impl<'a> BranchTracer<'a> {
             patience = patience.saturating_sub(1) * usize::from(analysis.is_linear());
             if stop {
                 return Ok(Status::StoppedByCaller);
+            }
+            if goes_round(analysis.branch().folds()) {
+                return Ok(Status::StoppedClosed);
             }
 
             // Select the harmonics of the next step, or end.
