@@ -2821,12 +2821,14 @@ contains
       if (status /= HBVIB_OK) return
       count = 0
       if (present(fixed)) count = size(fixed)
-      allocate (left_dofs(size(left)), right_dofs(size(right)), fixed_dofs(count), stat=stat)
+      allocate (fixed_dofs(count), stat=stat)
       status = made(stat)
+      call to_zero_all(status, 'left', reshape(left, [size(left)]), int(ndof, i64), left_dofs, 0_i32)
+      call to_zero_all(status, 'right', reshape(right, [size(right)]), int(ndof, i64), right_dofs, 0_i32)
+      if (present(fixed)) call to_zero_all(status, 'fixed', fixed, int(ndof, i64), fixed_dofs)
       if (status /= HBVIB_OK) return
-      left_dofs = reshape(int(left, i64) - 1_i64, [size(left)])
-      right_dofs = reshape(int(right, i64) - 1_i64, [size(right)])
-      if (present(fixed)) fixed_dofs = int(fixed, i64) - 1_i64
+      where (reshape(left, [size(left)]) == 0) left_dofs = -1
+      where (reshape(right, [size(right)]) == 0) right_dofs = -1
       description%ndof = int(ndof, i64)
       description%sectors = int(sectors, i64)
       description%engine_order = int(engine_order, i64)
@@ -2862,9 +2864,10 @@ contains
       class(hbvib_model), intent(inout) :: self
       integer, intent(in) :: dofs(:)
       integer(i32) :: status
-      integer(i64) :: fixed(size(dofs))
-      fixed = int(dofs, i64) - 1_i64
-      status = hbvib_model_fix(self%handle, size(fixed, kind=i64), fixed)
+      integer(i64), allocatable :: fixed(:)
+      status = HBVIB_OK
+      call to_zero_all(status, 'dofs', dofs, hbvib_model_dofs(self%handle), fixed)
+      if (status == HBVIB_OK) status = hbvib_model_fix(self%handle, size(fixed, kind=i64), fixed)
    end function model_fix
 
    !> copy becomes a model of its own.
@@ -4227,10 +4230,11 @@ contains
       integer, intent(in), optional :: phases
       type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
-      integer(i64) :: p, s, at
+      integer(i64) :: p, s, at, pushed
       type(c_ptr) :: other
       status = HBVIB_OK
       call point_to_zero(branch, status, point, p)
+      call to_zero(status, 'dof', int(dof, i64), hbvib_model_dofs(self%handle), pushed)
       other = branch%handle
       if (present(saddle_branch)) then
          call point_to_zero(saddle_branch, status, saddle, s)
@@ -4241,7 +4245,7 @@ contains
       at = 16
       if (present(phases)) at = phases
       if (status == HBVIB_OK) &
-         status = hbvib_smallest_kick(self%handle, branch%handle, p, other, s, int(dof - 1, i64), at, hooks, kick)
+         status = hbvib_smallest_kick(self%handle, branch%handle, p, other, s, pushed, at, hooks, kick)
    end function model_smallest_kick
 
    !> Exact derivatives of a result at a point of this model by parameters: HBVIB_OF_AMPLITUDE unless `of` is another one.

@@ -114,6 +114,7 @@ contains
 
    subroutine indices()
       type(hbvib_solver_options) :: solver
+      type(hbvib_model) :: ring
       call bad(model%add_force(0, 1, 1._dp), HBVIB_E_INDEX, 'dof = 0, needs 1 .. 4', 'a force on dof 0')
       call expect('the argument number is told', hbvib_last_error_argument() == 0) ! the solve was a success
       call refused(model%add_force(5, 1, 1._dp), HBVIB_E_INDEX, 'dof = 5, needs 1 .. 4', 'a force on dof 5')
@@ -128,6 +129,12 @@ contains
       call bad(model%add_contact(contact), HBVIB_E_INDEX, 'dof_a(1) = 5, needs 1 .. 4', 'a contact on dof 5')
       call bad(model%add_jenkins([1, 0], [1._dp, 1._dp], [1._dp, 1._dp], [1._dp, 1._dp]), HBVIB_E_INDEX, &
                'dof_a(2) = 0', 'a list with dof 0')
+      call bad(model%fix([0]), HBVIB_E_INDEX, 'dofs(1) = 0, needs 1 .. 4', 'dof 0 that is fixed')
+      call bad(model%fix([1, 5]), HBVIB_E_INDEX, 'dofs(2) = 5, needs 1 .. 4', 'dof 5 that is fixed')
+      call refused(ring%from_sector(3, 10, 1, reshape([1], [1, 1]), reshape([4], [1, 1])), HBVIB_E_INDEX, 'right(1) = 4, needs 1 .. 3', &
+                   'a face with dof 4')
+      call refused(ring%from_sector(3, 10, 1, reshape([1], [1, 1]), reshape([2], [1, 1]), fixed=[5]), HBVIB_E_INDEX, &
+                   'fixed(1) = 5, needs 1 .. 3', 'dof 5 of a sector')
       call bad(model%set_preload(0, 1._dp), HBVIB_E_INDEX, 'id = 0, needs 1 .. 1', 'contact 0')
       call bad(model%set_preload(2, 1._dp), HBVIB_E_INDEX, 'id = 2, needs 1 .. 1', 'contact 2')
       solver%tolerance = 0
