@@ -223,6 +223,7 @@ impl Condensed {
             blocks: Vec::new(),
             laws: Arc::default(),
             stiffness: Vec::new(),
+            resistance: Vec::new(),
             reference_stiffness: Vec::new(),
             exchanges: Vec::new(),
             can_stick: Vec::new(),
@@ -253,9 +254,11 @@ impl Condensed {
         let (assembled, representatives) = assign_coordinates(model, active, interrupt)?;
         let mut can_stick = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
+        let mut resistance = try_vec(representatives.len(), 0.0, "the contacts")?;
         for at in &assembled {
             let contact = &model.contacts()[at.contact];
             stiffness[at.coordinate] += contact.stiffness(at.direction);
+            resistance[at.coordinate] += contact.resistance();
             can_stick[at.coordinate] &= contact.may_stick();
         }
         let structural = structural_stiffness(
@@ -326,6 +329,7 @@ impl Condensed {
             blocks,
             laws: Arc::default(),
             stiffness,
+            resistance,
             reference_stiffness,
             exchanges,
             can_stick,

@@ -84,6 +84,8 @@ pub struct Condensed {
     pub(super) laws: Arc<Vec<AssembledLaw>>,
     /// Stiffness per coordinate: the sum of kt of its contacts, or more if one is a spring with growing stiffness.
     pub(super) stiffness: Vec<f64>,
+    /// Their changes of force by the velocity.
+    pub(super) resistance: Vec<f64>,
     /// Stiffness per coordinate that defines κ: the same, or less where contacts are near-rigid.
     pub(super) reference_stiffness: Vec<f64>,
     /// The exchange of each coordinate whose near-rigid slider has one.
@@ -114,6 +116,7 @@ impl Condensed {
             blocks,
             laws: Arc::clone(&self.laws),
             stiffness: try_copy(&self.stiffness, CONTEXT)?,
+            resistance: try_copy(&self.resistance, CONTEXT)?,
             reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
             exchanges: try_copy(&self.exchanges, CONTEXT)?,
             can_stick: try_copy(&self.can_stick, CONTEXT)?,
@@ -314,6 +317,11 @@ impl Condensed {
     #[inline]
     pub fn stiffness(&self, coordinate: usize) -> f64 {
         self.stiffness[coordinate]
+    }
+
+    /// Largest force of the contacts of a coordinate over its motion at an angular frequency.
+    pub(crate) fn impedance(&self, coordinate: usize, nu: f64) -> f64 {
+        self.stiffness[coordinate] + nu * self.resistance[coordinate]
     }
 
     /// Rounding of the force of a coordinate over the size of its motion if its contacts are near-rigid, otherwise 0.

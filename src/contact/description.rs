@@ -190,6 +190,11 @@ impl Contact {
         self.ask(|law| law.stiffness(k))
     }
 
+    /// Largest change of the force by the relative velocity, N s/m; 0 for a law of the motion alone or of the caller.
+    pub(crate) fn resistance(&self) -> f64 {
+        self.ask(|law| law.resistance())
+    }
+
     /// Stiffness of a contact that is linear at any motion; 0 without force.
     #[must_use]
     pub fn stiffness_as_spring(&self) -> f64 {

@@ -72,6 +72,11 @@ pub trait ContactLaw {
     /// Largest stiffness along the k-th motion, but for terms that grow with the motion.
     fn stiffness(&self, k: usize) -> f64;
 
+    /// Largest change of the force by the relative velocity, N s/m; 0 for a law of the motion alone or of the caller.
+    fn resistance(&self) -> f64 {
+        0.0
+    }
+
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
     fn is_spring(&self) -> bool {
         true

@@ -1,5 +1,6 @@
 //! Cut-off harmonic: largest h with ‖kt^½ G_h kt^½‖ ≥ ½, where the structure is compliant against the contact
-//! stiffness; G_h is the flexibility of the structure without its contacts.
+//! stiffness; G_h is the flexibility of the structure without its contacts. A contact whose force follows the velocity, as regularised
+//! friction, has the stiffness hω ∂f/∂v.
 //!
 //! Beyond it inertia keeps both sides of a contact at rest, and an extended harmonic hardly acts back on itself or on
 //! others. Above the highest natural frequency G falls with frequency, so that bisection brackets the cut-off; below,
@@ -211,6 +212,7 @@ impl CutoffHarmonic {
         // The matrices of a wave are the same for all its harmonics.
         let effective = omega * h as f64 / condensed.set().numbers()[i] as f64;
         let n = condensed.coordinates();
+        let nu = omega * h as f64;
         let table = &self
             .workspace
             .evaluate(condensed, i, effective, false, interrupt)?
@@ -218,11 +220,12 @@ impl CutoffHarmonic {
         // G = (1 − G_κ κ)⁻¹ G_κ, both sides times kt^½.
         let a = self.lu.matrix();
         for c in 0..n {
-            let root = condensed.stiffness(c).sqrt();
+            let stiffness = condensed.impedance(c, nu);
+            let root = stiffness.sqrt();
             for r in 0..n {
-                let g = table[c * (n + 1) + r] * condensed.stiffness(r).sqrt() * root;
+                let g = table[c * (n + 1) + r] * condensed.impedance(r, nu).sqrt() * root;
                 self.matrix[c * n + r] = g;
-                let share = condensed.kappa(c, i) / condensed.stiffness(c).max(f64::MIN_POSITIVE);
+                let share = condensed.kappa(c, i) / stiffness.max(f64::MIN_POSITIVE);
                 a[c * n + r] = Complex64::from(f64::from(u8::from(c == r))) - g * share;
             }
         }
@@ -301,6 +304,14 @@ fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result
         highest = pairs.values.iter().fold(highest, |w, x| w.max(x.max(0.0).sqrt()));
     }
     Ok(Some(highest))
+}
+
+/// The least harmonic to which a point that carries a set is extended: with twice its harmonics, and two more of them at least. What the
+/// first one left out changes may vanish by chance where the second does not.
+pub(super) fn least_extension(set: &HarmonicSet) -> usize {
+    let own = set.numbers().last().copied().unwrap_or(0);
+    let second = own + 2 * set.base() * set.stride();
+    carried_from(set, second.max(2 * own + 1))
 }
 
 /// The lowest harmonic number not below h that sets like `set` carry.

@@ -159,7 +159,7 @@ impl<'a> ForcedEstimator<'a> {
     fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
+        let least = cutoff_harmonic::least_extension(set);
         // With the cut-off known, bounds beyond it are not sought.
         let known = self
             .cutoff

@@ -141,11 +141,10 @@ impl<'a> ModeEstimator<'a> {
 
     fn extend(&mut self, solved: &Solved<'_>, state: ModeState) -> Result<Option<Estimate>> {
         let set = solved.condensed.set();
-        let own = set.numbers().last().copied().unwrap_or(0);
         let sizes = Sizes::new(solved.condensed, self.options.samples);
         let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START), self.options.memory_limit);
         let most = self.affordable(solved, &work);
-        let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
+        let least = cutoff_harmonic::least_extension(set);
         if least > most {
             return solved.unknown(state.damping, true).map(Some);
         }

@@ -65,6 +65,10 @@ impl ContactLaw for RegularisedContact {
         0.0
     }
 
+    fn resistance(&self) -> f64 {
+        self.slip_limit / self.velocity
+    }
+
     fn largest_force(&self) -> f64 {
         self.slip_limit
     }
