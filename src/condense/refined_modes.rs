@@ -88,10 +88,19 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
     let (mut strained, mut moved) = (zeros()?, zeros()?);
     let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
     let (sizes, mut size) = (moduli(&stiffness.values)?, try_vec(n, 0.0, CONTEXT)?);
+    let is_full = stiffness.values.len() == n * n;
+    if is_full {
+        for (values, to) in [(mass, &mut moved), (&stiffness.values[..], &mut strained)] {
+            interrupt.check_before(8 * (n * n * n) as u64)?;
+            complex_products::multiply(values, x, to, n);
+        }
+    }
     let columns = strained.chunks_exact_mut(n).zip(moved.chunks_exact_mut(n));
     for (x, (strained, moved)) in x.chunks_exact(n).zip(columns) {
         interrupt.check_before(20 * stiffness.values.len() as u64)?;
-        multiply(stiffness, mass, x, moved);
+        if !is_full {
+            multiply(stiffness, mass, x, moved);
+        }
         for (to, x) in size.iter_mut().zip(x) {
             *to = modulus(x);
         }
@@ -102,7 +111,7 @@ fn step(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Inte
             for (to, sum) in strained.iter_mut().zip(&sums) {
                 *to = sum.total();
             }
-        } else {
+        } else if !is_full {
             multiply(stiffness, &stiffness.values, x, strained);
         }
     }
