@@ -104,3 +104,76 @@ fn needed((values, vectors): (&[f64], &[Complex64]), allowed: f64) -> Result<usi
     }
     Ok(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CANDIDATES: usize = 60;
+    const FORCES: usize = 25;
+    const LIMIT: f64 = 1e-6;
+
+    fn number(k: usize) -> Complex64 {
+        Complex64::new((1.3 * k as f64).sin(), (0.7 * (k * k) as f64).cos())
+    }
+
+    /// Images that are orthogonal and become small, of forces whose residuals have them all: what is left of these.
+    fn check<T: Entry>() {
+        let size = |i: usize| 10.0_f64.powf(-(i as f64) / 5.0);
+        let mut gram = vec![Complex64::ZERO; CANDIDATES * CANDIDATES];
+        for i in 0..CANDIDATES {
+            gram[i * CANDIDATES + i] = (size(i) * size(i)).into();
+        }
+        let x: Vec<Complex64> = (0..CANDIDATES * FORCES).map(number).collect();
+        let none = Interrupt::none();
+        let choice = residual_directions::<T>(&gram, &x, (LIMIT, 3), &none).unwrap().unwrap();
+        let images = |z: &[Complex64]| -> Vec<Complex64> { z.iter().enumerate().map(|(i, z)| size(i) * z).collect() };
+        let chosen: Vec<Vec<Complex64>> = choice.chunks(CANDIDATES).map(images).collect();
+        assert!(chosen.len() >= 20 && chosen.len() <= 45, "{}", chosen.len());
+        assert!(T::IS_COMPLEX || choice.iter().all(|z| z.im == 0.0));
+        let along = |u: &[Complex64], r: &[Complex64]| u.iter().zip(r).map(|(u, r)| u.conj() * r).sum::<Complex64>();
+        for (i, u) in chosen.iter().enumerate() {
+            for (j, v) in chosen.iter().enumerate() {
+                let exact = f64::from(u8::from(i == j));
+                assert!((along(u, v) - exact).norm() < 1e-2, "{i}, {j}: {}", along(u, v));
+            }
+        }
+        for x in x.chunks(CANDIDATES) {
+            let mut rest = images(x);
+            // More than once: the directions are orthonormal to a few digits.
+            for _ in 0..8 {
+                for u in &chosen {
+                    let part = along(u, &rest);
+                    for (r, u) in rest.iter_mut().zip(u) {
+                        *r -= part * u;
+                    }
+                }
+            }
+            let left = along(&rest, &rest).re.sqrt();
+            assert!(left <= LEFT_OUT * LIMIT * 1.01, "{left:e}");
+        }
+    }
+
+    #[test]
+    fn without_the_chosen_directions_residuals_are_below_their_limit() {
+        check::<Complex64>();
+        check::<f64>();
+    }
+
+    #[test]
+    fn nearly_all_candidates_and_no_residuals_leave_no_choice() {
+        let (n, none) = (40, Interrupt::none());
+        let mut gram = vec![Complex64::ZERO; n * n];
+        for i in 0..n {
+            gram[i * n + i] = Complex64::ONE;
+        }
+        let x: Vec<Complex64> = (0..n * n).map(number).collect();
+        let all = residual_directions::<Complex64>(&gram, &x, (1e-8, 2), &none).unwrap();
+        assert!(all.is_none());
+        assert!(
+            residual_directions::<Complex64>(&gram, &[], (1e-8, 2), &none)
+                .unwrap()
+                .is_none()
+        );
+    }
+}

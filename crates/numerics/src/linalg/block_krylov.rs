@@ -327,8 +327,10 @@ impl<T: Entry> BlockKrylov<T> {
         weighted.truncate(kept * n);
         // The rest of a small part has lost the digits by which it was small.
         self.weigh(&block, &mut weighted, interrupt)?;
-        self.project(&mut block, &weighted, interrupt)?;
-        self.weigh(&block, &mut weighted, interrupt)?;
+        if first > 0 {
+            self.project(&mut block, &weighted, interrupt)?;
+            self.weigh(&block, &mut weighted, interrupt)?;
+        }
         if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
             let sizes = try_vec(kept, 1.0, CONTEXT)?;
             let kept = orthonormalise((&mut block, &mut weighted), n, &sizes, interrupt)?;
@@ -400,10 +402,8 @@ impl<T: Entry> BlockKrylov<T> {
                 .map_err(|_| Error::out_of_memory(CONTEXT))?;
             all.extend_from_slice(&rest);
             rest = all;
-            // The rest has become small beside the images: it is made orthogonal again, and has products of its own.
+            // The rest has become small beside the images, whose products with it are rounded by their own size.
             weighted = try_vec(rest.len(), T::NONE, CONTEXT)?;
-            self.weigh(&rest, &mut weighted, interrupt)?;
-            self.project(&mut rest, &weighted, interrupt)?;
             self.weigh(&rest, &mut weighted, interrupt)?;
         }
         let columns = rest.len() / n.max(1);
