@@ -18,7 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
 use crate::linalg::hermitian;
 use crate::linalg::lu::Lu;
-use crate::model::reduced_wave::{ReducedView, WaveDamping};
+use crate::model::reduced_wave::{ReducedView, Remainder, WaveDamping};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the certificate of the flexibility";
@@ -61,8 +61,8 @@ impl Certificate {
     };
 }
 
-/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it; that at the upper
-/// end alone where it exceeds `enough`.
+/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it; that up to the first
+/// frequency alone at which it exceeds `enough`. The residuals at that one are appended to `residuals`, see [`residual`].
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -71,6 +71,7 @@ pub(super) fn certificate(
     loss_factor: f64,
     inputs: &[SparseVector],
     (sweep, enough): (Sweep, f64),
+    residuals: &mut Vec<Complex64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
     let order = view.pencil().order();
@@ -111,29 +112,37 @@ pub(super) fn certificate(
         q.copy_from_slice(&forces);
         lu.solve_columns(&mut q, false, interrupt)?;
         let inverse = inverse_norm(&mut lu, n, interrupt)?;
+        residuals.clear();
         for q in q.chunks_exact(n) {
             let size = q[..order].iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
             if size == 0.0 {
                 continue;
             }
-            let share = residual(view, (nu, loss_factor), &q[..order])? / size;
+            let residual = residual(view, (nu, loss_factor), &q[..order])?;
+            let share = norm(&residual, remainder) / size;
+            if enough.is_finite() {
+                for z in residual {
+                    try_push(residuals, z / size, CONTEXT)?;
+                }
+            }
             let basis = share + inverse * share * share;
             let whole = share + solutions * images(view, (nu, loss_factor), &q[..order])? / size;
             let total = whole + inverse * whole * whole + (1.0 + inverse) * products;
             worst = worst.max(Certificate { basis, total });
         }
         if worst.basis > enough {
-            break;
+            return Ok(worst);
         }
         if core::mem::take(&mut lacks_resonances) {
             resonances(block, view, sweep, &mut frequencies, interrupt)?;
         }
     }
+    residuals.clear();
     Ok(worst)
 }
 
-/// ρ of a motion of the coordinates at ν = hω.
-fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<f64> {
+/// The residual of a motion of the coordinates at ν = hω: its coefficients over the images that the basis lacks.
+fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<Vec<Complex64>> {
     let pencil = view.pencil();
     let (order, last) = (pencil.order(), pencil.remainder.last);
     let new = order - last;
@@ -166,14 +175,18 @@ fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) 
             try_push(&mut v, factor * z, CONTEXT)?;
         }
     }
-    let size = v.len();
+    Ok(v)
+}
+
+/// ρ
+fn norm(residual: &[Complex64], remainder: &Remainder) -> f64 {
     let mut sum = Complex64::ZERO;
-    for (column, z) in pencil.remainder.gram.chunks_exact(size.max(1)).zip(&v) {
-        for (g, w) in column.iter().zip(&v) {
+    for (column, z) in remainder.gram.chunks_exact(residual.len().max(1)).zip(residual) {
+        for (g, w) in column.iter().zip(residual) {
             sum += w.conj() * g * z;
         }
     }
-    Ok(sum.re.max(0.0).sqrt())
+    sum.re.max(0.0).sqrt()
 }
 
 /// Sum of the norms of the forces Z q and of the images of the basis in them, by which the rounding of solutions counts.

@@ -2,6 +2,7 @@
 
 use crate::condense::certificate::Certificate;
 use crate::condense::memory_limit::within;
+use crate::condense::residual_directions::residual_directions;
 use crate::condense::wave_matrices::{Assembled, Damping, WaveMatrices};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -43,16 +44,24 @@ pub(super) const MOST_BLOCKS: usize = 12;
 /// Columns of a basis over those that are added before its next certificate, which costs as much as some of its factorisations.
 const GROWTH_OF_BASIS: usize = 5;
 
+/// Candidates of a block from which it takes those alone that the residuals need, and the order of the basis over the columns that it takes
+/// at least, since the residuals of one frequency are known.
+const CHOSEN_FROM: usize = 32;
+const LEAST_GROWTH: usize = 16;
+
+/// Ratio of certificates from which the candidates of the next block are chosen by residuals.
+const LEAST_GAIN: f64 = 3.0;
+
 /// Blocks that memory is counted and reserved for.
 const USUAL_BLOCKS: usize = 7;
 
-/// Prepares a wave for `inputs` until its certificate, which `error` computes as far as it is at most some number, is below `limit` or the basis has `most` columns;
-/// `None` where it has no definite matrix.
+/// Prepares a wave for `inputs` until its certificate is below `limit` or the basis has `most` columns; `None` where it has no definite
+/// matrix. `error` computes the certificate as far as it is at most some number, and the residuals where it is not.
 pub(super) fn prepare(
     matrices: &WaveMatrices<'_>,
     inputs: Vec<SparseVector>,
     (limit, most): (f64, usize),
-    error: impl Fn(&Arc<ReducedWave>, f64) -> Result<Certificate>,
+    error: impl Fn(&Arc<ReducedWave>, f64, &mut Vec<Complex64>) -> Result<Certificate>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
     let Some(assembled) = matrices.assembled(interrupt)? else {
@@ -94,7 +103,7 @@ fn build<T: Entry>(
     assembled: Assembled<'_>,
     inputs: Vec<SparseVector>,
     (limit, most): (f64, usize),
-    error: impl Fn(&Arc<ReducedWave>, f64) -> Result<Certificate>,
+    error: impl Fn(&Arc<ReducedWave>, f64, &mut Vec<Complex64>) -> Result<Certificate>,
     (basis, back): Wrapping<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
@@ -110,11 +119,14 @@ fn build<T: Entry>(
         n: prepared.n,
         refused_up_to: 0,
     };
+    let mut residuals = Vec::new();
+    let (mut before, mut idle) = (f64::INFINITY, 0);
     loop {
         interrupt.part(Phase::Condensation, wave.pencil.order(), most)?;
         // The certificate uses the basis for the rows of the contacts.
         let shared = Arc::new(wave);
-        let found = error(&shared, limit)?;
+        residuals.clear();
+        let found = error(&shared, limit, &mut residuals)?;
         wave = match Arc::try_unwrap(shared) {
             Ok(wave) => wave,
             Err(_) => return fail!(Internal, "a basis in preparation is shared"),
@@ -124,15 +136,21 @@ fn build<T: Entry>(
         // Rounding is no reason for a larger basis.
         krylov.give_basis(back(wave.basis));
         let complete = found.basis <= limit || full;
+        // Directions of residuals that have not helped twice, as at two frequencies, leave the choice to all candidates.
+        idle = if found.basis > before / LEAST_GAIN { idle + 1 } else { 0 };
+        if idle > 1 {
+            residuals.clear();
+        }
+        before = found.basis;
         // Where images and basis are the same space there is nothing to add.
-        if complete || !grown(&mut krylov, most, interrupt)? {
+        if complete || !grown(&mut krylov, most, (&residuals, limit), interrupt)? {
             wave.refused_up_to = if found.basis > limit { most } else { 0 };
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
             let mut columns = krylov.take_basis();
             columns.shrink_to_fit();
             wave.basis = basis(columns);
             let shared = Arc::new(wave);
-            let found = error(&shared, f64::INFINITY)?;
+            let found = error(&shared, f64::INFINITY, &mut residuals)?;
             return Ok(Some((shared, found)));
         }
         wave.pencil = pencil(&krylov, &prepared, interrupt)?;
@@ -140,9 +158,25 @@ fn build<T: Entry>(
     }
 }
 
-/// Adds blocks until the basis is so much larger that a certificate is worth its cost; `false` where there is nothing to add.
-fn grown<T: Entry>(krylov: &mut BlockKrylov<T>, most: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+/// Adds blocks until the basis is so much larger that a certificate is worth its cost; `false` where there is nothing to add. A block of
+/// many candidates is limited to those that the residuals need to be below `limit`.
+fn grown<T: Entry>(
+    krylov: &mut BlockKrylov<T>,
+    most: usize,
+    (residuals, limit): (&[Complex64], f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
     let enough = krylov.order() + krylov.order() / GROWTH_OF_BASIS;
+    let candidates = krylov.next_columns();
+    if krylov.can_choose() && candidates >= CHOSEN_FROM && krylov.order() + candidates >= enough {
+        let least = krylov.order() / LEAST_GROWTH;
+        let choice = residual_directions::<T>(krylov.gram(), residuals, (limit, least), interrupt)?;
+        if let Some(choice) = choice
+            && krylov.grow_by(&choice, interrupt)?
+        {
+            return Ok(true);
+        }
+    }
     let mut has_grown = false;
     while krylov.grow(interrupt)? {
         has_grown = true;

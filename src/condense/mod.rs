@@ -30,6 +30,7 @@ mod reduction;
 mod reference_stiffness;
 mod refined_modes;
 mod relative_coordinates;
+mod residual_directions;
 mod resolution;
 mod single_contact;
 mod single_contact_lanes;

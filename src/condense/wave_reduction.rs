@@ -222,7 +222,9 @@ fn wave_of(
     } else {
         most.min(request.ndof() / SHARE_OF_BASIS)
     };
-    let error = |wave: &Arc<ReducedWave>, enough: f64| certificate_of(request, group, (wave, enough), kappa, interrupt);
+    let error = |wave: &Arc<ReducedWave>, enough: f64, residuals: &mut Vec<Complex64>| {
+        certificate_of(request, group, (wave, enough), kappa, residuals, interrupt)
+    };
     let mut inputs = Vec::new();
     for input in &group.inputs {
         interrupt.check_before(100)?;
@@ -239,7 +241,7 @@ fn wave_of(
             }
         }
         if holds_all {
-            let error = error(wave, f64::INFINITY)?;
+            let error = error(wave, f64::INFINITY, &mut Vec::new())?;
             if error.basis <= limit || wave.refused_up_to >= most {
                 return Ok(Some((Arc::clone(wave), error)));
             }
@@ -280,12 +282,13 @@ fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
     request.sweep.of_harmonic(lowest)[1]
 }
 
-/// The largest certificate of the harmonics of a group; a lower bound of it where that exceeds `enough`.
+/// The largest certificate of the harmonics of a group; a lower bound of it where that exceeds `enough`, with the `residuals` there.
 fn certificate_of(
     request: &Request<'_>,
     group: &Group,
     (wave, enough): (&Arc<ReducedWave>, f64),
     kappa: &impl Fn(usize, usize) -> Complex64,
+    residuals: &mut Vec<Complex64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
     let mut worst = Certificate::default();
@@ -306,6 +309,7 @@ fn certificate_of(
             loss_factor(request, number),
             &group.inputs,
             (request.sweep, enough),
+            residuals,
             interrupt,
         )?);
     }

@@ -6,7 +6,8 @@
 //! doi:10.2514/3.20636; Bai 2002, doi:10.1016/S0168-9274(02)00116-2).
 //!
 //! With Galerkin coefficients q the residual of A⁻¹Z V q = A⁻¹b lies in the part E of the last images that the basis does
-//! not hold, so that its norm at any frequency follows from the Gram matrix EᴴAE.
+//! not hold, so that its norm at any frequency follows from the Gram matrix EᴴAE. A block of combinations of E alone leaves the rest
+//! of E, which stays beside the images of that block.
 
 use crate::error::{Error, Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
@@ -43,11 +44,11 @@ pub struct BlockKrylov<T> {
     n: usize,
     /// Columns of n numbers.
     basis: Vec<T>,
-    /// Start of the last block.
+    /// First column whose image the basis may lack.
     last: usize,
     /// Vᴴ O V per operator, column after column, of the present order.
     reduced: Vec<Vec<Complex64>>,
-    /// Parts of the images of the last block that the basis does not hold: n numbers per column, operator after operator.
+    /// Parts of the images of the columns from `last` on that the basis does not hold: n numbers per column, operator after operator.
     rest: Vec<T>,
     /// Norms of the images.
     sizes: Vec<f64>,
@@ -87,7 +88,7 @@ impl<T: Entry> BlockKrylov<T> {
         self.basis.len() / self.n.max(1)
     }
 
-    /// First column of the last block.
+    /// First column whose image the basis may lack: that of the last block which took all candidates.
     #[must_use]
     pub fn last(&self) -> usize {
         self.last
@@ -105,7 +106,7 @@ impl<T: Entry> BlockKrylov<T> {
         &self.reduced[operator]
     }
 
-    /// EᴴAE of the images of the last block, operator after operator.
+    /// EᴴAE of the images of the columns from [`Self::last`] on, operator after operator.
     #[must_use]
     pub fn gram(&self) -> &[Complex64] {
         &self.gram
@@ -260,6 +261,60 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(self.order() > before)
     }
 
+    /// Whether a block may be of some combinations of the candidates: there is one operator.
+    #[must_use]
+    pub fn can_choose(&self) -> bool {
+        self.damping.is_none()
+    }
+
+    /// A block of the combinations E W of the candidates E for the columns of W; `false` where it is nothing new. The candidates that
+    /// are left belong to the next block.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn grow_by(&mut self, choice: &[Complex64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        let n = self.n.max(1);
+        let (first, candidates) = (self.order(), self.next_columns());
+        let columns = choice.len() / candidates.max(1);
+        let mut weights = try_vec(choice.len(), T::NONE, CONTEXT)?;
+        for (to, from) in weights.iter_mut().zip(choice) {
+            *to = T::of(*from);
+        }
+        let mut block = try_vec(n * columns, T::NONE, CONTEXT)?;
+        interrupt.check_before((4 * candidates * block.len()) as u64)?;
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut block, n, columns),
+            Accum::Replace,
+            MatRef::from_column_major_slice(&self.rest, n, candidates),
+            MatRef::from_column_major_slice(&weights, candidates, columns),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
+        let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
+        for _ in 0..2 {
+            self.weigh(&block, &mut weighted, interrupt)?;
+            self.project(&mut block, &weighted, interrupt)?;
+            self.weigh(&block, &mut weighted, interrupt)?;
+            if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
+                return Ok(false);
+            }
+        }
+        self.weigh(&block, &mut weighted, interrupt)?;
+        remove_part(&mut self.rest, (&block, &weighted), n, interrupt)?;
+        self.append(&block)?;
+        drop((block, weighted));
+        self.images(first, interrupt)?;
+        Ok(true)
+    }
+
+    fn append(&mut self, block: &[T]) -> Result<()> {
+        self.basis
+            .try_reserve_exact(block.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.basis.extend_from_slice(block);
+        Ok(())
+    }
+
     /// Appends what is new in the candidates, which came from images of the given sizes, and computes the images of the
     /// new block.
     fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
@@ -272,28 +327,27 @@ impl<T: Entry> BlockKrylov<T> {
         weighted.truncate(kept * n);
         // The rest of a small part has lost the digits by which it was small.
         self.weigh(&block, &mut weighted, interrupt)?;
-        self.project(&mut block, &weighted, interrupt)?;
-        self.weigh(&block, &mut weighted, interrupt)?;
+        if first > 0 {
+            self.project(&mut block, &weighted, interrupt)?;
+            self.weigh(&block, &mut weighted, interrupt)?;
+        }
         if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
             let sizes = try_vec(kept, 1.0, CONTEXT)?;
             let kept = orthonormalise((&mut block, &mut weighted), n, &sizes, interrupt)?;
             block.truncate(kept * n);
         }
-        self.basis
-            .try_reserve_exact(block.len())
-            .map_err(|_| Error::out_of_memory(CONTEXT))?;
-        self.basis.extend_from_slice(&block);
+        self.append(&block)?;
         drop((weighted, block));
+        self.last = first;
         self.images(first, interrupt)
     }
 
-    /// Images of the columns from `first` on.
+    /// Images of the columns from `first` on, beside the rest of those before.
     fn images(&mut self, first: usize, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let order = self.order();
         let new = order - first;
         let block = &self.basis[first * n..];
-        self.last = first;
         let count = self.reduced.len();
         let mut rest = try_vec(block.len() * count, T::NONE, CONTEXT)?;
         let mut product = try_vec(order * new, T::NONE, CONTEXT)?;
@@ -326,9 +380,11 @@ impl<T: Entry> BlockKrylov<T> {
             }
             self.reduced[o] = reduced;
         }
-        let weighted = try_copy(&rest, CONTEXT)?;
+        let mut weighted = try_copy(&rest, CONTEXT)?;
         self.factor.solve(&mut rest, interrupt)?;
-        self.sizes = norms(&rest, &weighted, n);
+        let mut sizes = core::mem::take(&mut self.sizes);
+        sizes.extend(norms(&rest, &weighted, n));
+        self.sizes = sizes;
         // VᴴA A⁻¹O V = VᴴO V: the part in the basis needs no other product.
         interrupt.check_before((4 * order * rest.len()) as u64)?;
         matmul(
@@ -339,7 +395,18 @@ impl<T: Entry> BlockKrylov<T> {
             T::of(Complex64::ONE),
             Par::Seq,
         );
-        let columns = new * count;
+        let before = self.rest.len();
+        if before > 0 {
+            let mut all = core::mem::take(&mut self.rest);
+            all.try_reserve_exact(rest.len())
+                .map_err(|_| Error::out_of_memory(CONTEXT))?;
+            all.extend_from_slice(&rest);
+            rest = all;
+            // The rest has become small beside the images, whose products with it are rounded by their own size.
+            weighted = try_vec(rest.len(), T::NONE, CONTEXT)?;
+            self.weigh(&rest, &mut weighted, interrupt)?;
+        }
+        let columns = rest.len() / n.max(1);
         let mut gram = try_vec(columns * columns, T::NONE, CONTEXT)?;
         // EᴴA V = 0, so that EᴴA E = EᴴA A⁻¹O V.
         adjoint_product(&rest, &weighted, n, &mut gram);
@@ -373,4 +440,29 @@ impl<T: Entry> BlockKrylov<T> {
         );
         Ok(())
     }
+}
+
+/// x ← x − U Uᴴ A x for orthonormal columns U, with A U.
+fn remove_part<T: Entry>(
+    x: &mut [T],
+    (unit, weighted): (&[T], &[T]),
+    n: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let (own, columns) = (unit.len() / n.max(1), x.len() / n.max(1));
+    let mut parts = try_vec(own * columns, T::NONE, CONTEXT)?;
+    interrupt.check_before((8 * own * x.len()) as u64)?;
+    adjoint_product(weighted, x, n, &mut parts);
+    for part in &mut parts {
+        *part = part.scaled(-1.0);
+    }
+    matmul(
+        MatMut::from_column_major_slice_mut(x, n, columns),
+        Accum::Add,
+        MatRef::from_column_major_slice(unit, n, own),
+        MatRef::from_column_major_slice(&parts, own, columns),
+        T::of(Complex64::ONE),
+        Par::Seq,
+    );
+    Ok(())
 }

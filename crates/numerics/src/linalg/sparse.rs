@@ -380,7 +380,10 @@ impl Csc {
     /// Adds to an entry that is stored; where none is, does nothing.
     pub fn add_stored(&mut self, i: usize, j: usize, value: Complex64) {
         let range = self.col_ptr[j]..self.col_ptr[j + 1];
-        if let Ok(at) = self.row_idx[range.clone()].binary_search(&i) {
+        if range.len() == self.rows {
+            // A full column.
+            self.values[range.start + i] += value;
+        } else if let Ok(at) = self.row_idx[range.clone()].binary_search(&i) {
             self.values[range.start + at] += value;
         }
     }
