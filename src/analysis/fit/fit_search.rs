@@ -26,6 +26,10 @@ const FIT_ROUNDING: f64 = 1e-5;
 /// Step, in standard deviations, along which the model is linear: what is left out is of the order of its square.
 const FIT_LINEAR_STEP: f64 = 1e-4;
 
+/// Error in standard deviations at which a search on many data ends, whose evaluations are dear: on a sector of finite elements steps of
+/// that size are rounding of the solutions.
+const FIT_DEAR_STEP: f64 = 1e-5;
+
 /// Values of the unknowns with the loss there.
 #[derive(Clone, Debug)]
 pub(super) struct State {
@@ -185,6 +189,7 @@ impl Search<'_> {
         let mut converged = false;
         // Many data are dear: the last step of them takes no further evaluation.
         let is_dear = self.predictor.rows() >= 2 * FIT_THINNED_FROM;
+        let end = self.options.step.max(FIT_DEAR_STEP);
         let mut before = f64::INFINITY;
         while iterations < self.options.max_iterations && !report(iterations, &state) {
             iterations += 1;
@@ -212,8 +217,7 @@ impl Search<'_> {
                 break;
             }
             let rate = if before.is_finite() { in_sigmas / before } else { 1.0 };
-            if is_dear && lambda < FIT_DAMPING.0 && in_sigmas < FIT_LINEAR_STEP && rate * in_sigmas < self.options.step
-            {
+            if is_dear && lambda < FIT_DAMPING.0 && in_sigmas < FIT_LINEAR_STEP && rate * in_sigmas < end {
                 state = self.along(state, z)?;
                 converged = true;
                 break;
