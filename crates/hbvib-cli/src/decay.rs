@@ -1,7 +1,7 @@
 //! The backbone of a decay in which one mode is left: frequency and damping against amplitude, window after window.
 //!
 //! Lines through zero crossings and through logarithms of extremes (Londono, Neild & Cooper 2015, doi:10.1016/j.jsv.2014.12.019). Both are
-//! means of two neighbours, which a mean of the signal does not move. What the lines leave gives the standard deviations.
+//! means of two neighbours, which a mean of the signal does not move. The standard deviations are those of the residuals of these lines.
 
 use crate::build::Outcome;
 use std::f64::consts::PI;

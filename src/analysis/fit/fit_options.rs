@@ -38,6 +38,9 @@ impl Default for FitOptions {
     }
 }
 
+/// Data points from which a share of them is searched first: below, a point is cheap beside the curve that it lies on.
+pub(super) const FIT_THINNED_FROM: usize = 100;
+
 /// Most starts and iterations of a fit.
 const FIT_LARGEST: (usize, usize) = (1000, 10_000);
 

@@ -4,11 +4,10 @@
 //! gradient and in the matrix H = JᵀWJ. Unknowns are scaled by their logarithm where they are positive.
 
 use crate::analysis::fit::fit_data::FitData;
-use crate::analysis::fit::fit_options::{FitOptions, Loss};
+use crate::analysis::fit::fit_options::{FIT_THINNED_FROM, FitOptions, Loss};
 use crate::analysis::fit::fit_unknowns::Unknowns;
 use crate::analysis::fit::marquardt_step::marquardt_step;
 use crate::analysis::fit::predicted_data::{Predicted, Predictor};
-use crate::analysis::fit::thinned_data::FIT_THINNED_FROM;
 use crate::error::{Result, try_push, try_vec};
 
 const CONTEXT: &str = "the search of a fit";

@@ -1,16 +1,13 @@
 //! A first search on a share of many data: as near to the end as their deviations tell, at a share of the cost.
 
 use crate::analysis::fit::fit_data::{DataKind, FitData};
-use crate::analysis::fit::fit_options::FitOptions;
+use crate::analysis::fit::fit_options::{FIT_THINNED_FROM, FitOptions};
 use crate::analysis::fit::fit_search::{Search, State};
 use crate::analysis::fit::predicted_data::Predictor;
 use crate::error::{Result, try_push};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the first search of a fit";
-
-/// Data points from which a share of them is searched first: below, a point is cheap beside the curve that it lies on.
-pub(super) const FIT_THINNED_FROM: usize = 100;
 
 /// Data points of the share for each unknown, and the most points of which one is kept.
 const FIT_THINNED_POINTS: usize = 10;
