@@ -199,6 +199,39 @@ fn the_reference_has_its_least_chi2_and_the_covariance_of_differences() {
     }
 }
 
+/// The same data three times have three times the loss, the same least place and a third of the covariance; so many are searched by a share
+/// of them first, and end by a step without an evaluation.
+#[test]
+fn many_data_have_the_least_place_of_few() {
+    let (sets, wanted) = reference();
+    let once: Vec<_> = sets.iter().map(Measured::set).collect();
+    let thrice = [&once[..], &once[..], &once[..]].concat();
+    let model = chain();
+    let unknowns = from_start([0.33, 0.14, 1.2, 1.01]);
+    let solve = |data: &[FitData<'_>]| {
+        let given = (&PARAMETERS[..], &unknowns[..]);
+        fit(
+            &model,
+            given,
+            data,
+            &nine_harmonics(),
+            &FitOptions::default(),
+            &mut Hooks::default(),
+        )
+        .unwrap()
+    };
+    let (few, many) = (solve(&once), solve(&thrice));
+    assert_eq!(many.status, Status::Ok);
+    assert!((many.chi2 / (3.0 * wanted) - 1.0).abs() < 1e-9, "{}", many.chi2);
+    for k in 0..4 {
+        let deviation = few.covariance[5 * k].sqrt();
+        let off = (many.theta[k] - few.theta[k]) / deviation;
+        assert!(off.abs() < 1e-5, "{k}: {off}");
+        let ratio = 3.0 * many.covariance[5 * k] / few.covariance[5 * k];
+        assert!((ratio - 1.0).abs() < 1e-4, "{k}: {ratio}");
+    }
+}
+
 #[test]
 fn sticking_contacts_are_refused_in_words() {
     let (mut sets, _) = reference();

@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 
 /// Width and height in pixels.
-const SIZE: (u32, u32) = (900, 600);
+pub const SIZE: (u32, u32) = (900, 600);
 
 /// The white area of a figure.
 pub type Area<'a> = DrawingArea<Canvas<'a>, Shift>;

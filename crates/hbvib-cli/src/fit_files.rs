@@ -1,6 +1,7 @@
 //! Data of tests as the library takes them, from the columns of files.
 
 use crate::build::{Built, Outcome};
+use crate::decay;
 use crate::fit_table::Table;
 use crate::job_fit::{DataName, DataPart};
 use hbvib::{DataKind, FitData, Response};
@@ -29,7 +30,7 @@ impl Data {
     pub fn read(part: &DataPart, built: &Built, folder: &Path) -> Outcome<Self> {
         let path = folder.join(&part.file);
         let said = |e: String| format!("{}: {e}", path.display());
-        let mut table = Table::read(&path, part).map_err(said)?;
+        let table = Table::read(&path, part).map_err(said)?;
         let rows = table.rows;
         if rows == 0 {
             return Err(said("holds no data".into()));
@@ -44,7 +45,7 @@ impl Data {
                 DataName::Response => DataKind::Response,
                 DataName::Amplitude => DataKind::Amplitude,
                 DataName::Peak => DataKind::Peak,
-                DataName::Backbone => DataKind::Backbone,
+                DataName::Backbone | DataName::Decay => DataKind::Backbone,
                 DataName::LinearMode => DataKind::LinearMode,
             },
             force: part.force,
@@ -59,13 +60,17 @@ impl Data {
         if let Some(name) = &part.dof {
             found.dofs.push(built.nodes.dof(name).map_err(|e| format!("dof: {e}"))?);
         }
+        if part.kind == DataName::Decay {
+            found.fill_with_decay(&table, part).map_err(said)?;
+            return Ok(found);
+        }
         let hz = table.column("hz").map_err(said)?;
         let omega: Vec<f64> = hz.iter().map(|hz| TAU * hz).collect();
         let (first, second, sigma, scale) = match part.kind {
             DataName::Response => (table.column("re"), table.column("im"), "sigma", 1.0),
             DataName::Amplitude => (table.column("amplitude"), Ok(vec![0.0; rows]), "sigma", 1.0),
             DataName::Peak => (table.column("amplitude"), Ok(omega.clone()), "sigma", 1.0),
-            DataName::Backbone | DataName::LinearMode => {
+            DataName::Backbone | DataName::LinearMode | DataName::Decay => {
                 let damping = table.optional("damping").unwrap_or_else(|| vec![0.0; rows]);
                 (Ok(omega.clone()), Ok(damping), "sigma_hz", TAU)
             }
@@ -112,6 +117,42 @@ impl Data {
         found.second_sigma = of_second.unwrap_or_default().into_iter().map(|s| scale * s).collect();
         table.used().map_err(said)?;
         Ok(found)
+    }
+
+    /// The windows of a decay as data of a backbone.
+    fn fill_with_decay(&mut self, table: &Table, part: &DataPart) -> Outcome<()> {
+        if !(part.shape.is_finite() && part.shape != 0.0) {
+            return Err(format!("shape = {}, needs a finite number other than 0", part.shape));
+        }
+        table.used()?;
+        let order = part.component.or(table.order).unwrap_or(0);
+        let windows = decay::windows(&table.column("time")?, &table.column("signal")?, (part.cycles, order))?;
+        self.x = windows
+            .iter()
+            .map(|w| (w.amplitude / part.shape.abs()).log10())
+            .collect();
+        self.value = windows
+            .iter()
+            .map(|w| Complex64::new(w.omega[0], w.damping[0]))
+            .collect();
+        self.sigma = windows.iter().map(|w| w.omega[1]).collect();
+        self.second_sigma = windows.iter().map(|w| w.damping[1]).collect();
+        Ok(())
+    }
+
+    /// Whether each of the two numbers of a datum is one.
+    pub fn counts(&self) -> [bool; 2] {
+        let second = match self.kind {
+            DataKind::Response => true,
+            DataKind::Amplitude => false,
+            _ => !self.second_sigma.is_empty(),
+        };
+        [true, second]
+    }
+
+    /// Whether the set is a backbone.
+    pub fn is_backbone(&self) -> bool {
+        self.kind == DataKind::Backbone
     }
 
     /// The set as the library takes it.

@@ -103,6 +103,9 @@ pub fn write(
         fs::write(path, text + "\n").map_err(|e| e.to_string())
     });
     files.write(part.figure.as_deref(), &|path| chart(&found, &data).write(path));
+    files.write(part.residual_figure.as_deref(), &|path| {
+        residual_chart(&found, &data).write(path)
+    });
     Ok((text, found.status != Status::Ok))
 }
 
@@ -212,8 +215,38 @@ fn numbers(found: &Fit, names: &[&str]) -> serde_json::Value {
     })
 }
 
-/// Data as marks on the lines of the model.
+/// Data as marks on the lines of the model: responses and amplitudes over the frequency; without any, frequencies of backbones over the
+/// modal amplitude.
 fn chart(found: &Fit, data: &[Data]) -> Chart {
+    let responses = lines(found, data, |set, x, [first, second]| {
+        Some((x / TAU, set.size(first, second)?))
+    });
+    if !responses.is_empty() {
+        return Chart {
+            title: "fit: lines of the model, marks of the data".into(),
+            x_label: "frequency, Hz".into(),
+            y_label: "amplitude".into(),
+            log_x: false,
+            log_y: true,
+            markers: false,
+            lines: responses,
+        };
+    }
+    Chart {
+        title: "fit: lines of the model, marks of the data".into(),
+        x_label: "log10 of the modal amplitude".into(),
+        y_label: "frequency, Hz".into(),
+        log_x: false,
+        log_y: false,
+        markers: false,
+        lines: lines(found, data, |set, x, [first, _]| {
+            set.is_backbone().then_some((x, first / TAU))
+        }),
+    }
+}
+
+/// A line for each set that `place` has points of, in the order of their abscissas.
+fn lines(found: &Fit, data: &[Data], place: impl Fn(&Data, f64, [f64; 2]) -> Option<(f64, f64)>) -> Vec<Line> {
     let mut values = found.values.chunks_exact(2);
     let mut lines = Vec::new();
     for (number, set) in data.iter().enumerate() {
@@ -224,22 +257,48 @@ fn chart(found: &Fit, data: &[Data]) -> Chart {
         };
         for (x, z) in set.x.iter().zip(&set.value) {
             let Some(value) = values.next() else { break };
-            let sizes = set.size(value[0], value[1]).zip(set.size(z.re, z.im));
-            if let Some((model, datum)) = sizes {
-                line.points.push((x / TAU, model));
-                line.marked.push((x / TAU, datum));
-            }
+            line.points.extend(place(set, *x, [value[0], value[1]]));
+            line.marked.extend(place(set, *x, [z.re, z.im]));
         }
+        line.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         if !line.points.is_empty() {
             lines.push(line);
         }
     }
+    lines
+}
+
+/// Residuals in standard deviations as marks, datum after datum, between lines at two of them, within which 95 of a hundred lie.
+fn residual_chart(found: &Fit, data: &[Data]) -> Chart {
+    let mut residuals = found.residuals.chunks_exact(2);
+    let mut lines = Vec::new();
+    let mut number = 0.0;
+    for (i, set) in data.iter().enumerate() {
+        let mut line = Line {
+            name: format!("data set {}", i + 1),
+            points: Vec::new(),
+            marked: Vec::new(),
+        };
+        for residual in residuals.by_ref().take(set.x.len()) {
+            number += 1.0;
+            let own = residual.iter().zip(set.counts()).filter(|(_, counts)| *counts);
+            line.marked.extend(own.map(|(r, _)| (number, *r)));
+        }
+        lines.push(line);
+    }
+    for (name, height) in [("2 deviations", 2.0), ("-2 deviations", -2.0)] {
+        lines.push(Line {
+            name: name.into(),
+            points: vec![(0.0, height), (number + 1.0, height)],
+            marked: Vec::new(),
+        });
+    }
     Chart {
-        title: "fit: lines of the model, marks of the data".into(),
-        x_label: "frequency, Hz".into(),
-        y_label: "amplitude".into(),
+        title: "fit: residuals in standard deviations".into(),
+        x_label: "number of the datum".into(),
+        y_label: "(model - datum) / deviation".into(),
         log_x: false,
-        log_y: true,
+        log_y: false,
         markers: false,
         lines,
     }

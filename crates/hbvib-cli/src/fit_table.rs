@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Names that columns may have.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 12] = [
     "hz",
     "re",
     "im",
@@ -19,6 +19,8 @@ const NAMES: [&str; 10] = [
     "sigma_damping",
     "log10_amplitude",
     "coherence",
+    "time",
+    "signal",
 ];
 
 /// Columns with their names.
@@ -26,6 +28,8 @@ const NAMES: [&str; 10] = [
 pub struct Table {
     columns: Vec<(String, Vec<f64>)>,
     pub rows: usize,
+    /// Derivative by time that the signal of a universal file is: 0, 1 or 2.
+    pub order: Option<i32>,
 }
 
 impl Table {
@@ -37,6 +41,7 @@ impl Table {
         let end = path.extension().and_then(|end| end.to_str()).unwrap_or_default();
         match end {
             "uff" | "unv" if part.kind == DataName::LinearMode => universal_mode(path, part),
+            "uff" | "unv" if part.kind == DataName::Decay => universal_history(path, part),
             "uff" | "unv" => universal(path, part),
             "mat" | "npz" => arrays(path),
             _ => csv(path),
@@ -44,7 +49,7 @@ impl Table {
     }
 
     /// A column, if the file has it.
-    pub fn optional(&mut self, name: &str) -> Option<Vec<f64>> {
+    pub fn optional(&self, name: &str) -> Option<Vec<f64>> {
         let found = self.columns.iter().find(|(own, _)| own == name);
         found.map(|(_, values)| values.clone())
     }
@@ -53,7 +58,7 @@ impl Table {
     ///
     /// # Errors
     /// A sentence.
-    pub fn column(&mut self, name: &str) -> Outcome<Vec<f64>> {
+    pub fn column(&self, name: &str) -> Outcome<Vec<f64>> {
         self.optional(name).ok_or_else(|| format!("has no column {name}"))
     }
 
@@ -159,6 +164,7 @@ fn universal_mode(path: &Path, part: &DataPart) -> Outcome<Table> {
     Ok(Table {
         columns: vec![("hz".into(), vec![hz]), ("damping".into(), vec![damping])],
         rows: 1,
+        order: None,
     })
 }
 
@@ -174,33 +180,54 @@ fn coherence_of(all: &Universal, function: &Function) -> Option<Vec<f64>> {
     Some(found.values.iter().map(|(re, _)| *re).collect())
 }
 
+/// The derivative by time that the values of a function are.
+fn order_of(function: &Function) -> Outcome<i32> {
+    const VELOCITY: i64 = 11;
+    const ACCELERATION: i64 = 12;
+    match function.quantity {
+        // Files that do not tell mean displacements, as Python's reader takes them.
+        0 | 8 => Ok(0),
+        VELOCITY => Ok(1),
+        ACCELERATION => Ok(2),
+        other => Err(format!(
+            "the function has values of type {other} (data set 58, ninth line), needs 8 (displacement), 11 (velocity) or 12 (acceleration)"
+        )),
+    }
+}
+
+/// Whether a function is at the node and in the direction that a part names.
+fn is_named(function: &Function, part: &DataPart) -> bool {
+    part.node.is_none_or(|node| function.response.0 == node)
+        && part.direction.is_none_or(|direction| function.response.1 == direction)
+}
+
+/// A history of a universal file.
+fn universal_history(path: &Path, part: &DataPart) -> Outcome<Table> {
+    const HISTORY: i64 = 1;
+    let all = read_universal(path).map_err(|e| e.to_string())?;
+    let is_wanted = |function: &&Function| function.kind == HISTORY && is_named(function, part);
+    let Some(function) = all.functions.iter().find(is_wanted) else {
+        return Err("has no history (data set 58 of type 1) at this node and direction".into());
+    };
+    let signal: Vec<f64> = function.values.iter().map(|(re, _)| *re).collect();
+    Ok(Table {
+        rows: signal.len(),
+        order: Some(order_of(function)?),
+        columns: vec![("time".into(), function.abscissa.clone()), ("signal".into(), signal)],
+    })
+}
+
 /// The function of a universal file as displacements along the positive axes: times the force of the test where it is a frequency
 /// response, and over iω for each order of a velocity or an acceleration.
 fn universal(path: &Path, part: &DataPart) -> Outcome<Table> {
     const FREQUENCY_RESPONSE: i64 = 4;
-    const VELOCITY: i64 = 11;
-    const ACCELERATION: i64 = 12;
     let all = read_universal(path).map_err(|e| e.to_string())?;
-    let is_wanted = |function: &&Function| {
-        // A coherence is no response.
-        function.kind != 6
-            && part.node.is_none_or(|node| function.response.0 == node)
-            && part.direction.is_none_or(|direction| function.response.1 == direction)
-    };
+    // A coherence is no response.
+    let is_wanted = |function: &&Function| function.kind != 6 && is_named(function, part);
     let Some(function) = all.functions.iter().find(is_wanted) else {
         return Err("has no function (data set 58) at this node and direction".into());
     };
-    let order = match function.quantity {
-        // Files that do not tell mean displacements, as Python's reader takes them.
-        0 | 8 => 0,
-        VELOCITY => 1,
-        ACCELERATION => 2,
-        other => {
-            return Err(format!(
-                "the function has values of type {other} (data set 58, ninth line), needs 8 (displacement), 11 (velocity) or 12 (acceleration)"
-            ));
-        }
-    };
+    let order = order_of(function)?;
     let sense = |(_, direction): (i64, i64)| if direction < 0 { -1.0 } else { 1.0 };
     let mut factor = sense(function.response);
     if function.kind == FREQUENCY_RESPONSE {
@@ -229,5 +256,6 @@ fn universal(path: &Path, part: &DataPart) -> Outcome<Table> {
     Ok(Table {
         columns,
         rows: values.len(),
+        order: None,
     })
 }

@@ -28,8 +28,10 @@ pub struct FitPart {
     pub json: Option<PathBuf>,
     /// The text that is printed.
     pub report: Option<PathBuf>,
-    /// Responses and amplitudes with the model; SVG or, where its name ends with .png, PNG.
+    /// Responses and amplitudes with the model, without any the frequencies of modes; SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,
+    /// Residuals in standard deviations, datum after datum; SVG or PNG.
+    pub residual_figure: Option<PathBuf>,
 }
 
 /// An unknown of the fit: constants of contacts and the speed have their own values, the others are factors, 1 in the model.
@@ -70,6 +72,9 @@ pub enum DataName {
     Backbone,
     /// The mode in which all contacts stick: columns hz, sigma_hz, and damping with sigma_damping.
     LinearMode,
+    /// A motion that dies away in one mode: columns time and signal at equal distances, or a history of a universal file. It becomes a
+    /// backbone.
+    Decay,
 }
 
 /// Data of one kind at one level of the force.
@@ -95,6 +100,14 @@ pub struct DataPart {
     pub averages: Option<f64>,
     /// Number of the mode in a universal file; its first one unless given.
     pub test_mode: Option<i64>,
+    /// Periods of a window of a decay, which has one frequency and one damping ratio.
+    #[serde(default = "five")]
+    pub cycles: usize,
+    /// 0: the signal of a decay is a displacement, 1: a velocity, 2: an acceleration; that of a universal file, or 0, unless given.
+    pub component: Option<i32>,
+    /// Motion of the sensor of a decay in the linear mode of modal mass 1: the modal amplitude is that of the sensor over it.
+    #[serde(default = "whole")]
+    pub shape: f64,
     /// Range that is followed, for peaks.
     pub from_hz: Option<f64>,
     pub to_hz: Option<f64>,
@@ -104,6 +117,10 @@ pub struct DataPart {
     /// Amplitude of the force of the test, by which a frequency response of a universal file is multiplied.
     #[serde(default = "whole")]
     pub frf_force: f64,
+}
+
+fn five() -> usize {
+    5
 }
 
 fn whole() -> f64 {

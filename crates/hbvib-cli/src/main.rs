@@ -26,6 +26,7 @@ mod counted;
 mod craig_bampton;
 mod curve;
 mod dampers;
+mod decay;
 mod demo;
 mod end;
 mod events;

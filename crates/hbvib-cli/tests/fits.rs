@@ -233,6 +233,116 @@ fn a_mode_of_a_universal_file_is_a_datum() {
     assert!(!output.status.success() && said.contains("no mode"), "{said}");
 }
 
+/// e^{−Dωt} cos(ω (1 − D²)^½ t) of the mass on stiffness and contact, 1.2 together, with damping 0.02; its derivatives by time; and a history
+/// of a universal file.
+#[test]
+fn a_decay_is_a_backbone() {
+    let omega = 1.2_f64.sqrt();
+    let decay = num_complex::Complex64::new(-0.01, (1.2_f64 - 1e-4).sqrt());
+    assert!((decay.norm() - omega).abs() < 1e-12);
+    let folder = crate::common::empty_folder("fits", "decay_files");
+    for (order, quantity) in [(0, 8), (1, 11), (2, 12)] {
+        let mut table = String::from("time, signal\n");
+        let mut history = universal(quantity, (3, 3));
+        let mut samples = Vec::new();
+        for i in 0..3000 {
+            let t = 0.05 * f64::from(i);
+            let x = (0.3 * decay.powi(order) * (decay * t).exp()).re;
+            let _ = writeln!(table, "{t}, {x:.17e}");
+            samples.push((t, x));
+        }
+        // The numbers of the frequency response give way to those of a history, type 1.
+        let head: Vec<&str> = history.lines().take(13).collect();
+        history = head
+            .join("\n")
+            .replacen("    4         1    0", "    1         1    0", 1)
+            + "\n";
+        history = history.replacen("         6         9", "         6      3000", 1);
+        for (t, x) in &samples {
+            let _ = writeln!(history, "{t:>13.5e}{x:>20.11e}{:>20.11e}", 0.0);
+        }
+        history += "    -1\n";
+        let (csv, uff) = (folder.join(format!("{order}.csv")), folder.join(format!("{order}.uff")));
+        fs::write(&csv, table).unwrap();
+        fs::write(&uff, history).unwrap();
+        for (path, component) in [(csv, format!("component = {order}\n")), (uff, String::new())] {
+            let kind = path.extension().unwrap().to_str().unwrap();
+            let job = format!(
+                "[[contact]]\nkind = 'jenkins'\na = [0]\nb = [-1]\nkt = 0.2\nmu = 0.3\npreload = 1.0\n\
+                 [fit]\nharmonics = 1\njson = 'fit.json'\nfigure = 'fit.svg'\nresidual_figure = 'residuals.svg'\n\
+                 [[fit.parameter]]\nparameter = 'stiffness'\n[[fit.parameter]]\nparameter = 'damping'\n\
+                 [[data]]\nkind = 'decay'\nfile = '{}'\ncycles = 4\n{component}",
+                path.display()
+            );
+            let (output, folder) = run(&format!("decay_{order}_{kind}"), "fit", &job);
+            assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
+            let json: serde_json::Value =
+                serde_json::from_str(&fs::read_to_string(folder.join("fit.json")).unwrap()).unwrap();
+            // The frequency of a decay is that of the mode times (1 - D^2)^1/2; the model has a damping of 0.1.
+            for (k, truth) in [0.9999, 0.2].into_iter().enumerate() {
+                let theta = json["theta"][k].as_f64().unwrap();
+                assert!((theta / truth - 1.0).abs() < 2e-4, "{order} {kind}: {json}");
+            }
+            let figure = fs::read_to_string(folder.join("fit.svg")).unwrap();
+            assert!(figure.contains("log10 of the modal amplitude") && figure.matches("<circle").count() > 3);
+            let residuals = fs::read_to_string(folder.join("residuals.svg")).unwrap();
+            assert_eq!(
+                residuals.matches("<circle").count(),
+                usize::try_from(json["data"].as_u64().unwrap()).unwrap()
+            );
+        }
+    }
+    let data = "[fit]\n[[fit.parameter]]\nparameter = 'stiffness'\n[[data]]\nkind = 'decay'\nfile = 'FILE'\n";
+    for (name, keys, words) in [
+        ("column", "", "has no column time"),
+        ("cycles", "cycles = 1\n", "cycles = 1, needs at least 2"),
+        ("shape", "shape = 0.0\n", "shape = 0, needs"),
+        ("component", "component = 3\n", "component = 3, needs 0"),
+        ("long", "cycles = 4000\n", "too few zero crossings"),
+    ] {
+        let file = if name == "column" {
+            "FILE".to_owned()
+        } else {
+            folder.join("0.csv").display().to_string()
+        };
+        let (output, _) = run(&format!("decay_{name}"), "fit", &(data.replace("FILE", &file) + keys));
+        let said = crate::common::printed(&output.stderr);
+        assert!(!output.status.success() && said.contains(words), "{name}: {said}");
+    }
+}
+
+/// Data that lie far from the model are within the axes, and the legend is beside them.
+#[test]
+fn figures_hide_no_data() {
+    let two = FIT.replace(
+        "figure = 'fit.svg'",
+        "figure = 'fit.svg'\nresidual_figure = 'residuals.svg'",
+    ) + "[[data]]\nfile = 'FILE'\nforce = 1.5\n";
+    let (output, folder) = run("two_sets", "fit", &two);
+    assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
+    for (name, marks) in [("fit.svg", 18), ("residuals.svg", 36)] {
+        let svg = fs::read_to_string(folder.join(name)).unwrap();
+        let number = |line: &str, key: &str| {
+            let text = line
+                .split(&format!(" {key}=\""))
+                .nth(1)
+                .unwrap()
+                .split('"')
+                .next()
+                .unwrap();
+            text.parse::<f64>().unwrap()
+        };
+        let circles: Vec<&str> = svg.lines().filter(|line| line.contains("<circle")).collect();
+        assert_eq!(circles.len(), marks, "{name}");
+        let right = circles.iter().map(|line| number(line, "cx")).fold(0.0, f64::max);
+        let names: Vec<&str> = svg.lines().collect();
+        let place = names.iter().position(|line| line.trim() == "data set 1").unwrap();
+        assert!(number(names[place - 1], "x") > right, "{name}");
+        let inside = |y: f64| y > 0.0 && y < 600.0;
+        assert!(circles.iter().all(|line| inside(number(line, "cy"))), "{name}");
+    }
+}
+
 #[test]
 fn a_fit_that_cannot_be_computed_is_refused_by_its_part() {
     for (name, parts, words) in [

@@ -4,7 +4,7 @@
 //! gradient and in the matrix H = JᵀWJ. Unknowns are scaled by their logarithm where they are positive.
 
 use crate::analysis::fit::fit_data::FitData;
-use crate::analysis::fit::fit_options::{FitOptions, Loss};
+use crate::analysis::fit::fit_options::{FIT_THINNED_FROM, FitOptions, Loss};
 use crate::analysis::fit::fit_unknowns::Unknowns;
 use crate::analysis::fit::marquardt_step::marquardt_step;
 use crate::analysis::fit::predicted_data::{Predicted, Predictor};
@@ -21,6 +21,13 @@ const FIT_LARGEST_LOG_STEP: f64 = 1.2;
 
 /// Foretold fall of the loss below which a step that fails is rounding of the model.
 const FIT_ROUNDING: f64 = 1e-5;
+
+/// Step, in standard deviations, along which the model is linear: what is left out is of the order of its square.
+const FIT_LINEAR_STEP: f64 = 1e-4;
+
+/// Error in standard deviations at which a search on many data ends, whose evaluations are dear: on a sector of finite elements steps of
+/// that size are rounding of the solutions.
+const FIT_DEAR_STEP: f64 = 1e-5;
 
 /// Values of the unknowns with the loss there.
 #[derive(Clone, Debug)]
@@ -62,16 +69,14 @@ impl Search<'_> {
         let p = theta.len();
         let n = z.len();
         let mut state = State {
-            residuals: residuals(self.predictor.data, &predicted.values)?,
+            residuals: self.residuals(&z, &predicted.values)?,
             slopes: Vec::new(),
             cost: 0.0,
             z,
             theta,
             predicted,
         };
-        let rows = state.residuals.len();
-        let priors = self.unknowns.free.iter().filter(|free| free.prior.is_some()).count();
-        state.slopes = try_vec((rows + priors) * n, 0.0, CONTEXT)?;
+        state.slopes = try_vec(state.residuals.len() * n, 0.0, CONTEXT)?;
         let mut row = 0;
         for set in self.predictor.data {
             for i in 0..set.x.len() {
@@ -86,14 +91,46 @@ impl Search<'_> {
             }
         }
         for (k, free) in self.unknowns.free.iter().enumerate() {
-            let Some((mean, sigma)) = free.prior else { continue };
+            let Some((_, sigma)) = free.prior else { continue };
             let value = self.unknowns.value(k, state.z[k]);
-            try_push(&mut state.residuals, (value - mean) / sigma, CONTEXT)?;
             state.slopes[row * n + k] = if free.is_log { value } else { 1.0 } / sigma;
             row += 1;
         }
         let state = self.weighed(state);
         Ok(state.cost.is_finite().then_some(state))
+    }
+
+    /// The state at other values of the free unknowns, so near that the model is linear; its derivatives stay.
+    fn along(&self, mut state: State, z: Vec<f64>) -> Result<State> {
+        let theta = self.unknowns.theta(&z)?;
+        let predicted = &mut state.predicted;
+        for (value, row) in predicted
+            .values
+            .iter_mut()
+            .zip(predicted.slopes.chunks_exact(theta.len()))
+        {
+            let changes = theta.iter().zip(&state.theta).map(|(new, old)| new - old);
+            *value += row
+                .iter()
+                .zip(changes)
+                .map(|(slope, change)| slope * change)
+                .sum::<f64>();
+        }
+        state.residuals = self.residuals(&z, &state.predicted.values)?;
+        state.theta = theta;
+        state.z = z;
+        Ok(self.weighed(state))
+    }
+
+    /// Residuals of the data, then of the priors.
+    fn residuals(&self, z: &[f64], values: &[f64]) -> Result<Vec<f64>> {
+        let mut found = residuals(self.predictor.data, values)?;
+        for (k, free) in self.unknowns.free.iter().enumerate() {
+            if let Some((mean, sigma)) = free.prior {
+                try_push(&mut found, (self.unknowns.value(k, z[k]) - mean) / sigma, CONTEXT)?;
+            }
+        }
+        Ok(found)
     }
 
     /// The state with its loss.
@@ -149,6 +186,10 @@ impl Search<'_> {
         let mut lambda = FIT_DAMPING.0;
         let mut iterations = 0;
         let mut converged = false;
+        // Many data are dear: the last step of them takes no further evaluation.
+        let is_dear = self.predictor.rows() >= 2 * FIT_THINNED_FROM;
+        let end = self.options.step.max(FIT_DEAR_STEP);
+        let mut before = f64::INFINITY;
         while iterations < self.options.max_iterations && !report(iterations, &state) {
             iterations += 1;
             let (h, g) = self.normal_equations(&state, true)?;
@@ -174,10 +215,17 @@ impl Search<'_> {
                 converged = true;
                 break;
             }
+            let rate = if before.is_finite() { in_sigmas / before } else { 1.0 };
+            if is_dear && lambda < FIT_DAMPING.0 && in_sigmas < FIT_LINEAR_STEP && rate * in_sigmas < end {
+                state = self.along(state, z)?;
+                converged = true;
+                break;
+            }
             let trial = self.at(z)?;
             let better = trial.as_ref().is_some_and(|t| t.cost <= state.cost);
             if let (true, Some(trial)) = (better, trial) {
                 state = trial;
+                before = in_sigmas;
                 lambda = (lambda * FIT_DAMPING.1).max(FIT_DAMPING_BOUNDS.0);
                 converged = in_sigmas < self.options.step;
             } else {

@@ -1,7 +1,7 @@
 //! A first search on a share of many data: as near to the end as their deviations tell, at a share of the cost.
 
 use crate::analysis::fit::fit_data::{DataKind, FitData};
-use crate::analysis::fit::fit_options::FitOptions;
+use crate::analysis::fit::fit_options::{FIT_THINNED_FROM, FitOptions};
 use crate::analysis::fit::fit_search::{Search, State};
 use crate::analysis::fit::predicted_data::Predictor;
 use crate::error::{Result, try_push};
@@ -9,15 +9,12 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the first search of a fit";
 
-/// Data points from which a share of them is searched first: below, a point is cheap beside the curve that it lies on.
-const FIT_THINNED_FROM: usize = 100;
-
 /// Data points of the share for each unknown, and the most points of which one is kept.
 const FIT_THINNED_POINTS: usize = 10;
 const FIT_THINNED_MOST: usize = 8;
 
-/// Step in standard deviations at which the first search ends.
-const FIT_THINNED_STEP: f64 = 0.03;
+/// Step in standard deviations of the share at which the first search ends: all data move the end by more than one of their own.
+const FIT_THINNED_STEP: f64 = 0.3;
 
 /// Data of a set in memory of their own.
 struct Share {
