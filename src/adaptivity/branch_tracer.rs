@@ -228,11 +228,8 @@ impl<'a> BranchTracer<'a> {
             analysis.select(resolution)?;
             recent.push((&point, resolution))?;
             patience = patience.saturating_sub(1) * usize::from(analysis.is_linear());
-            if stop {
-                return Ok(Status::StoppedByCaller);
-            }
-            if goes_round(analysis.branch().folds()) {
-                return Ok(Status::StoppedClosed);
+            if let Some(status) = early_end(stop, analysis) {
+                return Ok(status);
             }
 
             // Select the harmonics of the next step, or end.
@@ -426,4 +423,13 @@ pub(super) fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
 fn same(a: &[f64], b: &[f64]) -> bool {
     let difference = a.iter().zip(b).fold(0.0_f64, |d, (a, b)| d.hypot(a - b));
     difference <= 1e-8 * norm(b)
+}
+
+/// The end behind a recorded point that the caller asked for, or that a closed curve has.
+fn early_end(is_stopped: bool, analysis: &dyn Traceable) -> Option<Status> {
+    if is_stopped {
+        Some(Status::StoppedByCaller)
+    } else {
+        goes_round(analysis.branch().folds()).then_some(Status::StoppedClosed)
+    }
 }

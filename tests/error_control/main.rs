@@ -8,4 +8,5 @@ mod error_estimate_laws;
 mod error_estimate_modes;
 mod error_estimate_waves;
 mod error_estimate_wells;
+mod few_harmonics;
 mod tolerance;

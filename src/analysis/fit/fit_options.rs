@@ -11,6 +11,9 @@ pub enum Loss {
     Huber(f64),
 }
 
+/// Default of the step at which a search ends.
+pub(super) const FIT_STEP: f64 = 1e-6;
+
 /// Options of a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct FitOptions {
@@ -20,7 +23,8 @@ pub struct FitOptions {
     pub starts: usize,
     /// Largest number of iterations from each.
     pub max_iterations: usize,
-    /// Step, in standard deviations of the unknowns, at which the search ends; with 100 points and more at an error of 1e-5.
+    /// Step, in standard deviations of the unknowns, at which the search ends. With 100 points and more it ends at an estimated error of
+    /// 1e-5, unless this is smaller than the default.
     pub step: f64,
     /// Whether the covariance is multiplied by χ² over the degrees of freedom, where standard deviations are known up to a factor.
     pub scale_covariance: bool,
@@ -32,7 +36,7 @@ impl Default for FitOptions {
             loss: Loss::Square,
             starts: 1,
             max_iterations: 60,
-            step: 1e-6,
+            step: FIT_STEP,
             scale_covariance: false,
         }
     }

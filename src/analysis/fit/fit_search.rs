@@ -4,7 +4,7 @@
 //! gradient and in the matrix H = JᵀWJ. Unknowns are scaled by their logarithm where they are positive.
 
 use crate::analysis::fit::fit_data::FitData;
-use crate::analysis::fit::fit_options::{FIT_THINNED_FROM, FitOptions, Loss};
+use crate::analysis::fit::fit_options::{FIT_STEP, FIT_THINNED_FROM, FitOptions, Loss};
 use crate::analysis::fit::fit_unknowns::Unknowns;
 use crate::analysis::fit::marquardt_step::marquardt_step;
 use crate::analysis::fit::predicted_data::{Predicted, Predictor};
@@ -188,7 +188,11 @@ impl Search<'_> {
         let mut converged = false;
         // Many data are dear: the last step of them takes no further evaluation.
         let is_dear = self.predictor.rows() >= 2 * FIT_THINNED_FROM;
-        let end = self.options.step.max(FIT_DEAR_STEP);
+        let end = if self.options.step < FIT_STEP {
+            0.0
+        } else {
+            self.options.step.max(FIT_DEAR_STEP)
+        };
         let mut before = f64::INFINITY;
         while iterations < self.options.max_iterations && !report(iterations, &state) {
             iterations += 1;
