@@ -1,7 +1,7 @@
 //! Tracing of a branch from its first point to the end of the range: points, folds, peaks, and solutions at requested
 //! parameter values. The tracer is the same for every analysis.
 
-use crate::adaptivity::closed_rounds::goes_round;
+use crate::adaptivity::closed_rounds::Rounds;
 use crate::adaptivity::controller::{AdaptivityController, Refined};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::inner_ends::{InnerEnd, InnerEnds};
@@ -59,6 +59,8 @@ pub(crate) struct BranchTracer<'a> {
     pub(super) before_arc: Vec<(Point, usize)>,
     /// Parameter value at which the curve came back to the one that it branches off from.
     merged_at: f64,
+    /// The folds so far.
+    pub(super) rounds: Rounds,
 }
 
 /// The end of a linear stretch.
@@ -103,6 +105,7 @@ impl<'a> BranchTracer<'a> {
             grid_requested: false,
             before_arc: Vec::new(),
             merged_at: f64::NAN,
+            rounds: Rounds::default(),
         }
     }
 
@@ -228,7 +231,7 @@ impl<'a> BranchTracer<'a> {
             analysis.select(resolution)?;
             recent.push((&point, resolution))?;
             patience = patience.saturating_sub(1) * usize::from(analysis.is_linear());
-            if let Some(status) = early_end(stop, analysis) {
+            if let Some(status) = self.early_end(stop) {
                 return Ok(status);
             }
 
@@ -247,6 +250,15 @@ impl<'a> BranchTracer<'a> {
                 },
                 Some(status) => return Ok(status),
             }
+        }
+    }
+
+    /// The end behind a recorded point that the caller asked for, or that a closed curve has.
+    fn early_end(&self, is_stopped: bool) -> Option<Status> {
+        if is_stopped {
+            Some(Status::StoppedByCaller)
+        } else {
+            self.rounds.are_closed().then_some(Status::StoppedClosed)
         }
     }
 
@@ -423,13 +435,4 @@ pub(super) fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
 fn same(a: &[f64], b: &[f64]) -> bool {
     let difference = a.iter().zip(b).fold(0.0_f64, |d, (a, b)| d.hypot(a - b));
     difference <= 1e-8 * norm(b)
-}
-
-/// The end behind a recorded point that the caller asked for, or that a closed curve has.
-fn early_end(is_stopped: bool, analysis: &dyn Traceable) -> Option<Status> {
-    if is_stopped {
-        Some(Status::StoppedByCaller)
-    } else {
-        goes_round(analysis.branch().folds()).then_some(Status::StoppedClosed)
-    }
 }
