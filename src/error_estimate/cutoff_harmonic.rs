@@ -306,7 +306,7 @@ fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result
     Ok(Some(highest))
 }
 
-/// The least harmonic to which a point that carries a set is extended: with twice its harmonics, and two more of them at least. The
+/// The least harmonic to which a point of a response that carries a set is extended: with twice its harmonics, and two more of them at least. The
 /// change by the first that was left out may vanish by chance where that by the second does not.
 pub(super) fn least_extension(set: &HarmonicSet) -> usize {
     let own = set.numbers().last().copied().unwrap_or(0);

@@ -144,7 +144,8 @@ impl<'a> ModeEstimator<'a> {
         let sizes = Sizes::new(solved.condensed, self.options.samples);
         let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START), self.options.memory_limit);
         let most = self.affordable(solved, &work);
-        let least = cutoff_harmonic::least_extension(set);
+        let own = set.numbers().last().copied().unwrap_or(0);
+        let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
         if least > most {
             return solved.unknown(state.damping, true).map(Some);
         }

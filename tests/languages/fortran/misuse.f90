@@ -131,8 +131,8 @@ contains
                'dof_a(2) = 0', 'a list with dof 0')
       call bad(model%fix([0]), HBVIB_E_INDEX, 'dofs(1) = 0, needs 1 .. 4', 'dof 0 that is fixed')
       call bad(model%fix([1, 5]), HBVIB_E_INDEX, 'dofs(2) = 5, needs 1 .. 4', 'dof 5 that is fixed')
-      call refused(ring%from_sector(3, 10, 1, reshape([1], [1, 1]), reshape([4], [1, 1])), HBVIB_E_INDEX, 'right(1) = 4, needs 1 .. 3', &
-                   'a face with dof 4')
+      call refused(ring%from_sector(3, 10, 1, reshape([1], [1, 1]), reshape([4], [1, 1])), HBVIB_E_INDEX, &
+                   'right(1) = 4, needs 1 .. 3', 'a face with dof 4')
       call refused(ring%from_sector(3, 10, 1, reshape([1], [1, 1]), reshape([2], [1, 1]), fixed=[5]), HBVIB_E_INDEX, &
                    'fixed(1) = 5, needs 1 .. 3', 'dof 5 of a sector')
       call bad(model%set_preload(0, 1._dp), HBVIB_E_INDEX, 'id = 0, needs 1 .. 1', 'contact 0')
