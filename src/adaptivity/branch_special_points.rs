@@ -45,7 +45,6 @@ impl BranchTracer<'_> {
         let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
         self.find_bifurcations(analysis, a, b, turn)?;
         if let Some((fold, resolution)) = &fold {
-            self.rounds.add(fold)?;
             self.find_requested(analysis, a, (fold, *resolution), false)?;
             self.find_requested(analysis, (fold, *resolution), b, last)
         } else {

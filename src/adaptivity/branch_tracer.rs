@@ -1,7 +1,6 @@
 //! Tracing of a branch from its first point to the end of the range: points, folds, peaks, and solutions at requested
 //! parameter values. The tracer is the same for every analysis.
 
-use crate::adaptivity::closed_rounds::Rounds;
 use crate::adaptivity::controller::{AdaptivityController, Refined};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::inner_ends::{InnerEnd, InnerEnds};
@@ -59,8 +58,6 @@ pub(crate) struct BranchTracer<'a> {
     pub(super) before_arc: Vec<(Point, usize)>,
     /// Parameter value at which the curve came back to the one that it branches off from.
     merged_at: f64,
-    /// The folds so far.
-    pub(super) rounds: Rounds,
 }
 
 /// The end of a linear stretch.
@@ -105,7 +102,6 @@ impl<'a> BranchTracer<'a> {
             grid_requested: false,
             before_arc: Vec::new(),
             merged_at: f64::NAN,
-            rounds: Rounds::default(),
         }
     }
 
@@ -231,8 +227,8 @@ impl<'a> BranchTracer<'a> {
             analysis.select(resolution)?;
             recent.push((&point, resolution))?;
             patience = patience.saturating_sub(1) * usize::from(analysis.is_linear());
-            if let Some(status) = self.early_end(stop) {
-                return Ok(status);
+            if stop {
+                return Ok(Status::StoppedByCaller);
             }
 
             // Select the harmonics of the next step, or end.
@@ -250,15 +246,6 @@ impl<'a> BranchTracer<'a> {
                 },
                 Some(status) => return Ok(status),
             }
-        }
-    }
-
-    /// The end behind a recorded point that the caller asked for, or that a closed curve has.
-    fn early_end(&self, is_stopped: bool) -> Option<Status> {
-        if is_stopped {
-            Some(Status::StoppedByCaller)
-        } else {
-            self.rounds.are_closed().then_some(Status::StoppedClosed)
         }
     }
 

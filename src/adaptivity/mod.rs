@@ -6,8 +6,7 @@
 //! harmonics of the next step. Where every contact is linear, [`linear_stretch`] takes the place of the continuation, at the
 //! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. A
 //! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
-//! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`], and one
-//! that a step entered by chance by [`closed_rounds`].
+//! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`].
 //! An analysis implements the two traits of [`discretised`]. [`resolutions`] stores the
 //! equations at the resolutions of a run, [`transfer`] converts points from one resolution to another, and
 //! [`branch_recorder`] stores points.
@@ -16,7 +15,6 @@ mod bifurcations;
 pub(crate) mod branch_recorder;
 mod branch_special_points;
 pub(crate) mod branch_tracer;
-mod closed_rounds;
 mod cold_start;
 pub(crate) mod controller;
 pub(crate) mod discretised;

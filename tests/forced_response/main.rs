@@ -8,7 +8,6 @@ mod backward_waves;
 mod bands_of_many_sliders;
 mod bands_of_two_dampers;
 mod capacity;
-mod closed_curves;
 mod continuation;
 mod dampers;
 mod derivatives;

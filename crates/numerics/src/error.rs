@@ -39,8 +39,7 @@ pub enum Status {
     StoppedNoPeak = 10,
     /// The followed peak, or maximum of damping, vanished: it met a minimum; the points found so far are kept.
     StoppedPeakVanished = 11,
-    /// The curve is closed, an isolated branch: it came back to its first point, or a step from another curve entered it and it went round
-    /// three times; all of it within the range is kept.
+    /// The curve is closed, an isolated branch: it came back to its first point, and all of it within the range is kept.
     StoppedClosed = 12,
     /// A required pointer is NULL.
     Null = -1,
@@ -151,7 +150,7 @@ impl Status {
                 "the followed maximum met a minimum and vanished; the points found so far are kept; follow another peak from there"
             }
             Self::StoppedClosed => {
-                "the curve is closed: it came back to its first point, or was entered from another curve and went round three times; all of it within the range is kept"
+                "the curve is closed: it came back to its first point, and all of it within the range is kept"
             }
             _ => "",
         }
