@@ -41,7 +41,8 @@ class _Fits(_Owner):
         huber      standard deviations beyond which a residual counts by its magnitude, 1.345 for example; 0: by its square.
         starts     points from which is searched; others are tried where the given one fits poorly.
         max_iterations   from each start; end_step: in standard deviations, at which the search ends;
-                         with 100 points and more at an estimated error of 1e-5, unless it is smaller than 1e-6.
+                         with 200 numbers of data and more at an estimated error of 1e-5, unless it is
+                         smaller than 1e-6; a complex point has two numbers.
         scale_covariance   by chi2 over the degrees of freedom, where standard deviations are known up to a factor.
         progress, log, phase, cancel   as in forced_response; the parameter of a point is the loss. Options of the solver;
                    harmonics without tolerance means tolerance = 0:

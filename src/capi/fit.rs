@@ -121,8 +121,9 @@ pub struct hbvib_fit_options {
     pub starts: i64,
     /// Largest number of iterations from each, 1 .. 10000; default 60.
     pub max_iterations: i64,
-    /// Step in standard deviations at which the search ends; default 1e-6. With 100 points and
-    /// more it ends at an estimated error of 1e-5, unless this is smaller than the default.
+    /// Step in standard deviations at which the search ends; default 1e-6. With 200 numbers of
+    /// data and more, as 100 complex points have, it ends at an estimated error of 1e-5, unless
+    /// this is smaller than the default.
     pub step: f64,
 }
 

@@ -12,6 +12,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
+use crate::condense::sum_terms::Frequency;
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products;
@@ -20,13 +21,6 @@ use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the flexibility from modes";
-
-/// c and ∂c/∂ω.
-#[derive(Clone, Copy)]
-pub struct Frequency {
-    pub c: Complex64,
-    pub d_c: Complex64,
-}
 
 /// T′ and ∂T′, rows × rows: contacts, response, springs.
 pub struct Plain<'a> {

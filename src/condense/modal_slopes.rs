@@ -8,7 +8,6 @@
 //! and what `low_rank` keeps of T, both take products with vectors alone.
 
 use crate::condense::flexibility::Table;
-use crate::condense::low_rank::Frequency;
 use crate::condense::modal_table::{ModalTable, ModalWork, Work};
 use crate::condense::mode_sums::multiply_adjoint;
 use crate::condense::sum_terms::Denominator;
@@ -20,7 +19,7 @@ impl ModalTable {
     pub(super) fn fill_slopes_of_response(&self, work: &mut Work, (at, omega): (Denominator, f64), table: &mut Table) {
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
         let (of, order) = (&self.coefficients, self.coefficients.len());
-        let frequency = frequency(at);
+        let frequency = at.frequency();
         let [q, moved] = &mut work.of_modes;
         let [weights, memory] = &mut work.of_rows;
         // The rows of l + T′_lB e (1 − G′ e)⁻¹ L_B, conjugate as multiply_adjoint takes them.
@@ -77,7 +76,7 @@ impl ModalTable {
             return;
         };
         let at = self.denominator(omega);
-        let frequency = frequency(at);
+        let frequency = at.frequency();
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
         let (of, order) = (&self.coefficients, self.coefficients.len());
         let [xi, rate] = &mut work.of_modes;
@@ -139,13 +138,6 @@ impl ModalTable {
         complex_columns::multiply(self.rows.adjoint(), self.rows.count(), v, out, memory);
         conjugate(v);
         conjugate(out);
-    }
-}
-
-fn frequency(at: Denominator) -> Frequency {
-    Frequency {
-        c: at.a - 1.0,
-        d_c: at.d_a,
     }
 }
 

@@ -5,10 +5,10 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::{Slopes, Table};
-use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
+use crate::condense::low_rank::{Coefficients, LowRank, Plain};
 use crate::condense::modal_rows::{ModalRows, terms_within};
 use crate::condense::single_contact::{Denominators, SingleContact};
-use crate::condense::sum_terms::{Denominator, Source};
+use crate::condense::sum_terms::{Denominator, Frequency, Source};
 use crate::condense::wave_modes::{NEAR_ALONE, NEAR_RESONANCE};
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
@@ -170,10 +170,7 @@ impl ModalTable {
         } else {
             NEAR_RESONANCE
         };
-        let frequency = Frequency {
-            c: at.a - 1.0,
-            d_c: at.d_a,
-        };
+        let frequency = at.frequency();
         let is_clear = if let Some(single) = &self.single {
             let by = Denominators {
                 at: frequency,

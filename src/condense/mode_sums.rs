@@ -13,7 +13,7 @@
 //! > vᴴ Φᴴ Z⁻¹ Wᴴ = p + p e X,  p = (v*/d) Eᴴ.
 
 use crate::condense::flexibility::Table;
-use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
+use crate::condense::low_rank::{Coefficients, LowRank, Plain};
 use crate::condense::modal_rows::{ModalRows, terms_within};
 use crate::condense::sum_terms::{Denominator, Source};
 use crate::condense::wave_modes::{NEAR_MODE, WaveModes};
@@ -334,10 +334,7 @@ impl ModeSums {
             slope: &[],
             rows,
         };
-        let at = Frequency {
-            c: work.at.a - 1.0,
-            d_c: work.at.d_a,
-        };
+        let at = work.at.frequency();
         work.low_rank
             .add(&self.coefficients, &plain, (at, false), &mut work.table, interrupt)
     }

@@ -4,7 +4,7 @@
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
 use crate::condense::flexibility::Table;
-use crate::condense::low_rank::Frequency;
+use crate::condense::sum_terms::Frequency;
 use crate::error::{Result, try_room};
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};

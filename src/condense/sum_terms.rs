@@ -23,6 +23,23 @@ pub struct Denominator {
     pub d_b: Complex64,
 }
 
+/// c of the damping by stiffness, 1 + c = a, and ∂c/∂ω.
+#[derive(Clone, Copy)]
+pub struct Frequency {
+    pub c: Complex64,
+    pub d_c: Complex64,
+}
+
+impl Denominator {
+    /// c and its derivative, which the low-rank term takes.
+    pub(super) fn frequency(self) -> Frequency {
+        Frequency {
+            c: self.a - 1.0,
+            d_c: self.d_a,
+        }
+    }
+}
+
 impl Source {
     pub fn is(&self, other: &Self) -> bool {
         match (self, other) {
