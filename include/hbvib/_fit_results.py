@@ -163,8 +163,10 @@ class Fit:
         if np.isfinite(info.harmonic_error):
             lines.append(f"errors by harmonics are below {info.harmonic_error:.2g} standard deviations")
         for number, (one, residual) in enumerate(zip(self.data, self.residuals)):
-            worst = int(np.abs(residual).max(axis=1).argmax())
-            lines.append(f"data set {number}: {one!r}, largest residual {np.abs(residual[worst]).max():.2g} at x = {one.x[worst]:g}")
+            # NaN where the fit was stopped before all data were evaluated.
+            size = np.nan_to_num(np.abs(residual)).max(axis=1)
+            worst = int(size.argmax())
+            lines.append(f"data set {number}: {one!r}, largest residual {size[worst]:.2g} at x = {one.x[worst]:g}")
         return "\n".join(lines)
 
     def predict(self, kind: DataKinds, x: ArrayLike, *, force: float = 1.0, response: Union[int, Response, None] = None,
