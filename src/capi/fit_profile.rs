@@ -130,8 +130,6 @@ pub unsafe extern "C" fn hbvib_fit_profile(
         let given = unsafe { loaded(parameters, p) }?;
         let described = unsafe { all_parameters(&given, &model) }?;
         let unknowns = unsafe { all_unknowns(unknowns, p) }?;
-        let read = unsafe { Described::listed(data, data_len, model.ndof()) }?;
-        let listed = unsafe { Described::sets(&read, true, 8) }?;
         let theta = unsafe { input(theta, p, 10, "theta") }?;
         let number = scanned(number, p)?;
         let values = unsafe { scan(values_len, values) }?;
@@ -139,6 +137,8 @@ pub unsafe extern "C" fn hbvib_fit_profile(
             return fail!(Argument, "rise = {rise}, needs a finite number > 0").with_argument(14);
         }
         unsafe { check_out(info, 15) }?;
+        let read = unsafe { Described::listed(data, data_len, model.ndof()) }?;
+        let listed = unsafe { Described::sets(&read, true, 8) }?;
         let n = values.len();
         let room = |to: *mut f64, n: usize| if to.is_null() { 0 } else { n };
         disjoint(
