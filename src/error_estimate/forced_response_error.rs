@@ -4,6 +4,7 @@ use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
+use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, boxed, try_push};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
@@ -160,12 +161,19 @@ impl<'a> ForcedEstimator<'a> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
         let least = cutoff_harmonic::least_extension(set);
+        // How a law of the caller resists the velocity is not known: the cut-off, which counts stiffness alone, may come too early.
+        let is_of_caller = |contact: &Contact| matches!(contact.kind, ContactKind::User(_));
+        let reach = if self.model.contacts().iter().any(is_of_caller) {
+            cutoff_harmonic::carried_from(set, 2 * least + 1)
+        } else {
+            least
+        };
         // With the cut-off known, bounds beyond it are not sought.
         let known = self
             .cutoff
             .as_ref()
             .and_then(|cutoff| cutoff.known(solved.omega, set.base()));
-        let enough = known.map_or(usize::MAX, |known| known.saturating_add(1).max(least));
+        let enough = known.map_or(usize::MAX, |known| known.saturating_add(1).max(reach));
         let most = self.affordable(solved, work, enough);
         if least > most {
             return Ok(None);
@@ -184,6 +192,9 @@ impl<'a> ForcedEstimator<'a> {
         if solved.condensed.has_exchanges() {
             // No harmonic is weak, and none beyond is left out of the estimate: see `jump_error`.
             core = core.max(least).min(most);
+        }
+        if least < reach && reach <= most {
+            core = core.max(reach);
         }
         Ok(Some(Extent {
             core,
