@@ -188,7 +188,7 @@ struct Search<'a> {
     found: Vec<(f64, Vec<Complex64>, Vec<Complex64>)>,
     /// Whether the last run found all that it was for.
     is_complete: bool,
-    /// What the last run for the largest did not settle.
+    /// Remainder that the last run for the largest did not settle.
     open: Option<Open>,
 }
 
