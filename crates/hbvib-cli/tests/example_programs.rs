@@ -185,7 +185,7 @@ fn reduced_by_scipy(folder: &Path, words: &str) {
         .canonicalize()
         .unwrap();
     let output = std::process::Command::new(python())
-        .args(["-B".as_ref(), script.as_os_str(), "200".as_ref()])
+        .args(["-B", script.to_str().unwrap(), "100", "1071", "1076"])
         .current_dir(folder)
         .env("PYTHONPATH", root().join("include").canonicalize().unwrap())
         .env("HBVIB_LIBRARY", libraries().join("libhbvib.so"))
