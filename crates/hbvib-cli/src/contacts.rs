@@ -175,11 +175,12 @@ fn loads(
                 continue;
             }
             return Err(format!(
-                "static: {} has no contact at {}: missing = \"left_out\" leaves such pairs out",
+                "static: {} has no contact at {}: missing = \"left_out\" leaves such pairs out{}",
                 path.display(),
                 known
                     .first()
-                    .map_or("a pair without names of nodes".into(), |node| format!("node {node}"))
+                    .map_or("a pair without names of nodes".into(), |node| format!("node {node}")),
+                side_looked_up(part)
             ));
         };
         let of_area = |pressure: f64| {
@@ -197,8 +198,25 @@ fn loads(
         kept.push(k);
         loads.push((preload, state.gap));
     }
+    if kept.is_empty() {
+        return Err(format!(
+            "static: {} has no contact at any of the {} pairs{}",
+            path.display(),
+            pairs.areas.len(),
+            side_looked_up(part)
+        ));
+    }
     pairs.keep(&kept, width);
     Ok(loads)
+}
+
+/// What an error adds where only one side of the pairs has nodes: the other side of a projected pair is a mean over several.
+fn side_looked_up(part: &ContactPart) -> &'static str {
+    if part.surfaces.is_some() {
+        "; [contact.surfaces] looks up the nodes of side a alone: a is the side that the static step has values of"
+    } else {
+        ""
+    }
 }
 
 /// Forces on the degrees of freedom of a contact that hold it at rest against its preload. The normal points from side b to side a, as

@@ -303,6 +303,11 @@ fn contacts_have_the_forces_of_the_static_step_and_its_stiffness() {
     );
     for (text, words) in [
         (left_out.replace("missing = 'left_out'\n", ""), "has no contact at node"),
+        // The values are those of the nodes of BOTTOM, which is side b now.
+        (
+            left_out.replace("a = 'BOTTOM'\nb = 'TOP'", "a = 'TOP'\nb = 'BOTTOM'"),
+            "looks up the nodes of side a alone",
+        ),
         (
             left_out.replace("kt =", "preload = 1.0\nkt ="),
             "static takes the place of preload",
