@@ -140,8 +140,11 @@ impl Stored {
                 "--dof {name}, needs a number from 0, or node and direction as 12.3"
             ));
         };
-        let wanted = [node as f64, f64::from(direction)];
-        let found = self.dofs.iter().position(|dof| *dof == wanted);
+        let wanted = (node, i64::from(direction));
+        let found = self
+            .dofs
+            .iter()
+            .position(|[node, direction]| (*node as i64, *direction as i64) == wanted);
         found.ok_or_else(|| match self.dofs.len() {
             0 => format!("--dof {name}: the file names no nodes, needs a number from 0"),
             _ => format!("--dof {name}: the file has no such node and direction"),

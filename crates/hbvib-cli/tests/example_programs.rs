@@ -25,14 +25,13 @@ fn solved(mut a: Vec<Vec<Complex64>>, mut b: Vec<Complex64>) -> Vec<Complex64> {
             .unwrap();
         a.swap(k, pivot);
         b.swap(k, pivot);
+        let (above, known) = (a[k].clone(), b[k]);
         for i in k + 1..n {
-            let factor = a[i][k] / a[k][k];
-            for j in k..n {
-                let above = a[k][j];
-                a[i][j] -= factor * above;
+            let factor = a[i][k] / above[k];
+            for (x, y) in a[i].iter_mut().zip(&above) {
+                *x -= factor * y;
             }
-            let above = b[k];
-            b[i] -= factor * above;
+            b[i] -= factor * known;
         }
     }
     for k in (0..n).rev() {
