@@ -613,6 +613,13 @@ module hbvib
       real(c_double) :: aic = 0, bic = 0, condition = 0, harmonic_error = 0, suspected_factor = 1
    end type hbvib_fit_info
 
+   !> Numbers of a profile.
+   type, bind(c) :: hbvib_fit_profile_info
+      integer(c_int32_t) :: struct_size = 48, reserved = 0
+      real(c_double) :: best = 0, unit = 1, lower = 0, upper = 0
+      integer(c_int64_t) :: found = 0
+   end type hbvib_fit_profile_info
+
    abstract interface
       !> A force of the caller.
       function hbvib_force_fn(user, call) bind(c) result(answer)
@@ -2325,6 +2332,34 @@ module hbvib
          real(c_double), intent(inout), optional :: sigma(*), shift(*)
          integer(c_int32_t) :: status
       end function hbvib_predict
+
+      function hbvib_fit_profile_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_fit_profile_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_fit_profile_info_init
+
+      function hbvib_fit_profile(model, solver, options, hooks, parameters, count, unknowns, data, data_len, theta, number, &
+         values_len, values, rise, info, loss, profiled) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_fit_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_parameter), intent(in) :: parameters(*)
+         integer(c_int64_t), value :: count
+         type(hbvib_unknown), intent(in), optional :: unknowns(*)
+         type(hbvib_data), intent(in) :: data(*)
+         integer(c_int64_t), value :: data_len
+         real(c_double), intent(in) :: theta(*)
+         integer(c_int64_t), value :: number, values_len
+         real(c_double), intent(in) :: values(*)
+         real(c_double), value :: rise
+         type(hbvib_fit_profile_info), intent(inout) :: info
+         real(c_double), intent(inout), optional :: loss(*), profiled(*)
+         integer(c_int32_t) :: status
+      end function hbvib_fit_profile
 
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)

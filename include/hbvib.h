@@ -5426,7 +5426,8 @@ hbvib_status hbvib_fit_info_init(hbvib_fit_info *i, size_t size_of_i);
 ///                hbvib_model_free.
 /// HBVIB_STOPPED_MAX_POINTS: the iterations did not suffice; HBVIB_STOPPED_STALLED: no step
 /// lowers the loss any more; HBVIB_STOPPED_BY_CALLER: by progress, with the best values so far;
-/// by other hooks nothing is written.
+/// by other hooks nothing is written. Many data are searched by a share of them first: a fit that
+/// is stopped there has the numbers of that share, and residuals and values NaN elsewhere.
 /// Errors: HBVIB_E_SINGULAR (the data do not tell the unknowns; the sentence says which and why),
 /// HBVIB_E_NO_CONVERGENCE (no solution for all data at the start), HBVIB_E_ARGUMENT,
 /// HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION, HBVIB_E_INDEX, HBVIB_E_UNSUPPORTED (options,
@@ -5484,6 +5485,82 @@ hbvib_status hbvib_predict(const hbvib_model *model,
                            double *values,
                            double *sigma,
                            double *shift);
+
+/// Numbers of a profile. Fill it by hbvib_fit_profile_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// Must be 0.
+  int32_t reserved;
+  /// Loss of the fit; chi2 unless it is robust.
+  double best;
+  /// Rise of the loss that is one standard deviation: 1, or chi2 over the degrees of freedom with
+  /// scale_covariance.
+  double unit;
+  /// Lower end of the interval; -infinity where the values do not reach it.
+  double lower;
+  /// Upper end; infinity where the values do not reach it.
+  double upper;
+  /// Number of values at which a fit was found.
+  int64_t found;
+} hbvib_fit_profile_info;
+
+/// Fills the numbers of a profile with zeros, and the unit with 1.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
+hbvib_status hbvib_fit_profile_info_init(hbvib_fit_profile_info *i, size_t size_of_i);
+
+/// Least loss of a fit over the values of one parameter, all others fitted again, and the interval
+/// that it gives: it holds where the data depend on the parameters so strongly curved that the
+/// covariance does not.
+///
+/// model       the model that was fitted, not the fitted one.
+/// solver      options of the fit; NULL: the defaults.
+/// options     options of the fit; NULL: the defaults.
+/// hooks       as those of a fit, for each value anew; NULL: none. A loss below that of the fit is
+///             told by a warning of the log.
+/// parameters  array of the parameters of the fit, struct_size of the first apart.
+/// count       how many, >= 1.
+/// unknowns    array of as many unknowns of the fit, struct_size of the first apart; starts are not
+///             used. NULL: the defaults.
+/// data        array of the data sets of the fit, struct_size of the first apart.
+/// data_len    how many, >= 1.
+/// theta       the fitted values, count numbers.
+/// number      number of the scanned parameter; those that are tied to it go with it.
+/// values_len  how many values, >= 1.
+/// values      values of the parameter in ascending order.
+/// rise        rise of the loss at the ends of the interval, in units of one standard deviation:
+///             3.841 for 95 %, 1 for one deviation; > 0. Between two values the root of the loss
+///             is taken for a line.
+/// info        receives loss, unit and interval; fill it by hbvib_fit_profile_info_init before.
+/// loss        receives the least loss at each value, priors included, values_len numbers; NaN
+///             where no fit was found; or NULL.
+/// profiled    receives the values of all parameters at each, values_len x count numbers, row after
+///             row; NaN where no fit was found; or NULL.
+/// HBVIB_STOPPED_BY_CALLER: by progress, with the values so far; by other hooks nothing is written.
+/// Errors: HBVIB_E_NO_CONVERGENCE (no solution for all data at theta), and those of hbvib_fit.
+/// Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_fit_profile(const hbvib_model *model,
+                               const hbvib_solver_options *solver,
+                               const hbvib_fit_options *options,
+                               const hbvib_hooks *hooks,
+                               const hbvib_parameter *parameters,
+                               int64_t count,
+                               const hbvib_unknown *unknowns,
+                               const hbvib_data *data,
+                               int64_t data_len,
+                               const double *theta,
+                               int64_t number,
+                               int64_t values_len,
+                               const double *values,
+                               double rise,
+                               hbvib_fit_profile_info *info,
+                               double *loss,
+                               double *profiled);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

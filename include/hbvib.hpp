@@ -425,6 +425,7 @@ using BandInfo = Filled<hbvib_band_info, hbvib_band_info_init>;
 using Unknown = Filled<hbvib_unknown, hbvib_unknown_init>;
 using FitOptions = Filled<hbvib_fit_options, hbvib_fit_options_init>;
 using FitInfo = Filled<hbvib_fit_info, hbvib_fit_info_init>;
+using FitProfileInfo = Filled<hbvib_fit_profile_info, hbvib_fit_profile_info_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
 
 /// Range and rate of a sweep in time. A guess handed in is borrowed until the sweep.
@@ -1075,6 +1076,16 @@ struct ComplexSensitivities {
 struct Fit {
   FitInfo info;
   std::vector<double> theta, covariance, residuals, values;
+};
+/// Least loss at values of one parameter, NaN where no fit was found, and the values of all parameters there, row after row.
+struct FitProfile {
+  FitProfileInfo info;
+  std::vector<double> loss, theta;
+  bool stopped;
+};
+/// Predicted numbers, two for each x, with their standard deviations and the shift of their means by the second order.
+struct Predicted {
+  std::vector<double> values, sigma, shift;
 };
 /// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
 /// unless requested.
@@ -1735,6 +1746,46 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     call.done_whole(hbvib_fit(get(), &solver, &options, &bound, given.data(), static_cast<Index>(p), described.empty() ? nullptr : described.data(),
                               sets.data(), static_cast<Index>(sets.size()), &out.info, out.theta.data(), out.covariance.data(),
                               static_cast<Index>(numbers), out.residuals.data(), out.values.data(), nullptr));
+    return out;
+  }
+  /// Least loss over values of parameter `number`, in ascending order, all others fitted again; `info` has the interval whose ends rise
+  /// by `rise` standard deviations squared, 3.841 for 95 %.
+  FitProfile fit_profile(const SolverOptions& solver, const std::vector<Parameter>& parameters, const std::vector<Unknown>& unknowns,
+                         const std::vector<DataSet>& data, Span<const double> theta, Index number, Span<const double> values, double rise = 3.841,
+                         const FitOptions& options = FitOptions(), const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const std::vector<hbvib_parameter> given(parameters.begin(), parameters.end());
+    const std::vector<hbvib_unknown> described(unknowns.begin(), unknowns.end());
+    const std::vector<hbvib_data> sets(data.begin(), data.end());
+    if (!described.empty() && described.size() != given.size())
+      throw Error(HBVIB_E_DIMENSION, 7, "needs as many unknowns as parameters, or none");
+    const auto p = static_cast<Index>(given.size());
+    if (theta.length() != p) throw Error(HBVIB_E_DIMENSION, 10, "needs as many numbers as parameters");
+    const std::size_t n = detail::extent(values.length());
+    FitProfile out{FitProfileInfo(), std::vector<double>(n), std::vector<double>(n * given.size()), false};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    const auto status = hbvib_fit_profile(get(), &solver, &options, &bound, given.data(), p, described.empty() ? nullptr : described.data(),
+                                          sets.data(), static_cast<Index>(sets.size()), theta.data(), number, values.length(), values.data(),
+                                          rise, &out.info, out.loss.data(), out.theta.data());
+    call.done(status);
+    out.stopped = status == HBVIB_STOPPED_BY_CALLER;
+    return out;
+  }
+  /// Predicts the numbers of a data set without values at fitted values of parameters with their covariance, row after row.
+  Predicted predict(const SolverOptions& solver, const DataSet& wanted, const std::vector<Parameter>& parameters, Span<const double> theta,
+                    Span<const double> covariance, const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const std::vector<hbvib_parameter> given(parameters.begin(), parameters.end());
+    const auto p = static_cast<Index>(given.size());
+    if (theta.length() != p || covariance.length() != p * p)
+      throw Error(HBVIB_E_DIMENSION, 7, "needs as many numbers as parameters, and its square");
+    const std::size_t n = 2 * detail::extent(wanted.n);
+    Predicted out{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+    const detail::BoundHooks bound(hooks);
+    detail::Call call;
+    call.done_whole(hbvib_predict(get(), &solver, &wanted, &bound, given.data(), p, theta.data(), covariance.data(), static_cast<Index>(n),
+                                  out.values.data(), out.sigma.data(), out.shift.data()));
     return out;
   }
   /// The motion in time while the frequency of the forces changes at a constant rate.

@@ -895,6 +895,7 @@ static const Struct DATA_STRUCT;
 static const Struct UNKNOWN_STRUCT;
 static const Struct FIT_OPTIONS_STRUCT;
 static const Struct FIT_INFO_STRUCT;
+static const Struct FIT_PROFILE_INFO_STRUCT;
 static const Field matrix_fields[] = {
   {"storage", INT32, offsetof(hbvib_matrix, storage), 1, NULL},
   {"scalar", INT32, offsetof(hbvib_matrix, scalar), 1, NULL},
@@ -1536,6 +1537,16 @@ static const Field fit_info_fields[] = {
 };
 static hbvib_status fit_info_fill(void *s) { return hbvib_fit_info_init(s, sizeof(hbvib_fit_info)); }
 static const Struct FIT_INFO_STRUCT = {"fit_info", sizeof(hbvib_fit_info), fit_info_fields, sizeof fit_info_fields / sizeof *fit_info_fields, fit_info_fill};
+
+static const Field fit_profile_info_fields[] = {
+  {"best", DOUBLE, offsetof(hbvib_fit_profile_info, best), 1, NULL},
+  {"unit", DOUBLE, offsetof(hbvib_fit_profile_info, unit), 1, NULL},
+  {"lower", DOUBLE, offsetof(hbvib_fit_profile_info, lower), 1, NULL},
+  {"upper", DOUBLE, offsetof(hbvib_fit_profile_info, upper), 1, NULL},
+  {"found", INT64, offsetof(hbvib_fit_profile_info, found), 1, NULL},
+};
+static hbvib_status fit_profile_info_fill(void *s) { return hbvib_fit_profile_info_init(s, sizeof(hbvib_fit_profile_info)); }
+static const Struct FIT_PROFILE_INFO_STRUCT = {"fit_profile_info", sizeof(hbvib_fit_profile_info), fit_profile_info_fields, sizeof fit_profile_info_fields / sizeof *fit_profile_info_fields, fit_profile_info_fill};
 
 static void call_version(Call *a) {
   double result_ = (double)hbvib_version();
@@ -3459,6 +3470,34 @@ static void call_predict(Call *a) {
   finish(a, status_);
 }
 
+static void call_fit_profile(Call *a) {
+  const hbvib_model *model_ = handle(a, "model");
+  const hbvib_solver_options *solver_ = structs(a, "solver", &SOLVER_OPTIONS_STRUCT);
+  const hbvib_fit_options *options_ = structs(a, "options", &FIT_OPTIONS_STRUCT);
+  const hbvib_hooks *hooks_ = hooks(a, "hooks");
+  const hbvib_parameter *parameters_ = structs(a, "parameters", &PARAMETER_STRUCT);
+  int64_t count_ = whole(a, "count");
+  const hbvib_unknown *unknowns_ = structs(a, "unknowns", &UNKNOWN_STRUCT);
+  const hbvib_data *data_ = structs(a, "data", &DATA_STRUCT);
+  int64_t data_len_ = whole(a, "data_len");
+  const double *theta_ = reals(a, "theta");
+  int64_t number_ = whole(a, "number");
+  int64_t values_len_ = whole(a, "values_len");
+  const double *values_ = reals(a, "values");
+  double rise_ = real(a, "rise");
+  hbvib_fit_profile_info info_;
+  hbvib_fit_profile_info_init(&info_, sizeof info_);
+  int64_t loss_n = room(a, "loss");
+  double *loss_ = array(loss_n, 1 * sizeof(double));
+  int64_t profiled_n = room(a, "profiled");
+  double *profiled_ = array(profiled_n, 1 * sizeof(double));
+  hbvib_status status_ = hbvib_fit_profile(model_, solver_, options_, hooks_, parameters_, count_, unknowns_, data_, data_len_, theta_, number_, values_len_, values_, rise_, &info_, loss_, profiled_);
+  give_struct(a, &info_, &FIT_PROFILE_INFO_STRUCT);
+  give_reals(a, loss_, loss_n);
+  give_reals(a, profiled_, profiled_n);
+  finish(a, status_);
+}
+
 static void call_contact_evaluate(Call *a) {
   const hbvib_contact *c_ = structs(a, "c", &CONTACT_STRUCT);
   int64_t harmonics_ = whole(a, "harmonics");
@@ -3689,6 +3728,7 @@ static const Function FUNCTIONS[] = {
   {"best_load_for_life", call_best_load_for_life, 7},
   {"fit", call_fit, 14},
   {"predict", call_predict, 12},
+  {"fit_profile", call_fit_profile, 16},
   {"contact_evaluate", call_contact_evaluate, 10},
   {"contact_evaluate_with_hooks", call_contact_evaluate_with_hooks, 11},
   {"forced_residual", call_forced_residual, 11},

@@ -123,7 +123,8 @@ pub use analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivit
 pub use analysis::damped_modes::{DampedModes, damped_modes};
 pub use analysis::design_peak::DesignPeak;
 pub use analysis::fit::{
-    DataKind, Fit, FitData, FitOptions, Loss, Prediction, Scale, Suspicion, Unknown, fit, predict,
+    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
+    fit_profile, predict,
 };
 pub use analysis::floquet::floquet;
 pub use analysis::forced_response::forced_response;

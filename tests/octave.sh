@@ -31,6 +31,10 @@ HBVIB_LIBRARY=$library PYTHONPATH=include "$python" tests/languages/octave/refer
 octave --eval "check('$work/numbers.json')" 2>&1 | tee "$work/check.log"
 grep -qx "check passed" "$work/check.log"
 
+# The fit of a joint prints what it prints in Python.
+octave --path "$root/examples/matlab" --eval "fit_joint('$root/examples/data/joint.csv')" >"$work/fit.log" 2>/dev/null || true
+HBVIB_LIBRARY=$library PYTHONPATH=include "$python" examples/python/fit_joint.py | cmp - "$work/fit.log"
+
 # Programs of the book, each in a session of its own; those that print a resonance print that of Python.
 "$python" - "$work" <<'END'
 import re, sys

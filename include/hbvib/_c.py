@@ -1024,6 +1024,7 @@ unknown: uint32 struct_size; int32 scale; double start lower upper prior_mean pr
 fit_options: uint32 struct_size; int32 scale_covariance; double huber; int64 starts max_iterations; double step
 fit_info: uint32 struct_size; int32 suspicion; double chi2 loss; int64 degrees_of_freedom data free iterations starts
     at_bound slipping; double aic bic condition harmonic_error suspected_factor
+fit_profile_info: uint32 struct_size; int32 reserved; double best unit lower upper; int64 found
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -1221,6 +1222,8 @@ fit_options_init: fit_options z
 fit_info_init: fit_info z
 fit: h solver_options fit_options hooks parameter l unknown data l fit_info p p l p p p
 predict: h solver_options data hooks parameter l p p l p p p
+fit_profile_info_init: fit_profile_info z
+fit_profile: h solver_options fit_options hooks parameter l unknown data l p l l p d fit_profile_info p p
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -1493,6 +1496,10 @@ if TYPE_CHECKING:
             values: Any, out: Any) -> int: ...
         def hbvib_predict(self, model: Any, solver: Any, wanted: Any, hooks: Any, parameters: Any, count: int, theta:
             Any, covariance: Any, capacity: int, values: Any, sigma: Any, shift: Any) -> int: ...
+        def hbvib_fit_profile_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_fit_profile(self, model: Any, solver: Any, options: Any, hooks: Any, parameters: Any, count: int,
+            unknowns: Any, data: Any, data_len: int, theta: Any, number: int, values_len: int, values: Any, rise: float,
+            info: Any, loss: Any, profiled: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,

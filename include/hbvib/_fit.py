@@ -93,9 +93,7 @@ class _Fits(_Owner):
                                           "they are hertz"), stacklevel=2)
         if status > Status.STOPPED_BY_CALLER:
             warnings.warn(StoppedEarly(_sentence(status), Status(status)), stacklevel=2)
-        kept: dict[str, Any] = dict(huber=huber, starts=starts, max_iterations=max_iterations, end_step=end_step, **solver)
-        found = Fit(model.clone(), fitted, tuple(listed), tuple(sets), kept, theta, covariance, residuals, values, info,
-                    Status(status), suspicion)
-        if scale_covariance and found.degrees_of_freedom > 0:
-            found._unit = found.chi2 / found.degrees_of_freedom
-        return found
+        kept: dict[str, Any] = dict(huber=huber, starts=starts, max_iterations=max_iterations, end_step=end_step,
+                                    scale_covariance=scale_covariance, **solver)
+        return Fit(model.clone(), fitted, tuple(listed), tuple(sets), kept, theta, covariance, residuals, values, info,
+                   Status(status), suspicion)

@@ -1,28 +1,32 @@
 """Results of a fit: values with their uncertainty, residuals, predictions, profiles, a report."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
 from ._analyses import _solver_options
-from ._c import DataKind, LogLevel, Scaling
+from ._c import DataKind, LogLevel, Scaling, Status
 from ._calls import _call, _Guard, _hooks
+from ._convert import _array, _whole
+from ._errors import Stopped, _sentence
 from ._library import structs
 from ._measured import Measured, Unknown
 from ._responses import Response
+from ._structs import _new
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ._c import Status, Suspicion
+    from ._c import Suspicion
+    from ._calls import CancelFlag, Hook
     from ._choices import DataKinds
     from ._model import Model
-    from ._results import ComplexArray, FloatArray
+    from ._results import ComplexArray, FloatArray, Progress
     from ._sensitivity import Parameter
 
 #: Options of Model.fit that are none of the solver.
-_OF_FIT = ("huber", "starts", "max_iterations", "end_step")
+_OF_FIT = ("huber", "starts", "max_iterations", "end_step", "scale_covariance")
 
 
 class SuspiciousUnits(UserWarning):
@@ -134,8 +138,6 @@ class Fit:
             self.correlation: FloatArray = np.asarray(covariance / np.outer(self.sd, self.sd))
         self.chi2, self.degrees_of_freedom = float(info.chi2), int(info.degrees_of_freedom)
         self.names = [_name(one.parameter) + (f" set {one.data_set}" if one.data_set >= 0 else "") for one in unknowns]
-        #: Rise of chi2 that is one standard deviation.
-        self._unit = 1.0
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} = {value:.5g} +- {sd:.2g}" for name, value, sd in zip(self.names, self.theta, self.sd))
@@ -161,8 +163,10 @@ class Fit:
         if np.isfinite(info.harmonic_error):
             lines.append(f"errors by harmonics are below {info.harmonic_error:.2g} standard deviations")
         for number, (one, residual) in enumerate(zip(self.data, self.residuals)):
-            worst = int(np.abs(residual).max(axis=1).argmax())
-            lines.append(f"data set {number}: {one!r}, largest residual {np.abs(residual[worst]).max():.2g} at x = {one.x[worst]:g}")
+            # NaN where the fit was stopped before all data were evaluated.
+            size = np.nan_to_num(np.abs(residual)).max(axis=1)
+            worst = int(size.argmax())
+            lines.append(f"data set {number}: {one!r}, largest residual {size[worst]:.2g} at x = {one.x[worst]:g}")
         return "\n".join(lines)
 
     def predict(self, kind: DataKinds, x: ArrayLike, *, force: float = 1.0, response: Union[int, Response, None] = None,
@@ -196,9 +200,12 @@ class Fit:
             first = [a + 1j * b for a, b in zip(first, second)]
         return Predicted(*first, *second)
 
-    def profile(self, number: int, values: Optional[ArrayLike] = None) -> Profile:
+    def profile(self, number: int, values: Optional[ArrayLike] = None, *, progress: Optional[Callable[[Progress], Any]] = None,
+                log: Optional[Callable[[LogLevel, str], Any]] = None, phase: Hook = None,
+                cancel: Optional[CancelFlag] = None) -> Profile:
         """Least chi2 at fixed values of one parameter, all others fitted again; None: 9 values within three standard deviations,
-        on the logarithm of what is positive. Parameters that are tied to it go with it.
+        on the logarithm of what is positive. Parameters that are tied to it go with it. Hooks are those of Model.fit; the values so
+        far are kept where progress stops it.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
@@ -209,55 +216,36 @@ class Fit:
         >>> bool(abs((high - low) / (2 * fit.sd[0]) - 1) < 0.05)
         True
         """
+        number = _whole(number, name="number")
+        if not -len(self.theta) <= number < len(self.theta):
+            raise IndexError(f"number = {number}, needs 0 .. {len(self.theta) - 1}")
+        number %= len(self.theta)
         if values is None:
             value, sd = float(self.theta[number]), float(self.sd[number])
             steps = np.linspace(-3, 3, 9)
             values = value * np.exp(steps * sd / value) if value > 0 else value + steps * sd
-        at = np.atleast_1d(np.asarray(values, float))
-        chi2 = np.full(len(at), np.nan)
-        for i, value in enumerate(at):
-            fixed, leader = self._fixed_at(number, float(value))
-            chi2[i] = self._at_fixed(fixed, leader)
-        best = self.chi2 if self._options["huber"] == 0 else float(self.info.loss)
-        return Profile(at, chi2, best, self._unit)
-
-    def _fixed_at(self, number: int, value: float) -> tuple[list[Unknown], int]:
-        """The unknowns as they were fitted, but one at a value, with all that is tied to the same, and which of them is free else."""
-        leaders = list(range(len(self.unknowns)))
-        for i, one in enumerate(self.unknowns):
-            if one.tied_to >= 0:
-                leaders[i] = leaders[one.tied_to]
-        leader = leaders[number]
-        factor = value / self.theta[number] if self.theta[number] != 0 else 1.0
-        starts = [float(start * factor) if leaders[i] == leader else float(start) for i, start in enumerate(self.theta)]
-        if number == leader:
-            starts[leader] = value
-        fixed = [one._replace(start=start) for one, start in zip(self.unknowns, starts)]
-        fixed[leader] = fixed[leader]._replace(lower=starts[leader], upper=starts[leader])
-        return fixed, leader
-
-    def _at_fixed(self, fixed: list[Unknown], number: int) -> float:
-        """Least chi2 (of a robust fit: loss) with a fixed parameter."""
-        prior = self.unknowns[number].prior
-        known = 0.0 if prior is None else ((float(fixed[number].start or 0.0) - prior[0]) / prior[1]) ** 2
-        if any(one.tied_to < 0 and (one.lower is None or one.lower != one.upper) for one in fixed):
-            return float(self._original.fit(fixed, self.data, **self._options).info.loss) + known
-        # Without anything that is free only the residuals are needed: those of predictions.
-        total = known
-        for number_of_set, one in enumerate(self.data):
-            at = self._with(np.array([float(u.start or 0.0) for u in fixed])).predict(
-                one.kind, one.x, force=one.force, response=one.response, mode=one.mode, omega=one.omega if any(one.omega) else None,
-                data_set=number_of_set)
-            numbers = one._residuals(at.value, at.second)
-            size, limit = np.abs(numbers), self._options["huber"]
-            total += float(np.where((limit > 0) & (size > limit), 2 * limit * size - limit ** 2, size ** 2).sum())
-        return total
-
-    def _with(self, theta: FloatArray) -> Fit:
-        """The same with other values and without uncertainty."""
-        return Fit(self._original, self.model, self.unknowns, self.data, self._options, theta, np.zeros_like(self.covariance),
-                   np.zeros(sum(part.size for part in self.residuals)), np.zeros(sum(part.size for part in self.values)), self.info,
-                   self.status, self.suspicion)
+        at = _array("values", np.atleast_1d(values), np.float64, [None])
+        order = np.argsort(at, kind="stable")
+        ascending, (p, sets) = np.ascontiguousarray(at[order]), (len(self.theta), len(self.data))
+        given = {name: value for name, value in self._options.items() if name not in _OF_FIT}
+        solver = _solver_options("profile", given)
+        options = _new("hbvib_fit_options", huber=self._options["huber"], starts=self._options["starts"],
+                       max_iterations=self._options["max_iterations"], step=self._options["end_step"],
+                       scale_covariance=int(self._options["scale_covariance"]))
+        parameters = [one.parameter._description() for one in self.unknowns]
+        unknowns, measured = [one._description() for one in self.unknowns], [one._description() for one in self.data]
+        info, loss = _new("hbvib_fit_profile_info", best=np.nan), np.full(len(at), np.nan)
+        with _Guard() as guard:
+            hooks = _hooks(guard, progress, log, LogLevel.INFO, cancel, phase)
+            status = _call("hbvib_fit_profile", self._original.handle, solver, options, hooks,
+                           (structs["hbvib_parameter"] * p)(*parameters), p, (structs["hbvib_unknown"] * p)(*unknowns),
+                           (structs["hbvib_data"] * sets)(*measured), sets, self.theta, number, len(at), ascending, 1.0, info, loss,
+                           None, guard=guard)
+        if np.isnan(info.best):
+            raise Stopped(_sentence(status), Status(status), 0)
+        chi2 = np.empty(len(at))
+        chi2[order] = loss
+        return Profile(at, chi2, float(info.best), float(info.unit))
 
 
 def _name(parameter: Parameter) -> str:

@@ -65,16 +65,6 @@ class Measured:
     def __repr__(self) -> str:
         return f"<hbvib.Measured: {len(self)} of {self.kind.name.lower()}, force {self.force:g}>"
 
-    def _residuals(self, value: Any, second: FloatArray) -> FloatArray:
-        """Residuals in standard deviations."""
-        if self.kind == DataKind.RESPONSE:
-            gap = np.sqrt(2) * (value - self.value) / self.sigma
-            return np.concatenate([gap.real, gap.imag])
-        first = (value - self.value.real) / self.sigma
-        if self.second_sigma is None:
-            return np.asarray(first)
-        return np.concatenate([first, (second - self.value.imag) / self.second_sigma])
-
     def _description(self) -> Any:
         described = _new("hbvib_data", kind=self.kind, force_factor=self.force, mode=self.mode, omega_start=self.omega[0],
                          omega_stop=self.omega[1], n=len(self), x=self.x, value=self.value, sigma=self.sigma,

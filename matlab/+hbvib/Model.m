@@ -228,6 +228,58 @@ classdef Model < handle
       hbvib.internal.guarded();
     end
 
+    function found = fit(self, unknowns, data, varargin)
+    %FIT  Fits parameters to data of tests: theta, sd, covariance, chi2, degrees_of_freedom, residuals, values, info, status.
+    %   unknowns  a cell array of structs: kind ('kt', 'mu', 'stiffness' ...), contact, scaling ('factor'), start, lower, upper,
+    %             prior ([mean deviation]), scale, tied_to, data_set.
+    %   data      an array of structs: kind ('response', 'amplitude', 'peak', 'backbone', 'linear_mode'), x, value, sigma,
+    %             second_sigma, force, dof, response, mode, omega ([start stop]); values of a pair are complex.
+    %   options   huber, starts, max_iterations, end_step, scale_covariance, progress, and those of the solver.
+      own = struct('huber', 0, 'starts', 1, 'max_iterations', 60, 'end_step', 1e-6, 'scale_covariance', 0, 'progress', []);
+      [own, rest] = hbvib.internal.options('fit', varargin, own, true);
+      hooks = struct('progress', hbvib.internal.guarded(own.progress));
+      own.step = own.end_step;
+      own = rmfield(own, {'progress', 'end_step'});
+      [parameters, described] = hbvib.internal.fit_unknowns(unknowns, self.contacts);
+      sets = hbvib.internal.fit_data(data, self.ndof);
+      solver = hbvib.internal.solver(rest, self.ndof);
+      [p, rows] = deal(numel(parameters), 2 * sum([sets.n]));
+      [info, theta, covariance, residuals, values, id, status] = ...
+          hbvib_mex('fit', self.id, solver, own, hooks, parameters, p, described, sets, numel(sets), p, p * p, rows, rows, rows);
+      hbvib.internal.guarded();
+      covariance = reshape(covariance, p, p);
+      found = struct('theta', theta, 'sd', sqrt(diag(covariance)), 'covariance', covariance, 'chi2', info.chi2, ...
+                     'degrees_of_freedom', info.degrees_of_freedom, 'residuals', reshape(residuals, 2, []).', ...
+                     'values', reshape(values, 2, []).', 'info', info, 'status', status, 'parameters', parameters, ...
+                     'unknowns', described, 'data', sets, 'solver', solver, 'options', own);
+      if id ~= 0, hbvib_mex('model_free', id); end
+    end
+
+    function [value, sigma, shift] = predict(self, found, wanted)
+    %PREDICT  Numbers of a fit of this model with their standard deviations, two columns for each x; `wanted` is data without
+    %   values. shift is that of the mean by the second order.
+      sets = hbvib.internal.fit_data(wanted, self.ndof);
+      rows = 2 * sets.n;
+      [value, sigma, shift] = hbvib_mex('predict', self.id, found.solver, sets, [], found.parameters, numel(found.theta), ...
+                                        found.theta, found.covariance, rows, rows, rows, rows);
+      value = reshape(value, 2, []).';
+      sigma = reshape(sigma, 2, []).';
+      shift = reshape(shift, 2, []).';
+    end
+
+    function [info, loss, theta] = fit_profile(self, found, number, values, rise)
+    %FIT_PROFILE  Least loss of a fit of this model over values of one parameter in ascending order, all others fitted again.
+    %   info has the interval `lower` .. `upper` at the rise (3.841: 95 %) in standard deviations squared; a column of theta
+    %   has the parameters at a value.
+      if nargin < 5, rise = 3.841; end
+      [p, n] = deal(numel(found.theta), numel(values));
+      number = hbvib.internal.zero('number', number, p);
+      [info, loss, theta] = hbvib_mex('fit_profile', self.id, found.solver, found.options, [], found.parameters, p, ...
+                                      found.unknowns, found.data, numel(found.data), found.theta, number, n, values(:), rise, ...
+                                      n, n * p);
+      theta = reshape(theta, p, n);
+    end
+
     function [x, info] = time_response(self, omega, varargin)
     %TIME_RESPONSE  The periodic response at one frequency by integration in time: harmonics ndof x (H + 1), and how it went.
     %   options  harmonics (9), method: 'shooting' or 'marching', tolerance, max_periods.

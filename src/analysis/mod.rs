@@ -97,7 +97,8 @@ pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
 pub use crate::analysis::design_peak::DesignPeak;
 pub use crate::analysis::fit::{
-    DataKind, Fit, FitData, FitOptions, Loss, Prediction, Scale, Suspicion, Unknown, fit, predict,
+    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
+    fit_profile, predict,
 };
 pub use crate::analysis::floquet::floquet;
 pub use crate::analysis::forced_response::forced_response;

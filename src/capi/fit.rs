@@ -260,7 +260,8 @@ pub unsafe extern "C" fn hbvib_fit_info_init(i: *mut hbvib_fit_info, size_of_i: 
 ///                hbvib_model_free.
 /// HBVIB_STOPPED_MAX_POINTS: the iterations did not suffice; HBVIB_STOPPED_STALLED: no step
 /// lowers the loss any more; HBVIB_STOPPED_BY_CALLER: by progress, with the best values so far;
-/// by other hooks nothing is written.
+/// by other hooks nothing is written. Many data are searched by a share of them first: a fit that
+/// is stopped there has the numbers of that share, and residuals and values NaN elsewhere.
 /// Errors: HBVIB_E_SINGULAR (the data do not tell the unknowns; the sentence says which and why),
 /// HBVIB_E_NO_CONVERGENCE (no solution for all data at the start), HBVIB_E_ARGUMENT,
 /// HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION, HBVIB_E_INDEX, HBVIB_E_UNSUPPORTED (options,
@@ -300,14 +301,9 @@ pub unsafe extern "C" fn hbvib_fit(
         let given = unsafe { loaded(parameters, count) }?;
         let described = unsafe { all_parameters(&given, &model) }?;
         let unknowns = unsafe { all_unknowns(unknowns, count) }?;
-        let sets = super::arrays::count(data_len, 9, "data_len")?;
-        if sets == 0 {
-            return fail!(Dimension, "data_len = 0, needs at least one set").with_argument(9);
-        }
-        check_pointer(data, 8, "data")?;
+        let read = unsafe { Described::listed(data, data_len, model.ndof()) }?;
         unsafe { check_out(info, 10) }?;
         check_pointer(theta, 11, "theta")?;
-        let read = unsafe { Described::all(data, sets, model.ndof(), 8) }?;
         let listed = unsafe { Described::sets(&read, true, 8) }?;
         let numbers = 2 * listed.iter().map(|set| set.x.len()).sum::<usize>();
         let wanted = if residuals.is_null() && values.is_null() {
@@ -433,14 +429,14 @@ pub unsafe extern "C" fn hbvib_predict(
     })
 }
 
-fn parameter_count(count: i64) -> Result<usize> {
+pub(super) fn parameter_count(count: i64) -> Result<usize> {
     match super::arrays::count(count, 6, "count")? {
         0 => fail!(Dimension, "count = 0, needs at least one parameter").with_argument(6),
         count => Ok(count),
     }
 }
 
-unsafe fn all_parameters<'a>(given: &'a [hbvib_parameter], model: &Model) -> Result<Vec<Parameter<'a>>> {
+pub(super) unsafe fn all_parameters<'a>(given: &'a [hbvib_parameter], model: &Model) -> Result<Vec<Parameter<'a>>> {
     let mut described = Vec::new();
     for one in given {
         try_push(
@@ -452,7 +448,7 @@ unsafe fn all_parameters<'a>(given: &'a [hbvib_parameter], model: &Model) -> Res
     Ok(described)
 }
 
-fn fit_options(o: &hbvib_fit_options) -> Result<FitOptions> {
+pub(super) fn fit_options(o: &hbvib_fit_options) -> Result<FitOptions> {
     if !matches!(o.scale_covariance, 0 | 1) {
         return fail!(Argument, "scale_covariance = {}, needs 0 or 1", o.scale_covariance);
     }
@@ -477,7 +473,7 @@ fn fit_options(o: &hbvib_fit_options) -> Result<FitOptions> {
 
 /// The unknowns of argument 7, whose distance is the size that the first one states; NULL: the
 /// defaults.
-unsafe fn all_unknowns(p: *const hbvib_unknown, count: usize) -> Result<Vec<Unknown>> {
+pub(super) unsafe fn all_unknowns(p: *const hbvib_unknown, count: usize) -> Result<Vec<Unknown>> {
     let mut list = Vec::new();
     if p.is_null() {
         for _ in 0..count {

@@ -103,6 +103,19 @@ pub(super) struct Described {
 }
 
 impl Described {
+    /// Reads the data sets of arguments 8 and 9.
+    ///
+    /// # Safety
+    /// As [`Described::all`].
+    pub unsafe fn listed(data: *const hbvib_data, data_len: i64, ndof: usize) -> Result<Vec<Self>> {
+        let sets = count(data_len, 9, "data_len")?;
+        if sets == 0 {
+            return fail!(Dimension, "data_len = 0, needs at least one set").with_argument(9);
+        }
+        check_pointer(data, 8, "data")?;
+        unsafe { Self::all(data, sets, ndof, 8) }
+    }
+
     /// Reads sets whose distance is the size that the first one states.
     ///
     /// # Safety

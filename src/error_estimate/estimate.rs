@@ -108,6 +108,18 @@ impl Corrected {
     pub(crate) fn size(&self, i: usize) -> f64 {
         size_of_harmonic(&self.set, (&self.motion, &self.rates), i)
     }
+
+    /// Drops the harmonics above the fundamental whose size is rounding: of this size at most.
+    pub(super) fn drop_rounding(&mut self, rounding: f64) {
+        for i in 0..self.set.numbers().len() {
+            if self.set.numbers()[i] <= 1 || self.size(i) > rounding {
+                continue;
+            }
+            for signal in self.motion.chunks_exact_mut(self.set.packed_len()) {
+                self.set.set(signal, i, Complex64::ZERO);
+            }
+        }
+    }
 }
 
 /// Size of the i-th harmonic of packed motions, of rates divided by its number.
@@ -258,14 +270,15 @@ pub(super) fn has_converged_tail(tail: &[(usize, f64)], change: f64) -> bool {
 }
 
 /// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem
-/// as well: no force acts above them, and below them more samples change nothing.
+/// as well: no force acts above them, but for `rounding` of a residual, and below them more samples change nothing.
 pub(super) fn omits_nothing(
-    (residual, scale): (&[f64], f64),
+    (residual, scale, rounding): (&[f64], f64, f64),
     set: &HarmonicSet,
     below: &HarmonicSet,
     tolerance: f64,
 ) -> bool {
-    above(set, below, residual) <= ROUNDING * scale && norm(residual) <= 10.0 * tolerance * scale
+    above(set, below, residual) <= rounding.max(ROUNDING * scale)
+        && norm(residual) <= rounding.max(10.0 * tolerance * scale)
 }
 
 /// Norm of the part of packed signals of `set` above the harmonics of `below`.

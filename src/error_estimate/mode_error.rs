@@ -36,6 +36,9 @@ const NEGLIGIBLE_CHANGE: f64 = 0.1;
 /// a backbone the latter passes through zero.
 const MODE_ERROR_NEGLIGIBLE: f64 = 1e-3;
 
+/// Size of a harmonic over the rounding of its residual, up to which it is rounding as well.
+const HIDDEN: f64 = 10.0;
+
 /// Damping ratio below which a mode has none but round-off, so that errors are not relative to it.
 pub const NO_DAMPING: f64 = 1e-8;
 
@@ -325,9 +328,15 @@ impl<'a> ModeEstimator<'a> {
         if !system.evaluate(&start)? {
             return Ok(None);
         }
-        let residual = (&system.at.values[..n - 2], system.at.scale);
+        // Forces count from the static ones, whose rounding hides those of a small vibration.
+        let rounding = system.at.rounding;
+        let residual = (&system.at.values[..n - 2], system.at.scale, rounding);
         if omits_nothing(residual, set, solved.condensed.set(), self.options.tol_residual) {
-            return solved.exact(damping).map(Some);
+            let mut exact = solved.exact(damping)?;
+            exact
+                .corrected
+                .drop_rounding(HIDDEN * rounding * a * condensed.length());
+            return Ok(Some(exact));
         }
         system.measure_by_point(from.is_some());
         let most = SHARE * NEGLIGIBLE_CHANGE * self.options.tolerance;
@@ -342,7 +351,7 @@ impl<'a> ModeEstimator<'a> {
                     && (left <= SHARE * changed
                         || left <= (most * state.damping_unit).max(SHARE * MODE_ERROR_NEGLIGIBLE * NO_DAMPING));
             }
-            (last <= SHARE * moved || last <= ROUNDING * norm(&start))
+            (last <= SHARE * moved || last <= rounding.max(ROUNDING * norm(&start)))
                 && (left <= SHARE * changed || left <= SHARE * MODE_ERROR_NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
         let Some(extended) = extend(system, (&start, &start), enough, FirstStep::Checked, self.interrupt)? else {

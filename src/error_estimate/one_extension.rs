@@ -60,7 +60,7 @@ pub(super) fn extend_once(
     if !system.evaluate(&before)? {
         return Ok(None);
     }
-    let residual = (&system.at.values[..], system.at.scale);
+    let residual = (&system.at.values[..], system.at.scale, 0.0);
     if omits_nothing(residual, set, solved.condensed.set(), tolerance) {
         return solved.exact(0.0).map(Some);
     }

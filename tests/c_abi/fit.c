@@ -28,8 +28,9 @@ int main(void)
     hbvib_data data, wanted;
     hbvib_fit_options options;
     hbvib_fit_info info;
+    hbvib_fit_profile_info interval;
     double value[2 * N], derivatives[2 * P], by_omega[2], theta[P], covariance[P * P], residuals[2 * N], values[2 * N];
-    double told[2], deviation[2], shift[2];
+    double told[2], deviation[2], shift[2], scan[3], loss[3], profiled[3 * P];
     int64_t reasons[P], onset = 7;
     int i;
 
@@ -92,6 +93,22 @@ int main(void)
     WORKS("predict", hbvib_predict(model, &solver, &wanted, NULL, p, P, theta, covariance, 2, told, deviation, shift));
     EXPECT("peak", told[0] > 0.4 && told[1] > 1.1 && told[1] < 1.4 && deviation[0] > 0 && shift[0] == shift[0]);
     WORKS("free", hbvib_model_free(fitted));
+
+    for (i = 0; i < 3; i++) scan[i] = theta[1] + (i - 1) * 3 * sqrt(covariance[3]);
+    WORKS("info", hbvib_fit_profile_info_init(&interval, sizeof interval));
+    EXPECT("defaults", interval.unit == 1 && interval.found == 0 && interval.lower == 0);
+    WORKS("profile", hbvib_fit_profile(model, &solver, &options, NULL, p, P, u, &data, 1, theta, 1, 3, scan, 1, &interval, loss, profiled));
+    EXPECT("loss", loss[0] > 4 && loss[1] < 1e-7 && loss[2] > 4 && interval.found == 3 && interval.best < 1e-8);
+    EXPECT("interval", fabs((interval.upper - interval.lower) / (2 * sqrt(covariance[3])) - 1) < 0.1);
+    EXPECT("profiled", profiled[1] == scan[0] && profiled[5] == scan[2] && fabs(profiled[2] - 1) < 1e-6);
+    REFUSED("number", hbvib_fit_profile(model, &solver, NULL, NULL, p, P, u, &data, 1, theta, 2, 3, scan, 1, &interval, loss, NULL),
+            HBVIB_E_INDEX, 11, "number = 2");
+    REFUSED("rise", hbvib_fit_profile(model, &solver, NULL, NULL, p, P, u, &data, 1, theta, 1, 3, scan, 0, &interval, loss, NULL),
+            HBVIB_E_ARGUMENT, 14, "rise = 0");
+    REFUSED("no values", hbvib_fit_profile(model, &solver, NULL, NULL, p, P, u, &data, 1, theta, 1, 0, scan, 1, &interval, loss, NULL),
+            HBVIB_E_DIMENSION, 12, "values_len = 0");
+    REFUSED("one room", hbvib_fit_profile(model, &solver, NULL, NULL, p, P, u, &data, 1, theta, 1, 3, scan, 1, &interval, loss, loss),
+            HBVIB_E_ARGUMENT, 17, "overlap");
 
     REFUSED("capacity", hbvib_predict(model, &solver, &wanted, NULL, p, P, theta, covariance, 1, told, NULL, NULL), HBVIB_E_DIMENSION, 9,
             "needs capacity = 2");

@@ -4,6 +4,7 @@
 mod common;
 
 mod damped_mode;
+mod families;
 mod free_bodies;
 mod natural_frequencies;
 mod rotating_modes;

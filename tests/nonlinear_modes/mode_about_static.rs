@@ -152,6 +152,49 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
     }
 }
 
+#[test]
+fn a_small_vibration_about_a_large_static_motion_is_linear_and_has_a_known_error() {
+    // The static forces are 10^4 to 10^6 times those of the vibration, and so is their rounding.
+    for (n, preload) in [(20, 1.0), (60, 10.0), (60, 100.0), (130, 1.0)] {
+        let (mut k, mut m) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for i in 0..n {
+            k[i * (n + 1)] = if i + 1 < n { 2.02 } else { 1.02 };
+            m[i * (n + 1)] = 1.0;
+            if i > 0 {
+                k[i * n + i - 1] = -1.0;
+                k[(i - 1) * n + i] = -1.0;
+            }
+        }
+        let mut model = Model::new(n).unwrap();
+        for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
+            model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
+        }
+        model.set_rayleigh(0.003, 0.002).unwrap();
+        let at = [Some(n / 2), Some(n / 2 + 1)];
+        model
+            .add_contact(&Contact::friction_2d(at, [None; 2], (0.3, 0.3), 0.3, preload))
+            .unwrap();
+        let range = ModeOptions {
+            log10_start: -3.0,
+            log10_stop: -1.0,
+            ..ModeOptions::default()
+        };
+        let mode = nonlinear_mode(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap();
+        assert_eq!(mode.status(), Status::Ok, "{n}, {preload}");
+        let linear = mode.omega()[0];
+        for point in 0..mode.points() {
+            let error = mode.error_estimate()[point];
+            assert!(error <= 1e-9, "{n}, {preload}, point {point}: {error:e}");
+            assert!(
+                (mode.omega()[point] / linear - 1.0).abs() < 1e-9,
+                "{n}, {preload}, {point}"
+            );
+        }
+        let last = mode.harmonics_used()[mode.points() - 1];
+        assert!(last <= 3.0, "{n}, {preload}: {last} harmonics");
+    }
+}
+
 /// A sector without mirror symmetry, pressed to the ground and to the next sector.
 pub fn pressed_sector(engine_order: i64) -> Skewed {
     let mut skewed = Skewed::new(engine_order);

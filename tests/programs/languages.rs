@@ -332,12 +332,25 @@ pub fn check_table(caller: &str, text: &str) {
     }
 }
 
+/// Output of a program that fits a joint to a file of responses.
+fn fitted(mut program: Command) -> String {
+    printed(program.arg(root().join("examples/data/joint.csv")))
+}
+
 #[test]
 fn five_languages_print_one_table() {
     let folder = copied("examples/c", "c");
     make(&folder);
     let c = printed(&mut Command::new(folder.join("ring_damper")));
     check_table("C", &c);
+    let fit = fitted(Command::new(folder.join("fit_joint")));
+    let chi2 = fit
+        .lines()
+        .nth(4)
+        .and_then(|line| line.split_whitespace().nth(1))
+        .unwrap_or("");
+    let wanted = number(&data("identify.json")["fit"]["chi2"]);
+    assert!((chi2.parse::<f64>().unwrap() / wanted - 1.0).abs() < 1e-12, "{fit}");
 
     let stat = folder.join("static");
     run(Command::new("cc")
@@ -355,11 +368,21 @@ fn five_languages_print_one_table() {
     cmake(&folder);
     let cpp = printed(&mut Command::new(folder.join("build/ring_damper")));
     assert_eq!(cpp, c, "C++ and C");
+    assert_eq!(
+        fitted(Command::new(folder.join("build/fit_joint"))),
+        fit,
+        "a fit in C++ and C"
+    );
 
     let folder = copied("examples/fortran", "fortran");
     make(&folder);
     let fortran = printed(&mut Command::new(folder.join("ring_damper")));
     assert_eq!(fortran, c, "Fortran and C");
+    assert_eq!(
+        fitted(Command::new(folder.join("fit_joint"))),
+        fit,
+        "a fit in Fortran and C"
+    );
 
     let folder = copied("examples/fortran", "fortran_cmake");
     fs::write(
@@ -385,6 +408,11 @@ fn five_languages_print_one_table() {
             .current_dir(&folder),
     );
     assert_eq!(text, c, "Python and C");
+    assert_eq!(
+        fitted(script(&folder.join("fit_joint.py"))),
+        fit,
+        "a fit in Python and C"
+    );
     let figures = files(&folder.join("figures"));
     assert!(!figures.is_empty());
     for path in figures {

@@ -84,6 +84,7 @@ fn in_rust() -> String {
         hbvib_unknown { struct_size, scale, start, lower, upper, prior_mean, prior_sigma, tied_to, has_start, has_lower, has_upper, reserved, data_set }
         hbvib_fit_options { struct_size, scale_covariance, huber, starts, max_iterations, step }
         hbvib_fit_info { struct_size, suspicion, chi2, loss, degrees_of_freedom, data, free, iterations, starts, at_bound, slipping, aic, bic, condition, harmonic_error, suspected_factor }
+        hbvib_fit_profile_info { struct_size, reserved, best, unit, lower, upper, found }
         // END GENERATED
     }
 }

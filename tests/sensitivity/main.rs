@@ -13,6 +13,7 @@ mod differences;
 mod fit_coverage;
 mod fit_of_modes;
 mod fit_of_responses;
+mod fit_profiles;
 mod fit_uncertainty;
 mod life;
 mod life_patch;

@@ -111,6 +111,7 @@ pub const SECTIONS: [Section; 13] = [
             "life",
             "fit_data",
             "fit",
+            "fit_profile",
         ],
     },
     Section {

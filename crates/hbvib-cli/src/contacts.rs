@@ -210,7 +210,7 @@ fn loads(
     Ok(loads)
 }
 
-/// What an error adds where only one side of the pairs has nodes: the other side of a projected pair is a mean over several.
+/// Remedy of the error where only one side of the pairs has nodes: the other side of a projected pair is a mean over several.
 fn side_looked_up(part: &ContactPart) -> &'static str {
     if part.surfaces.is_some() {
         "; [contact.surfaces] looks up the nodes of side a alone: a is the side that the static step has values of"

@@ -166,6 +166,60 @@ fn matlab(vectors: &[(&str, Vec<f64>, Vec<f64>)]) -> Vec<u8> {
     file
 }
 
+/// A NumPy archive with vectors, as numpy.savez writes it: a zip file whose members are stored without compression.
+fn archive(vectors: &[(&str, Vec<f64>)]) -> Vec<u8> {
+    let checksum = |bytes: &[u8]| {
+        !bytes.iter().fold(!0_u32, |sum, byte| {
+            (0..8).fold(sum ^ u32::from(*byte), |c, _| {
+                (c >> 1) ^ (0xEDB8_8320 & (c & 1).wrapping_neg())
+            })
+        })
+    };
+    let (mut file, mut directory) = (Vec::new(), Vec::new());
+    for (name, values) in vectors {
+        let mut head = format!(
+            "{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}",
+            values.len()
+        );
+        let length = (head.len() + 11).next_multiple_of(64) - 10;
+        head = format!("{head:<0$}\n", length - 1);
+        let mut member = b"\x93NUMPY\x01\x00".to_vec();
+        member.extend(u16::try_from(head.len()).unwrap().to_le_bytes());
+        member.extend(head.as_bytes());
+        member.extend(values.iter().flat_map(|x| x.to_le_bytes()));
+        let name = format!("{name}.npy");
+        let (size, start) = (u32::try_from(member.len()).unwrap(), u32::try_from(file.len()).unwrap());
+        // Version, flags, method, time and date, then what both headers have.
+        let mut common = [20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0].to_vec();
+        for number in [checksum(&member), size, size] {
+            common.extend(number.to_le_bytes());
+        }
+        common.extend(u16::try_from(name.len()).unwrap().to_le_bytes());
+        common.extend([0; 2]);
+        file.extend(b"PK\x03\x04");
+        file.extend(&common);
+        file.extend(name.as_bytes());
+        file.extend(member);
+        directory.extend(b"PK\x01\x02\x14\x00");
+        directory.extend(common);
+        directory.extend([0; 10]);
+        directory.extend(start.to_le_bytes());
+        directory.extend(name.as_bytes());
+    }
+    let (size, start) = (
+        u32::try_from(directory.len()).unwrap(),
+        u32::try_from(file.len()).unwrap(),
+    );
+    let count = u16::try_from(vectors.len()).unwrap().to_le_bytes();
+    file.extend(directory);
+    file.extend(b"PK\x05\x06\0\0\0\0");
+    file.extend([count, count].concat());
+    file.extend(size.to_le_bytes());
+    file.extend(start.to_le_bytes());
+    file.extend([0; 2]);
+    file
+}
+
 #[test]
 fn vectors_of_matlab_have_their_deviations_from_coherence() {
     let (mut hz, mut re, mut im) = (Vec::new(), Vec::new(), Vec::new());
@@ -265,7 +319,16 @@ fn a_decay_is_a_backbone() {
         let (csv, uff) = (folder.join(format!("{order}.csv")), folder.join(format!("{order}.uff")));
         fs::write(&csv, table).unwrap();
         fs::write(&uff, history).unwrap();
-        for (path, component) in [(csv, format!("component = {order}\n")), (uff, String::new())] {
+        let named = format!("component = {order}\n");
+        let mut files = vec![(csv, named.clone()), (uff, String::new())];
+        if order == 0 {
+            let (time, signal): (Vec<f64>, Vec<f64>) = samples.iter().copied().unzip();
+            let (mat, npz) = (folder.join("0.mat"), folder.join("0.npz"));
+            fs::write(&npz, archive(&[("time", time.clone()), ("signal", signal.clone())])).unwrap();
+            fs::write(&mat, matlab(&[("time", time, vec![]), ("signal", signal, vec![])])).unwrap();
+            files.extend([(mat, named.clone()), (npz, named)]);
+        }
+        for (path, component) in files {
             let kind = path.extension().unwrap().to_str().unwrap();
             let job = format!(
                 "[[contact]]\nkind = 'jenkins'\na = [0]\nb = [-1]\nkt = 0.2\nmu = 0.3\npreload = 1.0\n\

@@ -1022,6 +1022,18 @@ struct hbvib_fit_info
 end
 hbvib_fit_info() = initialised(hbvib_fit_info, dlsym_(:hbvib_fit_info_init))
 
+"Numbers of a profile."
+struct hbvib_fit_profile_info
+    struct_size::UInt32
+    reserved::Int32
+    best::Float64
+    unit::Float64
+    lower::Float64
+    upper::Float64
+    found::Int64
+end
+hbvib_fit_profile_info() = initialised(hbvib_fit_profile_info, dlsym_(:hbvib_fit_profile_info_init))
+
 "Version of the library as major * 65536 + minor * 256 + patch."
 hbvib_version() = ccall(dlsym_(:hbvib_version), UInt32, ())
 "Version of the library as text, \"0.1.0\": static, never to be freed."
@@ -1390,6 +1402,10 @@ hbvib_fit_info_init(i, size_of_i) = ccall(dlsym_(:hbvib_fit_info_init), Int32, (
 hbvib_fit(model, solver, options, hooks, parameters, count, unknowns, data, data_len, info, theta, covariance, residuals_len, residuals, values, out) = ccall(dlsym_(:hbvib_fit), Int32, (Ptr{Cvoid}, Ptr{hbvib_solver_options}, Ptr{hbvib_fit_options}, Ptr{hbvib_hooks}, Ptr{hbvib_parameter}, Int64, Ptr{hbvib_unknown}, Ptr{hbvib_data}, Int64, Ptr{hbvib_fit_info}, Ptr{Float64}, Ptr{Float64}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Ptr{Cvoid}}), model, solver, options, hooks, parameters, count, unknowns, data, data_len, info, theta, covariance, residuals_len, residuals, values, out)
 "Predicts numbers of a fitted model with their standard deviations, by the exact derivatives and the covariance of the parameters (delta method)."
 hbvib_predict(model, solver, wanted, hooks, parameters, count, theta, covariance, capacity, values, sigma, shift) = ccall(dlsym_(:hbvib_predict), Int32, (Ptr{Cvoid}, Ptr{hbvib_solver_options}, Ptr{hbvib_data}, Ptr{hbvib_hooks}, Ptr{hbvib_parameter}, Int64, Ptr{Float64}, Ptr{Float64}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}), model, solver, wanted, hooks, parameters, count, theta, covariance, capacity, values, sigma, shift)
+"Fills the numbers of a profile with zeros, and the unit with 1."
+hbvib_fit_profile_info_init(i, size_of_i) = ccall(dlsym_(:hbvib_fit_profile_info_init), Int32, (Ptr{hbvib_fit_profile_info}, Csize_t), i, size_of_i)
+"Least loss of a fit over the values of one parameter, all others fitted again, and the interval that it gives: it holds where the data depend on the parameters so strongly curved that the covariance does not."
+hbvib_fit_profile(model, solver, options, hooks, parameters, count, unknowns, data, data_len, theta, number, values_len, values, rise, info, loss, profiled) = ccall(dlsym_(:hbvib_fit_profile), Int32, (Ptr{Cvoid}, Ptr{hbvib_solver_options}, Ptr{hbvib_fit_options}, Ptr{hbvib_hooks}, Ptr{hbvib_parameter}, Int64, Ptr{hbvib_unknown}, Ptr{hbvib_data}, Int64, Ptr{Float64}, Int64, Int64, Ptr{Float64}, Float64, Ptr{hbvib_fit_profile_info}, Ptr{Float64}, Ptr{Float64}), model, solver, options, hooks, parameters, count, unknowns, data, data_len, theta, number, values_len, values, rise, info, loss, profiled)
 "Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once it has become periodic, and its Jacobian."
 hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, jac_len) = ccall(dlsym_(:hbvib_contact_evaluate), Int32, (Ptr{hbvib_contact}, Int64, Int64, Float64, Ptr{Float64}, Int64, Ptr{Float64}, Int64, Ptr{Float64}, Int64), c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, jac_len)
 "The same as hbvib_contact_evaluate; a hook or the cancel flag may stop it."

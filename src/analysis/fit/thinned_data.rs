@@ -2,9 +2,11 @@
 
 use crate::analysis::fit::fit_data::{DataKind, FitData};
 use crate::analysis::fit::fit_options::{FIT_THINNED_FROM, FitOptions};
+use crate::analysis::fit::fit_result::{Ended, Fit, result};
 use crate::analysis::fit::fit_search::{Search, State};
 use crate::analysis::fit::predicted_data::Predictor;
-use crate::error::{Result, try_push};
+use crate::analysis::fit::suspected_units::Suspicion;
+use crate::error::{Result, try_copy, try_push, try_vec};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the first search of a fit";
@@ -32,8 +34,7 @@ impl Share {
             sigma: Vec::new(),
             second_sigma: Vec::new(),
         };
-        let stride = if is_thinned(set) { stride } else { 1 };
-        for i in (0..set.x.len()).skip((stride - 1) / 2).step_by(stride) {
+        for i in kept(set, stride) {
             try_push(&mut share.x, set.x[i], CONTEXT)?;
             try_push(&mut share.value, set.value[i], CONTEXT)?;
             try_push(&mut share.sigma, set.sigma[i], CONTEXT)?;
@@ -45,26 +46,42 @@ impl Share {
     }
 }
 
+/// Numbers of the points of a set that its share has.
+fn kept(set: &FitData<'_>, stride: usize) -> impl Iterator<Item = usize> + use<> {
+    let stride = if is_thinned(set) { stride } else { 1 };
+    (0..set.x.len()).skip((stride - 1) / 2).step_by(stride)
+}
+
 /// Whether a set is dense enough to be thinned; peaks are few and dear.
 fn is_thinned(set: &FitData<'_>) -> bool {
     matches!(set.kind, DataKind::Response | DataKind::Amplitude) && set.x.len() > FIT_THINNED_MOST
 }
 
-/// Unknowns from which a search on all data is short; `None` where there are few data, or a share of them is not explained.
+/// Where the search on all data begins.
+pub(super) enum Start {
+    /// At the given start: there are few data, or a share of them is not explained.
+    Given,
+    /// At these unknowns, from which the search is short.
+    Nearer(Vec<f64>),
+    /// Nowhere: the caller stopped the first search. Numbers are those of its share of the data; residuals and values are NaN elsewhere.
+    Stopped(Box<Fit>),
+}
+
+/// The start of the search on all data.
 ///
 /// # Errors
-/// Those of the predictor.
+/// Those of the predictor, and of a result.
 pub(super) fn start(
     search: &Search<'_>,
     z: &[f64],
     explains: impl Fn(&Search<'_>, &State) -> bool,
     report: &mut dyn FnMut(usize, &State) -> bool,
-) -> Result<Option<Vec<f64>>> {
+) -> Result<Start> {
     let predictor = search.predictor;
     let points: usize = predictor.data.iter().map(|set| set.x.len()).sum();
     let stride = (points / (FIT_THINNED_POINTS * z.len())).min(FIT_THINNED_MOST);
     if points < FIT_THINNED_FROM || stride < 2 || !predictor.data.iter().any(is_thinned) {
-        return Ok(None);
+        return Ok(Start::Given);
     }
     let mut shares = Vec::new();
     for set in predictor.data {
@@ -100,9 +117,44 @@ pub(super) fn start(
         unknowns: search.unknowns,
         options: &options,
     };
-    let Some(first) = thinned.at(crate::error::try_copy(z, CONTEXT)?)? else {
-        return Ok(None);
+    let Some(first) = thinned.at(try_copy(z, CONTEXT)?)? else {
+        return Ok(Start::Given);
     };
-    let found = thinned.from(first, report)?;
-    Ok(explains(&thinned, &found.state).then_some(found.state.z))
+    let mut stopped = false;
+    let found = thinned.from(first, &mut |i, state| {
+        stopped |= report(i, state);
+        stopped
+    })?;
+    if stopped {
+        let ended = Ended {
+            found,
+            starts: 1,
+            stopped,
+        };
+        let mut told = result(&thinned, ended, Suspicion::None)?;
+        told.residuals = spread(&told.residuals, search.predictor.data, stride)?;
+        told.values = spread(&told.values, search.predictor.data, stride)?;
+        return Ok(Start::Stopped(Box::new(told)));
+    }
+    if explains(&thinned, &found.state) {
+        return Ok(Start::Nearer(found.state.z));
+    }
+    Ok(Start::Given)
+}
+
+/// Numbers of a share at the places of all data, two for each datum; NaN elsewhere.
+fn spread(numbers: &[f64], data: &[FitData<'_>], stride: usize) -> Result<Vec<f64>> {
+    let rows = 2 * data.iter().map(|set| set.x.len()).sum::<usize>();
+    let mut all = try_vec(rows, f64::NAN, CONTEXT)?;
+    let mut pairs = numbers.chunks_exact(2);
+    let mut row = 0;
+    for set in data {
+        for i in kept(set, stride) {
+            if let Some(pair) = pairs.next() {
+                all[row + 2 * i..][..2].copy_from_slice(pair);
+            }
+        }
+        row += 2 * set.x.len();
+    }
+    Ok(all)
 }

@@ -169,6 +169,17 @@ void friction() {
   const auto fitted = model.fit(solver, {parameters[1]}, {}, {hbvib::DataSet(at, seen, deviation)});
   near(fitted.theta.at(0), preload, 1e-5 * preload, "a fit to the model itself");
   claim(fitted.info.data == 2 && fitted.covariance.at(0) > 0 && fitted.residuals.size() == 2, "numbers of a fit");
+  const double sd = std::sqrt(fitted.covariance.at(0));
+  const std::vector<double> scan = {fitted.theta.at(0) - 2 * sd, fitted.theta.at(0), fitted.theta.at(0) + 2 * sd};
+  const auto profile = model.fit_profile(solver, {parameters[1]}, {}, {hbvib::DataSet(at, seen, deviation)}, fitted.theta, 0, scan, 1);
+  near(profile.loss.at(0), 4, 0.2, "two deviations below");
+  near((profile.info.upper - profile.info.lower) / (2 * sd), 1, 0.05, "the interval of a profile");
+  claim(profile.theta == scan && !profile.stopped && profile.info.found == 3, "nothing is free at a value");
+  hbvib::DataSet wanted;
+  wanted.n = 1, wanted.x = at.data();
+  const auto predicted = model.predict(solver, wanted, {parameters[1]}, fitted.theta, fitted.covariance);
+  near(predicted.values.at(0), seen[0].real(), 1e-6 * std::abs(seen[0]), "the value that was fitted");
+  claim(predicted.sigma.size() == 2 && predicted.shift.size() == 2 && predicted.sigma.at(0) > 0, "with its deviation");
 
   // The peak over the normal load.
   const auto study = model.parameter_response(

@@ -56,6 +56,7 @@ program layout
    call unknown()
    call fit_options()
    call fit_info()
+   call fit_profile_info()
    ! END GENERATED
 
 contains
@@ -866,6 +867,18 @@ contains
       call field('harmonic_error', c_loc(s), c_loc(s%harmonic_error), c_sizeof(s%harmonic_error))
       call field('suspected_factor', c_loc(s), c_loc(s%suspected_factor), c_sizeof(s%suspected_factor))
    end subroutine fit_info
+
+   subroutine fit_profile_info()
+      type(hbvib_fit_profile_info), target :: s
+      call whole('hbvib_fit_profile_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('best', c_loc(s), c_loc(s%best), c_sizeof(s%best))
+      call field('unit', c_loc(s), c_loc(s%unit), c_sizeof(s%unit))
+      call field('lower', c_loc(s), c_loc(s%lower), c_sizeof(s%lower))
+      call field('upper', c_loc(s), c_loc(s%upper), c_sizeof(s%upper))
+      call field('found', c_loc(s), c_loc(s%found), c_sizeof(s%found))
+   end subroutine fit_profile_info
 
    ! END GENERATED
 

@@ -784,7 +784,7 @@ FILLED = {
     "hbvib_contact_summary", "hbvib_mode_point", "hbvib_mode_info", "hbvib_time_info", "hbvib_verification", "hbvib_floquet_info",
     "hbvib_band_info", "hbvib_wheel_info",
     "hbvib_descent", "hbvib_searched", "hbvib_kick", "hbvib_life_info", "hbvib_best_load", "hbvib_sweep_info", "hbvib_run_up_info",
-    "hbvib_band_info", "hbvib_fit_info", "hbvib_wheel_info",
+    "hbvib_band_info", "hbvib_fit_info", "hbvib_fit_profile_info", "hbvib_wheel_info",
     "hbvib_descent", "hbvib_searched", "hbvib_kick",
 }
 listed = set(TABLE) | ELSEWHERE | FILLED

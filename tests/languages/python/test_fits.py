@@ -170,6 +170,18 @@ count = []
 stopped = model.fit(names, data, harmonics=9, progress=lambda state: count.append(state.parameter) or len(count) < 2)
 check("progress stops a fit and keeps it", stopped.status == hbvib.Status.STOPPED_BY_CALLER and count[1] < count[0])
 
+# So does a profile; a flag ends it without a result. A fit that is stopped on a share of the data has no numbers of the others.
+asked = []
+part = fit.profile(1, progress=lambda state: asked.append(state.point) or len(asked) < 12)
+check("progress stops a profile and keeps it", np.isnan(part.chi2).any() and np.isfinite(part.best), part)
+flag = hbvib.CancelFlag()
+flag.set()
+raises("a flag ends a profile", hbvib.Stopped, fit.profile, 1, cancel=flag)
+raises("a parameter that is none", IndexError, fit.profile, 4, words="number = 4")
+thrice = model.fit(names, [one for one in data for _ in range(4)], harmonics=9, progress=lambda state: state.point < 2)
+check("a share that was stopped", thrice.status == hbvib.Status.STOPPED_BY_CALLER and np.isnan(thrice.residuals[0]).any())
+check("has a report", "nan" not in thrice.report().splitlines()[-1], thrice.report())
+
 # A decay, integrated in time, gives the backbone of the nonlinear mode, and with it the parameters.
 t, dt = np.arange(0, 150, 0.01), 0.01
 state, z, path = np.array([1.5, 0.0]), 0.0, np.empty(len(t))

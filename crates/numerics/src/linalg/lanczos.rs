@@ -4,12 +4,13 @@
 //! the lowest λ, or those largest by modulus to the λ next to a shift −σ among them (Ericsson & Ruhe 1980,
 //! doi:10.1090/S0025-5718-1980-0583502-2). The basis is kept orthogonal in full. Repeated eigenvalues need a starting
 //! vector for each copy: after convergence the search starts again, orthogonal to the vectors found, until it finds no
-//! larger eigenvalue.
+//! larger eigenvalue. Where the lowest are close to each other and far from the shift, as those of a family of equal blades, a run
+//! does not tell them apart: then the shift moves up to just below them.
 
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::shifted_inverse::{BelowAll, Inverse, Place, below_all};
+use crate::linalg::shifted_inverse::{BelowAll, Inverse, Place, below_all, definite_inverse};
 use crate::linalg::sparse::Csc;
 use crate::linalg::{inner, remove, tridiagonal};
 use nalgebra::DMatrix;
@@ -57,22 +58,40 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
         mass: m,
         found: Vec::new(),
         is_complete: false,
+        open: None,
         interrupt,
     };
-    for round in 0..=count {
-        let before = search.smallest(count);
-        let new = search.run(Goal::Largest(count), round)?;
-        // The search ends when the last run found nothing that belongs among the lowest.
-        if search.found.len() >= count && new <= before * (1.0 + 1e-9) {
+    let mut shift = shift;
+    for moves in 0..=MOVES {
+        search.found.clear();
+        search.all_lowest(count)?;
+        if search.open.is_none() || moves == MOVES {
             break;
         }
+        let Some(nearer) = search.nearer((k, m), shift, interrupt)? else {
+            break;
+        };
+        (search.inverse, shift) = nearer;
     }
-    if place == Place::Further && search.found.len() < count {
+    if search.found.is_empty() {
         return fail!(
             NoConvergence,
-            "the stiffness is negative in some direction, where a motion grows as {:e} per time unit or less; of {count} natural \
-             modes, {} were found",
-            shift.sqrt(),
+            "no eigenvalue converged in {} Lanczos steps",
+            search.steps(count)
+        );
+    }
+    if search.found.len() < count && (place == Place::Further || search.open.is_some()) {
+        let why = if place == Place::Further {
+            format!(
+                "the stiffness is negative in some direction, where a motion grows as {:e} per time unit or less; ",
+                shift.max(0.0).sqrt()
+            )
+        } else {
+            String::new()
+        };
+        return fail!(
+            NoConvergence,
+            "{why}of {count} natural modes, {} were found",
             search.found.len()
         );
     }
@@ -80,6 +99,10 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     search.found.truncate(count);
     search.pairs(shift)
 }
+
+/// Most moves of the shift, and growth of its distance from the lowest eigenvalue where that is estimated too high.
+const MOVES: usize = 8;
+const BACK: f64 = 4.0;
 
 /// All eigenpairs with λ in an interval (low, high), mass-normalised and ascending; `None` if they are more than `most`.
 ///
@@ -101,6 +124,7 @@ pub fn within(
         mass: m,
         found: Vec::new(),
         is_complete: false,
+        open: None,
         interrupt,
     };
     let mut round = 0;
@@ -164,6 +188,16 @@ struct Search<'a> {
     found: Vec<(f64, Vec<Complex64>, Vec<Complex64>)>,
     /// Whether the last run found all that it was for.
     is_complete: bool,
+    /// What the last run for the largest did not settle.
+    open: Option<Open>,
+}
+
+/// Largest Ritz values that have not converged: the first, how far at most it is from an eigenvalue, and the last that was wanted.
+#[derive(Clone, Copy)]
+struct Open {
+    first: f64,
+    bound: f64,
+    last: f64,
 }
 
 /// Basis q of a run, M q, and the diagonal of Lanczos's matrix with what is beside it.
@@ -195,6 +229,57 @@ impl Run {
 }
 
 impl Search<'_> {
+    /// Finds the `count` largest eigenvalues of the operator at this shift; `open` tells if some may be missing.
+    fn all_lowest(&mut self, count: usize) -> Result<()> {
+        for round in 0..=count {
+            let before = self.smallest(count);
+            let new = self.run(Goal::Largest(count), round)?;
+            let is_full = self.found.len() >= count;
+            // What is below those found is not wanted, whether it has converged or not.
+            if is_full && self.open.is_some_and(|open| open.first + open.bound <= before) {
+                self.open = None;
+            }
+            // The search ends when the last run found nothing that belongs among the lowest.
+            if self.open.is_some() || is_full && new <= before * (1.0 + 1e-9) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The inverse at a shift closer below the lowest eigenvalues, and the shift; `None` if there is none.
+    fn nearer(&self, (k, m): (&Csc, &Csc), shift: f64, interrupt: &Interrupt<'_>) -> Result<Option<(Inverse, f64)>> {
+        let Some(open) = self.open.filter(|_| self.place != Place::Within) else {
+            return Ok(None);
+        };
+        let found = self.found.iter().map(|found| found.0);
+        let top = found.fold(open.first, f64::max);
+        if open.last <= 0.0 {
+            return Ok(None);
+        }
+        // Distances of eigenvalues λ from the present shift −σ.
+        let (lowest, highest) = (top.recip(), open.last.recip());
+        let mut below = (highest - lowest + open.bound / open.first.powi(2)).min(0.5 * lowest);
+        while below < 0.9 * lowest {
+            let sigma = shift - (lowest - below);
+            if let Some(inverse) = definite_inverse(k, (sigma, m), interrupt)? {
+                return Ok(Some((inverse, sigma)));
+            }
+            below *= BACK;
+        }
+        Ok(None)
+    }
+
+    /// Lanczos steps of a run for so many eigenvalues.
+    fn steps(&self, most: usize) -> usize {
+        let n = self.mass.rows;
+        let extra = match self.place {
+            Place::Further if n <= 20_000 => 5 * EXTRA_STEPS,
+            _ => EXTRA_STEPS,
+        };
+        (2 * most + extra).min(n - self.found.len())
+    }
+
     /// The `count`-th largest eigenvalue found so far, 0 if there are fewer.
     fn smallest(&self, count: usize) -> f64 {
         let mut values: Vec<f64> = self.found.iter().map(|f| f.0).collect();
@@ -220,13 +305,10 @@ impl Search<'_> {
     /// eigenvalue, by modulus.
     fn run(&mut self, goal: Goal, round: usize) -> Result<f64> {
         let n = self.mass.rows;
-        let extra = match self.place {
-            Place::Further if n <= 20_000 => 5 * EXTRA_STEPS,
-            _ => EXTRA_STEPS,
-        };
         let (Goal::Largest(most) | Goal::Above(_, most)) = goal;
-        let steps = (2 * most + extra).min(n - self.found.len());
+        let steps = self.steps(most);
         self.is_complete = true;
+        self.open = None;
         if steps == 0 {
             return Ok(0.0);
         }
@@ -263,7 +345,7 @@ impl Search<'_> {
             if may_end && done.is_multiple_of(10) && self.converged(&run, goal, &v)? {
                 break;
             }
-            self.is_complete = step + 1 < steps || steps < 2 * most + extra;
+            self.is_complete = step + 1 < steps || steps + self.found.len() == n;
         }
         self.keep(&run, goal, &v)
     }
@@ -326,6 +408,14 @@ impl Search<'_> {
                     .iter()
                     .take_while(|(mu, bound, _)| *mu > 0.0 && *bound <= VECTOR * mu);
                 let good = good.count();
+                if let Some(&(first, bound, _)) = ritz.get(good).filter(|(mu, ..)| !self.is_complete && *mu > 0.0) {
+                    let last = ritz
+                        .iter()
+                        .rev()
+                        .find(|(mu, ..)| *mu > 0.0)
+                        .map_or(first, |found| found.0);
+                    self.open = Some(Open { first, bound, last });
+                }
                 ritz.truncate(good);
             }
             Goal::Above(least, _) => ritz.retain(|(mu, bound, _)| mu.abs() >= least && *bound <= VECTOR * mu.abs()),
@@ -341,9 +431,6 @@ impl Search<'_> {
             largest = largest.max(mu.abs());
             let mx = self.times_mass(&x)?;
             try_push(&mut self.found, (mu, x, mx), "the eigenvectors")?;
-        }
-        if largest == 0.0 && self.found.is_empty() && matches!(goal, Goal::Largest(_)) {
-            return fail!(NoConvergence, "no eigenvalue converged in {size} Lanczos steps");
         }
         Ok(largest)
     }

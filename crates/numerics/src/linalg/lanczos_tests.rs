@@ -37,6 +37,66 @@ fn repeated_and_zero_eigenvalues_are_all_found() {
 }
 
 #[test]
+fn the_lowest_of_a_family_far_from_zero_are_told_apart() {
+    // A chain of unit masses, fixed at its ends, on springs: λ = s + 2 − 2 cos(jπ/(n + 1)).
+    for (n, s) in [
+        (130, 100.0),
+        (201, 1e3),
+        (300, 1.0),
+        (600, 0.2),
+        (600, 1e4),
+        (3000, 1.0),
+    ] {
+        let (mut k, mut m) = (Vec::new(), Vec::new());
+        for i in 0..n {
+            k.push((i, i, Complex64::from(s + 2.0)));
+            m.push((i, i, Complex64::ONE));
+            if i > 0 {
+                k.push((i - 1, i, Complex64::from(-1.0)));
+                k.push((i, i - 1, Complex64::from(-1.0)));
+            }
+        }
+        let (k, m) = (
+            Csc::from_triplets(n, n, k).unwrap(),
+            Csc::from_triplets(n, n, m).unwrap(),
+        );
+        for count in [1, 3] {
+            let pairs = lowest(&k, &m, count, &Interrupt::none()).unwrap();
+            assert_eq!(pairs.values.len(), count);
+            for (j, value) in pairs.values.iter().enumerate() {
+                let angle = (j + 1) as f64 * std::f64::consts::PI / (n + 1) as f64;
+                let exact = s + 4.0 * (0.5 * angle).sin().powi(2);
+                assert!(
+                    (value / exact - 1.0).abs() < 1e-13,
+                    "{n}, {s}, {j}: {value} against {exact}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn equal_oscillators_have_one_frequency_as_often_as_they_are() {
+    // 200 equal oscillators, apart from each other but for the last two.
+    let n = 200;
+    let (mut k, m) = (Vec::new(), (0..n).map(|i| (i, i, Complex64::ONE)).collect());
+    for i in 0..n {
+        k.push((i, i, Complex64::from(if i < n - 2 { 5.0 } else { 5.5 })));
+    }
+    for (i, j) in [(n - 2, n - 1), (n - 1, n - 2)] {
+        k.push((i, j, Complex64::from(-1.0)));
+    }
+    let (k, m) = (
+        Csc::from_triplets(n, n, k).unwrap(),
+        Csc::from_triplets(n, n, m).unwrap(),
+    );
+    let pairs = lowest(&k, &m, 4, &Interrupt::none()).unwrap();
+    for (value, exact) in pairs.values.iter().zip([4.5, 5.0, 5.0, 5.0]) {
+        assert!((value - exact).abs() < 1e-12, "{value} against {exact}");
+    }
+}
+
+#[test]
 fn all_eigenvalues_of_an_interval_are_found_with_their_copies() {
     let (k, m) = three_chains();
     for (low, high) in [(-1e-9, 0.3), (0.5, 0.8), (1.9, 2.1), (3.5, 4.5), (0.5, 2.5), (5.0, 6.0)] {

@@ -68,7 +68,7 @@ pub(super) fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>)
 }
 
 /// The inverse of K + σM; `None` where that is not positive definite.
-fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
+pub(super) fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
     let n = k.rows;
     if n > DENSE_UP_TO {
         return Ok(Definite::new(k, (shift, m), interrupt)?.map(Inverse::Definite));
