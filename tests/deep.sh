@@ -11,6 +11,12 @@ if ! $python -c 'import pyright' >/dev/null 2>&1; then
     $python -m pip install --quiet --disable-pip-version-check "$package"
 fi
 
+# The mesh of examples/jobs/gmsh_wheel is made by gmsh, whose package has 50 MB: in a virtual environment of its own.
+if ! .venv-gmsh/bin/python -c 'import gmsh' >/dev/null 2>&1; then
+    python3 -m venv .venv-gmsh
+    .venv-gmsh/bin/python -m pip install --quiet --disable-pip-version-check gmsh
+fi
+
 # All cases of each test, and the tests that take minutes.
 HBVIB_THOROUGH=1 cargo test --release --tests -- --include-ignored --test-threads=1
 HBVIB_THOROUGH=1 cargo test --release -p hbvib-unit-tests -p hbvib-numerics-unit-tests -- --include-ignored
@@ -57,3 +63,13 @@ if ! .venv-pyharm/bin/python -c 'import pyHarm' >/dev/null 2>&1; then
 fi
 target=$(cargo metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
 HBVIB_LIBRARY=$target/release/libhbvib.so PYTHONPATH=$PWD/include .venv-pyharm/bin/python tests/peers/pyharm.py
+
+# All decks of CalculiX's own suite with natural frequencies, from the matrices that it stores. The decks are a package of Debian.
+decks=$target/calculix-ccx-test
+if [ ! -e "$decks" ] && command -v apt-get >/dev/null 2>&1; then
+    mkdir -p "$decks"
+    (cd "$decks" && apt-get download -qq calculix-ccx-test && dpkg -x calculix-ccx-test_*.deb .)
+fi
+cargo build --release -p hbvib-cli -p hbvib-io
+HBVIB_LIBRARY=$target/release/libhbvib.so HBVIB_IO_LIBRARY=$target/release/libhbvib_io.so PYTHONPATH=$PWD/include .venv-pyharm/bin/python \
+    -W ignore tests/peers/calculix_suite.py "$decks/usr/share/doc/calculix-ccx-test/examples/test" "$target/calculix" "$target/release/hbvib"

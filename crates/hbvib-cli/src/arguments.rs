@@ -136,7 +136,7 @@ Examples:
 Examples:
   hbvib plot response.npz --output response.svg
   hbvib plot one.npz two.npz --log-y --markers --unit mm --output both.png
-  hbvib plot response.npz --dof 12 --output harmonics.svg   # a line for each harmonic
+  hbvib plot response.npz --dof 12.3 --output harmonics.svg # node 12 along z, a line for each harmonic
   hbvib plot mode.npz --damping --output damping.svg")]
     Plot(PlotArguments),
     /// Prints the JSON schema of a job, for editors that complete and check TOML.
@@ -297,9 +297,9 @@ pub struct PlotArguments {
     /// File of the figure: .svg or .png.
     #[arg(long, short, value_name = "FILE", default_value = "response.svg")]
     pub output: PathBuf,
-    /// Amplitude of each harmonic of a degree of freedom, from 0, instead of the response.
-    #[arg(long, value_name = "N")]
-    pub dof: Option<usize>,
+    /// Amplitude of each harmonic of a degree of freedom, by number from 0 or as 12.3, instead of the response.
+    #[arg(long, value_name = "DOF")]
+    pub dof: Option<String>,
     /// This harmonic alone.
     #[arg(long, value_name = "H", requires = "dof")]
     pub harmonic: Option<usize>,

@@ -133,7 +133,7 @@ impl FaceImages {
         let mut all: BTreeMap<i64, [f64; 3]> = BTreeMap::new();
         for face in faces {
             let pairs = face.numbers.iter().copied().zip(face.at.iter().copied());
-            all.extend(pairs.filter(|(_, at)| radius(at) <= near));
+            all.extend(pairs.filter(|(_, at)| radius(at) <= near.min(NEAR * size)));
         }
         for (number, at) in all {
             self.on_axis.insert(number);

@@ -47,7 +47,7 @@ fn page(job: &Job, curve: &Curve<'_>, built: &Built) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>hbvib report</title>\n<style>{STYLE}</style>\n</head>\n\
          <body>\n<h1>Steady-state response</h1>\n<p>hbvib {}</p>\n<h2>Summary</h2>\n<pre>{}</pre>\n",
         env!("CARGO_PKG_VERSION"),
-        escaped(&output::summary(curve))
+        escaped(&output::summary(curve, &built.nodes))
     );
     part(&mut text, "Response", response(curve, &unit));
     let _ = writeln!(text, "<p>The amplitude is the {}.</p>", escaped(&name));

@@ -167,9 +167,11 @@ fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
 }
 
 fn print(text: &str) -> Outcome<()> {
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(|e| format!("standard output: {e}"))
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // The reader, as head, has enough.
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        outcome => outcome.map_err(|e| format!("standard output: {e}")),
+    }
 }
 
 /// The JSON schema of a job, from the same structs that read one.

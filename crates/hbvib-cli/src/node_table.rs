@@ -163,6 +163,29 @@ impl Nodes {
         place.unwrap_or_else(|| dof.to_string())
     }
 
+    /// Node and direction of each of `order` rows, 0 for a direction that is none of x, y and z; empty where there are no names.
+    pub fn directions(&self, order: usize) -> Vec<[f64; 2]> {
+        if self.rows.is_empty() || self.node_of.len() != order {
+            return Vec::new();
+        }
+        let mut all: Vec<[f64; 2]> = self.node_of.iter().map(|node| [*node as f64, 0.0]).collect();
+        for rows in self.rows.values() {
+            for (direction, row) in rows.iter().enumerate() {
+                if let Some(place) = usize::try_from(*row).ok().and_then(|row| all.get_mut(row)) {
+                    place[1] = direction as f64 + 1.0;
+                }
+            }
+        }
+        for ((_, direction), rows) in &self.further {
+            for row in rows {
+                if let Some(place) = usize::try_from(*row).ok().and_then(|row| all.get_mut(row)) {
+                    place[1] = *direction as f64;
+                }
+            }
+        }
+        all
+    }
+
     /// Position of the node of a degree of freedom, where the mesh has it.
     pub fn position_of(&self, dof: i64) -> Option<[f64; 3]> {
         let node = self.node_of.get(usize::try_from(dof).ok()?)?;

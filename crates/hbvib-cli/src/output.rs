@@ -6,7 +6,9 @@ use crate::curve::Curve;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
 use crate::job::Job;
+use crate::node_table::Nodes;
 use crate::npz::Npz;
+use crate::responses;
 use hbvib::{BifurcationKind, Branch, Stretch};
 use plotters::prelude::{ChartBuilder, DashedLineSeries, LineSeries};
 use plotters::style::BLUE;
@@ -17,10 +19,11 @@ use std::io::BufWriter;
 use std::path::Path;
 
 /// Writes the files of a branch that a job names.
-pub fn write(job: &Job, curve: &Curve<'_>, files: &mut Files<'_>) {
+pub fn write(job: &Job, curve: &Curve<'_>, nodes: &Nodes, files: &mut Files<'_>) {
     let table = files.write(job.output.csv.as_deref(), &|path| csv(path, curve));
-    let arrays = files.write(job.output.npz.as_deref(), &|path| npz(path, curve));
-    files.write(job.output.figure.as_deref(), &|path| figure(path, curve));
+    let arrays = files.write(job.output.npz.as_deref(), &|path| npz(path, curve, nodes));
+    let label = amplitude_label(job, curve, nodes);
+    files.write(job.output.figure.as_deref(), &|path| figure(path, curve, &label));
     if !(table || arrays) && (job.output.csv.is_some() || job.output.npz.is_some()) {
         // As on a disk that is full: the points are kept in what the caller reads.
         files.tell(&rows(curve));
@@ -88,7 +91,24 @@ fn range(by_place: &[f64]) -> [f64; 2] {
     free.fold([first; 2], |[least, largest], x| [least.min(x), largest.max(x)])
 }
 
-fn npz(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
+/// Name of the axis of a figure: of what, where nodes have names, and its unit.
+fn amplitude_label(job: &Job, curve: &Curve<'_>, nodes: &Nodes) -> String {
+    let of = match named(nodes, curve.branch.response_dof()) {
+        Some(name) if curve.branch.responses().is_empty() => format!(" of {name}"),
+        _ => String::new(),
+    };
+    let unit = responses::amplitude(job)
+        .1
+        .map_or(String::new(), |unit| format!(", {unit}"));
+    format!("amplitude{of}{unit}")
+}
+
+/// Node and direction of a degree of freedom, as 12.3, where the matrices name it.
+fn named(nodes: &Nodes, dof: usize) -> Option<String> {
+    Some(nodes.name_of(dof)).filter(|name| name.contains('.'))
+}
+
+fn npz(path: &Path, curve: &Curve<'_>, nodes: &Nodes) -> Outcome<()> {
     let (branch, points) = (curve.branch, curve.points());
     let said = |e: std::io::Error| e.to_string();
     let mut npz = Npz::new(BufWriter::new(File::create(path).map_err(said)?));
@@ -133,6 +153,10 @@ fn npz(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
         real("log10_amplitude", &[mode.len()], &of(|m| m.log10_amplitude))?;
         real("damping_ratio", &[mode.len()], &of(|m| m.damping_ratio))?;
     }
+    let dofs = nodes.directions(branch.ndof());
+    if !dofs.is_empty() {
+        real("dofs", &[branch.ndof(), 2], dofs.as_flattened())?;
+    }
     let mut x = Vec::new();
     npz.complex("harmonics", &[points, curve.rows(), branch.ndof()], &mut |put| {
         (0..points).try_for_each(|point| {
@@ -145,7 +169,7 @@ fn npz(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
 }
 
 /// Amplitude over frequency, dashed where it is unstable.
-fn figure(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
+fn figure(path: &Path, curve: &Curve<'_>, label: &str) -> Outcome<()> {
     let (omega, amplitude) = (curve.omega(), curve.amplitude());
     let x = bounds(omega.iter().map(|omega| omega / TAU));
     let y = bounds(amplitude.iter().copied());
@@ -166,7 +190,7 @@ fn figure(path: &Path, curve: &Curve<'_>) -> Outcome<()> {
             .y_label_area_size(90)
             .build_cartesian_2d(x, y.clone())?;
         let mesh = &mut chart.configure_mesh();
-        mesh.x_desc("frequency, Hz").y_desc("amplitude");
+        mesh.x_desc("frequency, Hz").y_desc(label);
         mesh.y_label_formatter(&scientific(&y)).draw()?;
         for stretch in &stretches {
             let points = stretch
@@ -220,7 +244,7 @@ fn freedom(text: &mut String, curve: &Curve<'_>) {
 }
 
 /// Summary of a branch.
-pub fn summary(curve: &Curve<'_>) -> String {
+pub fn summary(curve: &Curve<'_>, nodes: &Nodes) -> String {
     let (branch, omega) = (curve.branch, curve.omega());
     let mut text = String::new();
     let _ = writeln!(
@@ -230,7 +254,9 @@ pub fn summary(curve: &Curve<'_>) -> String {
         omega.first().map_or(f64::NAN, |w| w / TAU),
         omega.last().map_or(f64::NAN, |w| w / TAU),
         if branch.responses().is_empty() {
-            format!("response degree of freedom {}", branch.response_dof())
+            let dof = branch.response_dof();
+            let name = named(nodes, dof).map_or(String::new(), |name| format!(" ({name})"));
+            format!("response degree of freedom {dof}{name}")
         } else {
             "response 0".into()
         }

@@ -23,9 +23,10 @@ pub fn plot(of: &PlotArguments) -> Outcome<u8> {
         lines.extend(of_file(of, &stored, &name).map_err(said)?);
     }
     let unit = of.unit.as_ref().map_or(String::new(), |unit| format!(", {unit}"));
-    let y_label = match (&of.damping, &of.slip, of.dof) {
+    let y_label = match (&of.damping, &of.slip, &of.dof) {
         (true, ..) => "damping ratio".to_owned(),
         (_, true, _) => "slip fraction, largest of all contacts".to_owned(),
+        (.., Some(dof)) if dof.contains('.') => format!("amplitude of {dof}{unit}"),
         (.., Some(dof)) => format!("amplitude of degree of freedom {dof}{unit}"),
         _ => format!("amplitude{unit}"),
     };
@@ -89,16 +90,10 @@ fn of_file(of: &PlotArguments, stored: &Stored, name: &str) -> Outcome<Vec<Line>
         let peaks: Vec<[f64; 2]> = peaks.map(|row| [row[1], row[2]]).collect();
         return Ok(vec![line(format!("{name}, response {r}"), values, &peaks)]);
     }
-    let Some(dof) = of.dof else {
+    let Some(dof) = &of.dof else {
         return Ok(vec![line(name.to_owned(), &stored.amplitude, &stored.peaks)]);
     };
-    if dof >= stored.ndof {
-        return Err(format!(
-            "has {} degrees of freedom, needs --dof 0 to {}",
-            stored.ndof,
-            stored.ndof - 1
-        ));
-    }
+    let dof = stored.dof(dof)?;
     let mut lines = Vec::new();
     for h in 0..stored.rows {
         let values: Vec<f64> = (0..hertz.len())

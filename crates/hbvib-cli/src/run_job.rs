@@ -98,12 +98,12 @@ fn fitted(job: &Job, built: &Built, stop: &AtomicBool, files: &mut Files<'_>, en
 /// Writes what a branch has, points before all else.
 fn written(job: &Job, built: &Built, curve: &Curve<'_>, files: &mut Files<'_>) {
     if curve.points() > 0 {
-        output::write(job, curve, files);
+        output::write(job, curve, &built.nodes, files);
         contact_tables::write(job, curve, built, files);
         motion_files::write(job, curve, built, files);
         html_report::write(job, curve, built, files);
     }
-    files.tell(&output::summary(curve));
+    files.tell(&output::summary(curve, &built.nodes));
     files.tell(&responses::summary(curve));
 }
 

@@ -34,6 +34,8 @@ pub struct Stored {
     pub harmonics: Vec<Complex64>,
     pub rows: usize,
     pub ndof: usize,
+    /// Node and direction of each degree of freedom; empty where they have no names.
+    pub dofs: Vec<[f64; 2]>,
     /// Damping ratio and log10 of the amplitude, of a nonlinear mode.
     pub damping_ratio: Vec<f64>,
     pub log10_amplitude: Vec<f64>,
@@ -103,6 +105,7 @@ impl Stored {
             harmonics: parts.map(|(re, im)| Complex64::new(*re, *im)).collect(),
             rows,
             ndof,
+            dofs: rows_of(named("dofs")),
             omega,
         };
         let finite = |x: &[f64]| x.iter().all(|x| x.is_finite());
@@ -116,6 +119,36 @@ impl Stored {
     pub fn harmonics_at(&self, point: usize) -> &[Complex64] {
         let length = self.rows * self.ndof;
         &self.harmonics[point * length..(point + 1) * length]
+    }
+
+    /// A degree of freedom by its number or by node and direction, as 12.3.
+    ///
+    /// # Errors
+    /// A sentence: one that the file does not have.
+    pub fn dof(&self, name: &str) -> Outcome<usize> {
+        if let Ok(dof) = name.parse::<usize>() {
+            return Some(dof).filter(|dof| *dof < self.ndof).ok_or_else(|| {
+                let last = self.ndof.saturating_sub(1);
+                format!("has {} degrees of freedom, needs --dof 0 to {last}", self.ndof)
+            });
+        }
+        let parts = name.split_once('.');
+        let parts =
+            parts.and_then(|(node, direction)| Some((node.parse::<i64>().ok()?, direction.parse::<u8>().ok()?)));
+        let Some((node, direction)) = parts else {
+            return Err(format!(
+                "--dof {name}, needs a number from 0, or node and direction as 12.3"
+            ));
+        };
+        let wanted = (node, i64::from(direction));
+        let found = self
+            .dofs
+            .iter()
+            .position(|[node, direction]| (*node as i64, *direction as i64) == wanted);
+        found.ok_or_else(|| match self.dofs.len() {
+            0 => format!("--dof {name}: the file names no nodes, needs a number from 0"),
+            _ => format!("--dof {name}: the file has no such node and direction"),
+        })
     }
 
     /// Number of responses.

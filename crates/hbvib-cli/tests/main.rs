@@ -11,6 +11,7 @@ mod contact_outputs;
 mod decimal_comma;
 mod demo;
 mod doubtful_jobs;
+mod example_programs;
 mod first_job;
 mod fits;
 mod html_reports;

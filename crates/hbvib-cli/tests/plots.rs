@@ -107,3 +107,63 @@ fn a_stored_response_is_drawn_on_either_axis() {
         );
     }
 }
+
+/// Node and direction name a degree of freedom in files, in figures and to `plot`.
+#[test]
+fn nodes_have_their_names_in_files_and_figures() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/block");
+    let names = std::fs::read_to_string(data.with_extension("dof")).unwrap();
+    let names: Vec<&str> = names.split_whitespace().collect();
+    let last = names[names.len() - 1];
+    let job = format!(
+        "model.matrices = '{}.sti'\nmodel.rayleigh = [0.0, 1e-7]\n[[force]]\ndof = '{last}'\nvalue = 1.0\n\
+         [forced]\nfrom_hz = 100.0\nto_hz = 110.0\nharmonics = 1\nresponse_dof = '{last}'\n\
+         [output]\nnpz = 'a.npz'\nfigure = 'a.svg'\nunits.length = 'mm'\n",
+        data.display()
+    );
+    let (output, folder) = crate::common::hbvib("run", ("plots", "names"), &job);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let told = format!("response degree of freedom {} ({last})\n", names.len() - 1);
+    assert!(text(&output.stdout).contains(&told), "{}", text(&output.stdout));
+    let figure = std::fs::read_to_string(folder.join("a.svg")).unwrap();
+    assert!(figure.contains(&format!("amplitude of {last}, mm")));
+    let arrays = hbvib_io::read_number_arrays(&folder.join("a.npz")).unwrap();
+    let dofs = arrays.iter().find(|array| array.name == "dofs").unwrap();
+    let rows: Vec<String> = dofs
+        .real
+        .chunks(2)
+        .map(|row| format!("{}.{}", row[0], row[1]))
+        .collect();
+    assert_eq!(rows, names);
+    let drawn = |dof: &str| {
+        let output = plot(&folder, &["a.npz", "--dof", dof, "--output", "b.svg"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        std::fs::read_to_string(folder.join("b.svg")).unwrap()
+    };
+    let (by_name, by_number) = (drawn(last), drawn(&(names.len() - 1).to_string()));
+    assert_eq!(longest(&by_name), longest(&by_number));
+    assert!(by_name.contains(&format!("amplitude of {last}")) && by_name != drawn(names[0]));
+    for (dof, words) in [
+        ("987.1", "--dof 987.1: the file has no such node and direction"),
+        ("tip", "--dof tip, needs a number from 0, or node and direction as 12.3"),
+    ] {
+        let errors = text(&plot(&folder, &["a.npz", "--dof", dof]).stderr);
+        assert!(errors.contains(words), "{errors}");
+    }
+}
+
+/// A reader that has enough closes the pipe.
+#[test]
+#[cfg(unix)]
+fn a_closed_pipe_is_no_error() {
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", "\"$HBVIB\" schema | true"])
+        .env("HBVIB", env!("CARGO_BIN_EXE_hbvib"));
+    let output = command.output().unwrap();
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        text(&output.stderr)
+    );
+}

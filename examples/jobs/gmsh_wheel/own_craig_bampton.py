@@ -1,6 +1,6 @@
 """The response of the wheel through a Craig-Bampton model of the caller's, made by scipy, against that of all degrees of freedom.
 
-usage: python own_craig_bampton.py [MODES [FROM_HZ TO_HZ]]      as 700 1060 1095
+usage: python own_craig_bampton.py [MODES [FROM_HZ TO_HZ [HARMONICS]]]      as 700 1060 1095 3
 
 It is run after mesh.py and hbvib init, which leave wheel.inp and wheel_matrices.sti, and needs scipy and hbvib.
 
@@ -18,6 +18,7 @@ import hbvib
 import hbvib.io
 
 count = int(sys.argv[1]) if len(sys.argv) > 1 else 700
+harmonics = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 SECTORS, PRELOAD = 24, 40.0
 ANGLE = 2 * np.pi / SECTORS
 TURN = np.array([[np.cos(ANGLE), -np.sin(ANGLE), 0], [np.sin(ANGLE), np.cos(ANGLE), 0], [0, 0, 1]])
@@ -95,15 +96,15 @@ reduced = model_of(reduced_k, reduced_m, number)
 
 clock = time.process_time()
 ends = 2 * np.pi * np.array([hertz[0], hertz[-1]])
-branch = whole.forced_response(tuple(ends), harmonics=1, response_dof=tip, at=2 * np.pi * hertz)
+branch = whole.forced_response(tuple(ends), harmonics=harmonics, response_dof=tip, at=2 * np.pi * hertz)
 print(f"all degrees of freedom: {len(branch)} points, {time.process_time() - clock:.1f} s of processor time")
 clock, worst = time.process_time(), 0.0
 for i, frequency in enumerate(hertz):
     point = branch.at(i).point[0]
     # The reduced model is dense: it is solved at these frequencies alone, from the motion of the kept degrees of freedom.
-    guess = np.zeros((2, order), complex)
+    guess = np.zeros((harmonics + 1, order), complex)
     guess[:, :n] = branch.harmonics(point)[:, kept]
-    found = reduced.forced_response(2 * np.pi * frequency, harmonics=1, response_dof=int(number[tip]), guess=guess)
+    found = reduced.forced_response(2 * np.pi * frequency, harmonics=harmonics, response_dof=int(number[tip]), guess=guess)
     a, b = branch.at(i).amplitude[0], found.amplitude[0]
     worst = max(worst, abs(b / a - 1))
     print(f"{frequency:.4f} Hz: {a:.9e}, Craig-Bampton {b:.9e}, slip fraction up to {found.slip_fraction.max():.2f}")
