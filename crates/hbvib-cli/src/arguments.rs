@@ -49,6 +49,15 @@ pub enum ShellName {
     Fish,
 }
 
+/// Ways to reduce a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Static motion under displacements of the kept degrees of freedom, and modes with these fixed.
+    CraigBampton,
+    /// Static motion under forces on the kept degrees of freedom, and modes with these free (MacNeal, Rubin).
+    FreeInterface,
+}
+
 /// Verbs of the command.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
@@ -112,13 +121,16 @@ Examples:
   hbvib convert wheel.op4 --output wheel.mtx                        # wheel_stiffness.mtx, wheel_mass.mtx
   hbvib convert wheel.op4 --format op4-binary --output other.op4")]
     Convert(ConvertArguments),
-    /// Reduces the model of a job by Craig and Bampton, tells the error, and writes the matrices and a job on them.
+    /// Reduces the model of a job by Craig-Bampton or with a free interface, tells the error, and writes the matrices and a job on them.
     ///
-    /// Degrees of freedom of faces, contacts, forces and responses stay; all others follow them statically, and by their natural modes.
+    /// Degrees of freedom of faces, contacts, forces and responses stay; all others follow them statically, and by natural modes: with
+    /// these degrees of freedom fixed (craig-bampton), or free (free-interface). Free modes are the structure's own: all that are taken
+    /// are exact, and rigid motions are always among them.
     #[command(after_help = "\
 Examples:
   hbvib reduce job.toml --output reduced.npz                # and reduced.toml, which runs
   hbvib reduce job.toml --modes 100 --output reduced.pch    # DMIG
+  hbvib reduce job.toml --method free-interface --output reduced.npz
   hbvib reduce job.toml --up-to-hz 5000 --keep 12.3 --output reduced.op4")]
     Reduce(ReduceArguments),
     /// Makes the matrices of a sector that the static step of a CalculiX deck has loaded, as by rotation.
@@ -253,7 +265,10 @@ pub struct ReduceArguments {
     /// Format that is written, as in convert.
     #[arg(long, value_name = "FORMAT")]
     pub format: Option<String>,
-    /// Number of modes with the kept degrees of freedom fixed; as many as the tolerance needs unless given.
+    /// Modes that are taken: with the kept degrees of freedom fixed, or free.
+    #[arg(long, value_enum, default_value_t = MethodName::CraigBampton)]
+    pub method: MethodName,
+    /// Number of modes; as many as the tolerance needs unless given. Rigid motions with a free interface are taken beyond it.
     #[arg(long, value_name = "N", conflicts_with = "up_to_hz")]
     pub modes: Option<usize>,
     /// Largest relative error of natural frequencies up to half above the range of [forced], or of the first three without it.

@@ -3,7 +3,7 @@
 //! The coordinates minimise (x − Φq)ᴴ M (x − Φq). The modes are made orthonormal in the mass first, by Gram and Schmidt, twice.
 
 use crate::build::{Built, Outcome, read_matrices};
-use crate::craig_bampton::Entries;
+use crate::entries::Entries;
 use crate::job::Job;
 use crate::job_motion::ModalPart;
 use crate::node_table::Nodes;

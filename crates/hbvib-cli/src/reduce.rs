@@ -1,13 +1,14 @@
-//! The verb `reduce`: a Craig-Bampton model of a job, written as a superelement, with its error.
+//! The verb `reduce`: a model of a job by either method, written as a superelement, with its error.
 
-use crate::arguments::ReduceArguments;
+use crate::arguments::{MethodName, ReduceArguments};
 use crate::build::{Built, Outcome, built, read_matrices};
 use crate::convert::format_of;
-use crate::craig_bampton::{Basis, Modes};
 use crate::events;
 use crate::job::{DofName, Job};
 use crate::job_faces::MatchingName;
+use crate::pencil::Modes;
 use crate::print;
+use crate::reduced_basis::Basis;
 use hbvib::{ContactState, Interrupt};
 use hbvib_io::{Dof, Format, Matrices};
 use std::collections::BTreeSet;
@@ -45,7 +46,7 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
     let full = built(&job)?;
     let kept = kept(&job, &full, &of.keep)?;
     let found = read_matrices(&job)?;
-    let mut basis = Basis::new(&found, &kept, &full.fixed)?;
+    let mut basis = Basis::new(of.method, &found, &kept, &full.fixed)?;
     let limit = range(&job, &full)?;
     let reference = Reference::of(&full, limit)?;
     let mut told = match (of.modes, of.up_to_hz) {
@@ -60,7 +61,7 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
         basis.set_modes(Modes::Count(count))?;
         let error = reference.error(&job, &basis, (&found, &kept), &full)?;
         let enough = error.gap.is_none_or(|gap| gap <= of.tolerance);
-        if enough || count >= basis.interior() || basis.fixed_hz.len() < count {
+        if enough || basis.is_complete {
             told = Some(error);
         }
         count *= 2;
@@ -78,19 +79,20 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
     .map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
     files.extend(hbvib_io::write(&of.output, &reduced, format).map_err(|e| e.to_string())?);
     let mut text = format!(
-        "{} of {} degrees of freedom: {} kept, {} modes with these fixed{}\n",
+        "{} of {} degrees of freedom: {} kept, {} modes with these {}{}\n",
         basis.order(),
         full.model.ndof(),
         basis.kept(),
-        basis.fixed_hz.len(),
+        basis.mode_hz.len(),
+        interface(of.method),
         basis
-            .fixed_hz
+            .mode_hz
             .last()
             .map_or(String::new(), |hertz| format!(", up to {hertz:.4} Hz")),
     );
     text += &told;
     let table = of.output.with_extension("dofs.csv");
-    fs::write(&table, numbering(&full, &kept, &basis))
+    fs::write(&table, numbering(&full, &kept, &basis, interface(of.method)))
         .map_err(|e| format!("{}: cannot be written: {e}", table.display()))?;
     files.push(table);
     // Formats with names serve the same job.
@@ -109,6 +111,14 @@ pub fn reduce(of: &ReduceArguments) -> Outcome<u8> {
     }
     print(&text)?;
     Ok(0)
+}
+
+/// State of the kept degrees of freedom in the modes.
+fn interface(method: MethodName) -> &'static str {
+    match method {
+        MethodName::CraigBampton => "fixed",
+        MethodName::FreeInterface => "free",
+    }
 }
 
 /// Whether the job gives degrees of freedom by number: these are rows of the whole model.
@@ -215,7 +225,7 @@ fn matrices_of(basis: &Basis, found: &Matrices, kept: &[usize], direction: i64) 
     if found.dofs.len() == found.stiffness.as_ref().map_or(0, |a| a.rows) && !found.dofs.is_empty() {
         dofs.extend(kept.iter().map(|row| found.dofs[*row]));
         let last = found.dofs.iter().map(|(node, _)| *node).max().unwrap_or(0);
-        dofs.extend((1..=basis.fixed_hz.len() as i64).map(|k| (last + k, direction)));
+        dofs.extend((1..=basis.mode_hz.len() as i64).map(|k| (last + k, direction)));
     }
     Ok(Matrices {
         stiffness: on("stiffness", &found.stiffness)?,
@@ -228,12 +238,12 @@ fn matrices_of(basis: &Basis, found: &Matrices, kept: &[usize], direction: i64) 
 }
 
 /// Row of the reduced matrices for each kept degree of freedom and mode.
-fn numbering(full: &Built, kept: &[usize], basis: &Basis) -> String {
-    let mut text = String::from("row,degree_of_freedom,name,fixed_mode_hz\n");
+fn numbering(full: &Built, kept: &[usize], basis: &Basis, interface: &str) -> String {
+    let mut text = format!("row,degree_of_freedom,name,{interface}_mode_hz\n");
     for (row, dof) in kept.iter().enumerate() {
         let _ = writeln!(text, "{row},{dof},{},", full.nodes.name_of(*dof));
     }
-    for (k, hertz) in basis.fixed_hz.iter().enumerate() {
+    for (k, hertz) in basis.mode_hz.iter().enumerate() {
         let _ = writeln!(text, "{},,mode {},{hertz:.10e}", kept.len() + k, k + 1);
     }
     text
@@ -248,7 +258,7 @@ fn job_text(job: &Job, file: Option<&std::ffi::OsStr>) -> Outcome<String> {
         &job.folder
     });
     let folder = whole.map_err(|e| e.to_string())?;
-    let mut text = String::from("# The job on its Craig-Bampton model, written by hbvib reduce.\n");
+    let mut text = String::from("# The job on its reduced model, written by hbvib reduce.\n");
     let mut section = String::new();
     for line in job.text.lines() {
         let bare = line.trim();
