@@ -6,7 +6,9 @@ use crate::craig_bampton::FixedInterface;
 use crate::entries::Entries;
 use crate::free_interface::FreeInterface;
 use crate::pencil::Modes;
+use hbvib::linalg::sparse::Csc;
 use hbvib_io::{Matrices, Matrix, Symmetry};
+use num_complex::Complex64;
 
 /// Entries of a reduced matrix below this share of its diagonal are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -93,6 +95,27 @@ impl Basis {
         self.columns.len()
     }
 
+    /// The transposed basis. A row of a kept degree of freedom has one entry.
+    fn rows(&self) -> Csc {
+        let n = self.columns.first().map_or(0, Vec::len);
+        let mut rows = Csc {
+            rows: self.order(),
+            cols: n,
+            col_ptr: vec![0],
+            ..Csc::default()
+        };
+        for row in 0..n {
+            for (k, column) in self.columns.iter().enumerate() {
+                if column[row] != 0.0 {
+                    rows.row_idx.push(k);
+                    rows.values.push(Complex64::from(column[row]));
+                }
+            }
+            rows.col_ptr.push(rows.values.len());
+        }
+        rows
+    }
+
     /// A matrix on the basis.
     ///
     /// # Errors
@@ -102,12 +125,13 @@ impl Basis {
         let order = self.order();
         let symmetric = matches!(a.symmetry, Symmetry::Symmetric | Symmetry::Hermitian);
         let mut dense = vec![0.0; order * order];
+        let rows = self.rows();
         for (j, column) in self.columns.iter().enumerate() {
-            let force = entries.times(column);
-            // One triangle of a symmetric matrix is enough.
-            let first = if symmetric { j } else { 0 };
-            for (i, left) in self.columns.iter().enumerate().skip(first) {
-                dense[i * order + j] = left.iter().zip(&force).map(|(x, f)| x * f).sum();
+            let force: Vec<Complex64> = entries.times(column).into_iter().map(Complex64::from).collect();
+            let mut on_columns = vec![Complex64::ZERO; order];
+            rows.multiply_add(Complex64::ONE, &force, &mut on_columns);
+            for (i, force) in on_columns.iter().enumerate() {
+                dense[i * order + j] = force.re;
             }
         }
         let mut reduced = Matrix {

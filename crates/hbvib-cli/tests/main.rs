@@ -14,6 +14,7 @@ mod doubtful_jobs;
 mod example_programs;
 mod first_job;
 mod fits;
+mod free_interfaces;
 mod html_reports;
 mod lost_runs;
 mod map_and_tornado;

@@ -5,7 +5,7 @@ use crate::common::{command, empty_folder, printed, root};
 use std::path::Path;
 use std::process::Command;
 
-fn done(arguments: &[&str], folder: &Path) -> String {
+pub fn done(arguments: &[&str], folder: &Path) -> String {
     let output = command(arguments, folder);
     let (text, errors) = (printed(&output.stdout), printed(&output.stderr));
     assert!(
@@ -16,14 +16,14 @@ fn done(arguments: &[&str], folder: &Path) -> String {
 }
 
 /// The number after a word.
-fn number(text: &str, word: &str) -> f64 {
+pub fn number(text: &str, word: &str) -> f64 {
     let rest = text.split(word).nth(1).unwrap_or_else(|| panic!("{text} lacks {word}"));
     let number = rest.split_whitespace().next().unwrap().trim_end_matches(',');
     number.parse().unwrap()
 }
 
 /// The beam of bricks with a contact and a force.
-fn beam(folder: &Path) {
+pub fn beam(folder: &Path) {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     for file in ["beam.sti", "beam.mas", "beam.dof", "beam.inp"] {
         std::fs::copy(data.join(file), folder.join(file)).unwrap();
