@@ -199,21 +199,29 @@ impl FreeInterface {
     ) -> Outcome<Vec<Vec<f64>>> {
         let count = self.kept.len();
         let own: Vec<f64> = attached.iter().zip(&self.kept).map(|(x, (_, at))| x[*at]).collect();
-        let mut columns: Vec<Vec<f64>> = attached.into_iter().chain(shapes).collect();
+        let motions: Vec<Vec<f64>> = attached.into_iter().chain(shapes).collect();
+        // Of each column the kept rows, and below them the shares of all motions in it.
+        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(motions.len());
+        for (k, motion) in motions.iter().enumerate() {
+            let mut column: Vec<f64> = self.kept.iter().map(|(_, at)| motion[*at]).collect();
+            column.resize(count + motions.len(), 0.0);
+            column[count + k] = 1.0;
+            columns.push(column);
+        }
         // Column of each kept degree of freedom.
         let mut pivots: Vec<Option<usize>> = vec![None; count];
         loop {
-            let left = |j: usize, columns: &[Vec<f64>]| columns[j][self.kept[j].1] / own[j];
+            let left = |j: usize, columns: &[Vec<f64>]| columns[j][j] / own[j];
             let open = (0..count).filter(|j| pivots[*j].is_none() && own[*j] > 0.0);
             let best = open.max_by(|i, j| left(*i, &columns).total_cmp(&left(*j, &columns)));
             let Some(j) = best.filter(|j| left(*j, &columns) > NEGLIGIBLE) else {
                 break;
             };
-            eliminate(&mut columns, j, self.kept[j].1);
+            eliminate(&mut columns, j, j);
             pivots[j] = Some(j);
         }
         while pivots.iter().any(Option::is_none) {
-            let size = |(j, k): &(usize, usize)| columns[*k][self.kept[*j].1].abs();
+            let size = |(j, k): &(usize, usize)| columns[*k][*j].abs();
             let open = (0..count).filter(|j| pivots[*j].is_none());
             let modes = (count..columns.len()).filter(|k| !pivots.contains(&Some(*k)));
             let pairs = open.clone().flat_map(|j| modes.clone().map(move |k| (j, k)));
@@ -224,7 +232,7 @@ impl FreeInterface {
                     "no motion with free interface moves the kept degree of freedom {row}"
                 ));
             };
-            eliminate(&mut columns, k, self.kept[j].1);
+            eliminate(&mut columns, k, j);
             pivots[j] = Some(k);
         }
         let is_mode = |k: &usize| !pivots.contains(&Some(*k));
@@ -237,12 +245,29 @@ impl FreeInterface {
             .flatten()
             .copied()
             .chain((count..columns.len()).filter(is_mode));
-        Ok(order
-            .map(|k| {
-                let motion: Vec<Complex64> = columns[k].iter().map(|x| Complex64::from(*x)).collect();
-                self.whole.spread(&motion)
-            })
-            .collect())
+        let all = full(self.whole.order(), &motions);
+        let mut found = Vec::with_capacity(order.clone().count());
+        for k in order {
+            let shares: Vec<Complex64> = columns[k][count..].iter().map(|x| Complex64::from(*x)).collect();
+            let mut motion = vec![Complex64::ZERO; self.whole.order()];
+            all.multiply_add(Complex64::ONE, &shares, &mut motion);
+            for ((_, at), x) in self.kept.iter().zip(&columns[k]) {
+                motion[*at] = Complex64::from(*x);
+            }
+            found.push(self.whole.spread(&motion));
+        }
+        Ok(found)
+    }
+}
+
+/// A matrix with these columns, all of whose entries are stored.
+fn full(rows: usize, columns: &[Vec<f64>]) -> Csc {
+    Csc {
+        rows,
+        cols: columns.len(),
+        col_ptr: (0..=columns.len()).map(|k| k * rows).collect(),
+        row_idx: (0..columns.len()).flat_map(|_| 0..rows).collect(),
+        values: columns.iter().flatten().map(|x| Complex64::from(*x)).collect(),
     }
 }
 

@@ -126,8 +126,12 @@ impl Basis {
         let symmetric = matches!(a.symmetry, Symmetry::Symmetric | Symmetry::Hermitian);
         let mut dense = vec![0.0; order * order];
         let rows = self.rows();
+        let all: Vec<Option<usize>> = (0..rows.cols).map(Some).collect();
+        let matrix = entries.within(&all, rows.cols)?;
         for (j, column) in self.columns.iter().enumerate() {
-            let force: Vec<Complex64> = entries.times(column).into_iter().map(Complex64::from).collect();
+            let motion: Vec<Complex64> = column.iter().map(|x| Complex64::from(*x)).collect();
+            let mut force = vec![Complex64::ZERO; rows.cols];
+            matrix.multiply_add(Complex64::ONE, &motion, &mut force);
             let mut on_columns = vec![Complex64::ZERO; order];
             rows.multiply_add(Complex64::ONE, &force, &mut on_columns);
             for (i, force) in on_columns.iter().enumerate() {

@@ -173,10 +173,29 @@ fn the_reduced_wheel_has_the_response_of_the_whole_one() {
         number(&small, "unknowns from ") < 0.5 * number(&whole, "unknowns from "),
         "{small}"
     );
-    for word in ["peak ", "Hz "] {
-        let (a, b) = (number(&small, word), number(&whole, word));
-        assert!((a / b - 1.0).abs() < 1e-6, "{word}: {a} and {b}");
-    }
+    let is_near = |small: &str| {
+        for word in ["peak ", "Hz "] {
+            let (a, b) = (number(small, word), number(&whole, word));
+            assert!((a / b - 1.0).abs() < 1e-6, "{word}: {a} and {b}");
+        }
+    };
+    is_near(&small);
+    // Faces stay with free modes as well: those of the sector by itself, which no neighbour holds.
+    let told = done(
+        &[
+            "reduce",
+            "job.toml",
+            "--method",
+            "free-interface",
+            "--modes",
+            "20",
+            "--output",
+            "free.npz",
+        ],
+        &folder,
+    );
+    assert!(number(&told, "at most ") < 1e-6, "{told}");
+    is_near(&done(&["run", "free.toml"], &folder));
 }
 
 #[test]
