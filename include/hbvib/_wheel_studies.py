@@ -149,8 +149,8 @@ class _WheelStudies(_HasUnits):
         (True, True)
         """
         sector = cast("Model", self)
-        if not (np.isfinite(box) and box > 0):
-            raise ValueError(f"box = {box}, needs a number above 0")
+        if not (isinstance(box, (int, float, np.number)) and np.isfinite(box) and box > 0):
+            raise ValueError(f"box = {box!r}, needs a number above 0")
         if starts < 1:
             raise ValueError(f"starts = {starts}, needs at least 1")
         wheel, parameters, transform = self._directions(kind, dofs, direction)

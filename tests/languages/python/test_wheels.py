@@ -103,6 +103,8 @@ for s in range(N):
     check("gradient", abs(slope - worst.gradient[s]) < 1e-5 * abs(worst.gradient).max(), (slope, worst.gradient[s]))
 check("random wheels are better", first.largest.max() < worst.amplitude * 1.5 and worst.amplification > 1)
 raises("no box", ValueError, sector.worst_pattern, span, 0.0)
+raises("a box in words", ValueError, sector.worst_pattern, span, "a")
+check("a study of no wheels has a name", "0 wheels" in repr(hbvib.WheelStudy([], [], [], [], 1.0, [])))
 
 # The worst pattern of a linear wheel lies within some of the bounds: ascents end there, within a few dozen sweeps.
 linear = hbvib.Model.cyclic(1, sectors=9, engine_order=2, mass=1, stiffness=3, damping=0.01, coupling=dict(stiffness=-0.05))
