@@ -923,13 +923,13 @@ typedef enum {
 /// contact    contact of the sector for HBVIB_MISTUNING_PRELOAD, -1: all with a normal load; else
 ///            without effect.
 /// sectors    length of delta, the number of sectors.
-/// delta      of each sector, finite.
+/// delta      of each sector, finite; with dofs at least -1.
 /// Errors: HBVIB_E_ARGUMENT (kind, dofs twice or none that moves, neither dofs nor direction, or
-/// both; a load below 0), HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION (another model or number
-/// of sectors, n_dofs), HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the stiffness of the clamped
-/// blade), HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an attachment that is too large),
-/// those of hbvib_model_set_matrix for the direction; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
+/// both; delta with dofs; a load below 0), HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION
+/// (another model or number of sectors, n_dofs), HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the
+/// stiffness of the clamped blade), HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an
+/// attachment that is too large), those of hbvib_model_set_matrix for the direction; HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
 HBVIB_NODISCARD
 hbvib_status hbvib_wheel_mistune(hbvib_model *wheel,
                                  const hbvib_model *cyclic,

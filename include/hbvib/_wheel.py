@@ -43,7 +43,7 @@ class _Wheels(_Owner):
         and forces are multiplied.
 
         kind       "stiffness", "frequency" (clamped blades), "mass" or "damping" of blades, "preload" of contacts, "force".
-        delta      of each sector: the quantity times 1 + delta.
+        delta      of each sector: the quantity times 1 + delta, with dofs at least -1.
         dofs       degrees of freedom of the blade of a sector. Its stiffness is that of its motion relative to the one that
                    its attachment carries along.
         direction  matrix of a sector instead of dofs: delta times it is added to stiffness, mass or damping.

@@ -111,7 +111,8 @@ class WheelStudy:
         return len(self.largest)
 
     def __repr__(self) -> str:
-        return f"<hbvib.WheelStudy: {len(self)} wheels, amplification up to {np.nanmax(self.amplification):.4g}>"
+        largest = f", amplification up to {np.nanmax(self.amplification):.4g}" if len(self) else ""
+        return f"<hbvib.WheelStudy: {len(self)} wheels{largest}>"
 
     @property
     def amplification(self) -> FloatArray:

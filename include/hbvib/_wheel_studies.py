@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union, cast
 import numpy as np
 
 from ._analyses import _solver_options
+from ._ascent import ascend, foretold
 from ._branch import Branch
 from ._c import LogLevel, Status
 from ._calls import _call, _Guard, _hooks
 from ._convert import _array, _range
-from ._errors import ArgumentError, _sentence
+from ._errors import ArgumentError, Stopped, _sentence
 from ._responses import Response, structures
 from ._sensitivity import Parameter
 from ._structs import _new, _with_options
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Step of delta in differences: its square is far below what a gradient needs, a peak by its rounding far above.
 _DIFFERENCE = 1e-5
+#: Most evaluations of an ascent to the worst pattern.
+_MOST_SWEEPS = 300
 #: A blade as a degree of freedom of a sector, or a Response.
 Blade = Union[int, Response]
 
@@ -126,8 +129,9 @@ class _WheelStudies(_HasUnits):
                       direction: Any = None, blade: Blade = 0, starts: int = 3, seed: int = 0,
                       **solver: Unpack[SolverOptions]) -> WorstPattern:
         """The pattern within -box .. box whose peak of blade 0 is the highest that ascents by exact derivatives find; by the
-        symmetry of the wheel the same pattern shifted is as bad for the other blades. A step goes to the bounds along the
-        signs of the derivatives; it ends where no derivative points into the box (Karush, Kuhn and Tucker).
+        symmetry of the wheel the same pattern shifted is as bad for the other blades. First steps go to the bounds along the
+        signs of the derivatives, further ones are those of BFGS. An ascent ends where no derivative points into the box (Karush,
+        Kuhn and Tucker), or after 300 sweeps: `kkt` tells the gain that is left.
 
         omega      (start, stop) of each response.
         kind, dofs, direction, blade   as in wheel_study.
@@ -145,8 +149,8 @@ class _WheelStudies(_HasUnits):
         (True, True)
         """
         sector = cast("Model", self)
-        if not (np.isfinite(box) and box > 0):
-            raise ValueError(f"box = {box}, needs a number above 0")
+        if not (isinstance(box, (int, float, np.number)) and np.isfinite(box) and box > 0):
+            raise ValueError(f"box = {box!r}, needs a number above 0")
         if starts < 1:
             raise ValueError(f"starts = {starts}, needs at least 1")
         wheel, parameters, transform = self._directions(kind, dofs, direction)
@@ -169,25 +173,11 @@ class _WheelStudies(_HasUnits):
             return amplitude, gradient * slope, frequency
 
         for _ in range(starts):
-            pattern = random.uniform(-box, box, sector.sectors)
-            value, gradient, frequency = at(pattern)
-            radius = box
-            while radius > 1e-9 * box:
-                gain = _foretold(pattern, gradient, box)
-                if gain <= 1e-9 * value:
-                    break
-                trial = np.clip(pattern + radius * np.sign(gradient), -box, box)
-                found = at(trial)
-                if found[0] > value:
-                    pattern, (value, gradient, frequency) = trial, found
-                    radius = min(1.5 * radius, 2 * box)
-                else:
-                    radius /= 3
-            ends.append((value, pattern, gradient, frequency))
-        value, pattern, gradient, frequency = max(ends, key=lambda end: end[0])
+            ends.append(ascend(at, random.uniform(-box, box, sector.sectors), box, _MOST_SWEEPS))
+        pattern, value, gradient, frequency = max(ends, key=lambda end: end.value)
         whitehead = (1 + np.sqrt(sector.sectors)) / 2
-        return WorstPattern(pattern, value, frequency, gradient, _foretold(pattern, gradient, box) / value, value / tuned,
-                            float(whitehead), np.array([end[0] for end in ends]), sweeps)
+        return WorstPattern(pattern, value, frequency, gradient, foretold(pattern, gradient, box) / value, value / tuned,
+                            float(whitehead), np.array([end.value for end in ends]), sweeps)
 
     def _directions(self, kind: Mistunings, dofs: Optional[ArrayLike], direction: Any) -> Any:
         """The tuned wheel, one parameter a sector, and the values of the parameters for a pattern."""
@@ -226,6 +216,8 @@ class _WheelStudies(_HasUnits):
                        solver: Any) -> tuple[float, FloatArray, float]:
         """Highest peak of a blade of a wheel, its derivatives by the parameters and its frequency."""
         branch = wheel.forced_response(omega, responses=[watched], **solver)
+        if branch.status == Status.STOPPED_BY_CALLER:
+            raise Stopped(_sentence(branch.status), branch.status, 0)
         peaks = branch.responses[0].peaks()
         if len(peaks.point) == 0:
             raise ArgumentError("no peak of the watched blade lies within omega", Status.E_ARGUMENT, 2)
@@ -243,11 +235,6 @@ def _difference(changed: Any, before: Any) -> Any:
     except ImportError:
         return found
     return sparse.csc_matrix(found)
-
-
-def _foretold(pattern: FloatArray, gradient: FloatArray, box: float) -> float:
-    """Gain that the gradient foretells within the box."""
-    return float(np.sum(np.where(gradient > 0, gradient * (box - pattern), -gradient * (box + pattern))))
 
 
 def _blade(blade: Blade) -> Response:

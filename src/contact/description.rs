@@ -190,6 +190,11 @@ impl Contact {
         self.ask(|law| law.stiffness(k))
     }
 
+    /// Whether the force is a law of the caller.
+    pub(crate) fn is_of_caller(&self) -> bool {
+        self.ask(|law| law.is_of_caller())
+    }
+
     /// Largest change of the force by the relative velocity, N s/m; 0 for a law of the motion alone or of the caller.
     pub(crate) fn resistance(&self) -> f64 {
         self.ask(|law| law.resistance())

@@ -77,6 +77,11 @@ pub trait ContactLaw {
         0.0
     }
 
+    /// Whether this is a law of the caller, whose resistance is not known.
+    fn is_of_caller(&self) -> bool {
+        false
+    }
+
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
     fn is_spring(&self) -> bool {
         true

@@ -4,7 +4,7 @@ use crate::condense::modal_rows::ModalRows;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
-use crate::contact::{Contact, ContactKind};
+use crate::contact::Contact;
 use crate::error::{Result, boxed, try_push};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
@@ -162,8 +162,7 @@ impl<'a> ForcedEstimator<'a> {
         let own = set.numbers().last().copied().unwrap_or(0);
         let least = cutoff_harmonic::least_extension(set);
         // How a law of the caller resists the velocity is not known: the cut-off, which counts stiffness alone, may come too early.
-        let is_of_caller = |contact: &Contact| matches!(contact.kind, ContactKind::User(_));
-        let reach = if self.model.contacts().iter().any(is_of_caller) {
+        let reach = if self.model.contacts().iter().any(Contact::is_of_caller) {
             cutoff_harmonic::carried_from(set, 2 * least + 1)
         } else {
             least
@@ -193,12 +192,9 @@ impl<'a> ForcedEstimator<'a> {
             // No harmonic is weak, and none beyond is left out of the estimate: see `jump_error`.
             core = core.max(least).min(most);
         }
-        if least < reach && reach <= most {
-            core = core.max(reach);
-        }
         Ok(Some(Extent {
             core,
-            highest: core.max(least),
+            highest: core.max(if reach <= most { reach } else { least }),
             least,
             first_step: if core <= own {
                 FirstStep::Suffices

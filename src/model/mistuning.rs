@@ -86,6 +86,14 @@ impl Model {
         let mut changed = self.try_clone()?;
         match *what {
             Mistuning::Blade(property, dofs) => {
+                // What is multiplied by 1 + δ has no sense below zero.
+                if let Some(s) = delta.iter().position(|&d| d < -1.0) {
+                    return fail!(
+                        Argument,
+                        "delta[{s}] = {}, needs at least -1: a share, not a per cent",
+                        delta[s]
+                    );
+                }
                 let (kind, entries) = sector.structure().of_blade(property, dofs)?;
                 let share = |d: f64| {
                     if property == BladeProperty::Frequency {

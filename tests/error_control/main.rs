@@ -8,5 +8,6 @@ mod error_estimate_laws;
 mod error_estimate_modes;
 mod error_estimate_waves;
 mod error_estimate_wells;
+mod falling_friction;
 mod few_harmonics;
 mod tolerance;

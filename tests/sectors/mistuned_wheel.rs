@@ -304,6 +304,18 @@ fn wheels_that_cannot_be_made_are_refused_by_name() {
         &["dofs[0] = 4"],
     );
     refusal(Mistuning::Blade(stiffness, &[]), &zero, Status::Argument, &["blade"]);
+    // A per cent in place of a share.
+    let mut per_cent = zero;
+    per_cent[3] = -2.0;
+    for property in [
+        BladeProperty::Stiffness,
+        BladeProperty::Frequency,
+        BladeProperty::Mass,
+        BladeProperty::Damping,
+    ] {
+        let words = &["delta[3] = -2", "at least -1"];
+        refusal(Mistuning::Blade(property, &[0]), &per_cent, Status::Argument, words);
+    }
 }
 
 /// All blades of a pattern of 2 % at 208.8 Hz under 5 N, integrated in time from event to event.

@@ -235,6 +235,10 @@ impl fmt::Debug for User {
 const USER_LAW_FAR: f64 = 1e6;
 
 impl ContactLaw for User {
+    fn is_of_caller(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &'static str {
         "law of the caller"
     }

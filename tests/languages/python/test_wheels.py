@@ -103,6 +103,23 @@ for s in range(N):
     check("gradient", abs(slope - worst.gradient[s]) < 1e-5 * abs(worst.gradient).max(), (slope, worst.gradient[s]))
 check("random wheels are better", first.largest.max() < worst.amplitude * 1.5 and worst.amplification > 1)
 raises("no box", ValueError, sector.worst_pattern, span, 0.0)
+raises("a box in words", ValueError, sector.worst_pattern, span, "a")
+check("a study of no wheels has a name", "0 wheels" in repr(hbvib.WheelStudy([], [], [], [], 1.0, [])))
+
+# The worst pattern of a linear wheel lies within some of the bounds: ascents end there, within a few dozen sweeps.
+linear = hbvib.Model.cyclic(1, sectors=9, engine_order=2, mass=1, stiffness=3, damping=0.01, coupling=dict(stiffness=-0.05))
+linear.add_force(0, 0.1)
+inner = linear.worst_pattern((1.5, 2.0), 0.03, kind="stiffness", dofs=[0], starts=2, harmonics=1)
+check("it is no corner", (abs(inner.pattern) < 0.03 * 0.999).any(), inner.pattern)
+check("it ends", inner.sweeps < 200 and inner.kkt < 1e-6, (inner.sweeps, inner.kkt))
+for s in range(9):
+    for step in (-1e-3, 1e-3):
+        turned = np.clip(inner.pattern + step * np.eye(9)[s], -0.03, 0.03)
+        other = linear.wheel()
+        other.mistune(linear, "stiffness", turned, dofs=[0])
+        reached = other.wheel_peaks(linear, (1.5, 2.0), 0, harmonics=1).amplitude[0]
+        check("no neighbour of it is worse", reached <= inner.amplitude * (1 + 1e-9), (s, step))
+raises("a stop is told", hbvib.Stopped, lambda: linear.worst_pattern((1.5, 2.0), 0.03, dofs=[0], harmonics=1, phase=lambda *_: False))
 
 # Where a peak lies at the onset of slip it has no derivative by the equations: its own differences are taken.
 import hbvib._wheel_studies as studies
