@@ -117,11 +117,12 @@ impl FreeInterface {
         {
             *hertz = 0.0;
         }
-        let highest = found.omega.last().map_or(0.0, |omega| omega * omega);
-        if rigid == found.omega.len() || highest <= 0.0 {
+        let next = found.omega.get(wanted).or(found.omega.last());
+        let next = next.map_or(0.0, |omega| omega * omega);
+        if rigid == found.omega.len() || next <= 0.0 {
             return Err("modes with free interface: all are rigid motions, so that there is nothing to reduce".into());
         }
-        let attached = self.attachment(&shapes, SHIFT * highest)?;
+        let attached = self.attachment(&shapes, SHIFT * next)?;
         let columns = self.with_kept_rows(attached, shapes, &mut hertz)?;
         Ok(Motions {
             columns,
