@@ -32,8 +32,8 @@ const EXACT_UP_TO: usize = 100;
 /// Certificate of a basis in place of all modes: the error that is allowed to a sum over these.
 const OF_ALL_MODES: f64 = 1e-11;
 
-/// Degrees of freedom over columns of the first block, below which a basis is no reduction.
-const SHARE: usize = 20;
+/// Degrees of freedom over columns of the first block, below which the usual basis is larger than it may be.
+const SHARE: usize = SHARE_OF_BASIS * USUAL_COLUMNS.0;
 
 /// The same over all columns: a sweep past more resonances than that is left to all modes, or to factors.
 const SHARE_OF_BASIS: usize = 3;

@@ -393,3 +393,63 @@ fn a_memory_limit_is_told_with_the_need_before_memory_is_asked_for() {
         forced_response(&model, &enough, &range, &mut Hooks::default()).unwrap();
     }
 }
+
+/// A plate of masses between springs, clamped at its edges, with sliders against the ground.
+fn plate(side: usize, sliders: usize) -> Model {
+    let n = side * side;
+    let (mut k, mut m) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        (k[i * (n + 1)], m[i * (n + 1)]) = (4.0, 1.0);
+        for (step, has_next) in [(1, (i + 1) % side != 0), (side, i + side < n)] {
+            if has_next {
+                k[i * n + i + step] = -1.0;
+                k[(i + step) * n + i] = -1.0;
+            }
+        }
+    }
+    let mut model = Model::new(n).unwrap();
+    for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
+        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
+    }
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    for c in 0..sliders {
+        let at = c * (n - 1) / (sliders - 1);
+        model.add_contact(&Contact::jenkins(at, None, 0.2, 0.004, 1.0)).unwrap();
+    }
+    model.add_force(n / 3, 1, Complex64::ONE).unwrap();
+    model
+}
+
+/// On both sides of the number of contacts up to which a basis is taken, 676/15, all points are those of factors.
+#[test]
+fn plates_with_few_and_many_sliders_respond_as_by_factors() {
+    for sliders in [20, 42, 48] {
+        let model = plate(26, sliders);
+        let solve = |flexibility| {
+            let range = ForcedOptions {
+                omega_start: 0.15,
+                omega_stop: 0.2,
+                at: &[0.163, 0.19],
+                ..ForcedOptions::default()
+            };
+            let solver = options(flexibility, 1);
+            forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap()
+        };
+        let (own, factors) = (solve(Flexibility::Automatic), solve(Flexibility::Direct));
+        assert_eq!((own.status(), factors.status()), (Status::Ok, Status::Ok));
+        let reaches = |branch: &Branch| {
+            let mut all = vec![branch.amplitude()[0], branch.amplitude()[branch.points() - 1]];
+            all.extend((0..2).map(|i| branch.response_at(branch.at(i)[0].point).unwrap()[0].norm()));
+            all.extend(branch.peaks().iter().map(|peak| peak.amplitude));
+            all
+        };
+        let (own, factors) = (reaches(&own), reaches(&factors));
+        assert_eq!(own.len(), factors.len(), "{sliders} sliders");
+        for (own, factors) in own.iter().zip(&factors) {
+            assert!(
+                (own / factors - 1.0).abs() < 1e-7,
+                "{sliders} sliders: {own} for {factors}"
+            );
+        }
+    }
+}
