@@ -86,7 +86,7 @@ impl Model {
         let mut changed = self.try_clone()?;
         match *what {
             Mistuning::Blade(property, dofs) => {
-                // What is multiplied by 1 + δ has no sense below zero.
+                // A stiffness, mass or damping below zero has no sense.
                 if let Some(s) = delta.iter().position(|&d| d < -1.0) {
                     return fail!(
                         Argument,
