@@ -179,7 +179,8 @@ class ContactConstants(TypedDict, total=False):
         0.
     kt   Tangential stiffness of ContactKind.JENKINS, ContactKind.FRICTION_2D and ContactKind.FRICTION_3D, stiffness of
         ContactKind.CUBIC at small motion, force per length, >= 0; 0 for ContactKind.UNILATERAL and
-        ContactKind.REGULARISED. Default: 0.0.
+        ContactKind.REGULARISED. Infinite: a ContactKind.JENKINS contact is rigid while it sticks, in forced responses.
+        Default: 0.0.
     kn   Normal stiffness, force per length, >= 0, of ContactKind.UNILATERAL; > 0 of ContactKind.FRICTION_2D and
         ContactKind.FRICTION_3D, but 0 under a constant load; 0 for others. Default: 0.0.
     mu   Friction coefficient, >= 0; 0 for ContactKind.UNILATERAL and ContactKind.CUBIC. Default: 0.0.

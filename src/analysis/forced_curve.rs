@@ -26,7 +26,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{Content, ForcedOptions, Response, SolverOptions, check_highest, check_responses};
+use crate::options::{Content, Exchanged, ForcedOptions, Response, SolverOptions, check_highest, check_responses};
 use crate::problem::InitialGuess;
 use crate::results::{Branch, Descent};
 use num_complex::Complex64;
@@ -135,10 +135,14 @@ fn with_detail(
         None => solver,
     };
     // With fixed harmonics the motions of the contacts are cut off, as in the residual of a caller's point.
-    let with_exchange = SolverOptions {
-        exchange: solver.tolerance > 0.0 && solver.samples == 0 && solver.stability.is_none(),
-        ..*solver
+    let exchange = if solver.samples > 0 || solver.stability.is_some() {
+        Exchanged::None
+    } else if solver.tolerance > 0.0 {
+        Exchanged::NearRigid
+    } else {
+        Exchanged::Rigid
     };
+    let with_exchange = SolverOptions { exchange, ..*solver };
     let outcome = with_samples(&with_exchange, |solver| {
         let own = SharedWaves::default();
         let waves = waves.unwrap_or(&own);

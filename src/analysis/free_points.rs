@@ -12,7 +12,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::model::speed::Speed;
-use crate::options::SolverOptions;
+use crate::options::{Exchanged, SolverOptions};
 use crate::results::Branch;
 use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};
 
@@ -204,7 +204,7 @@ impl<'a> FreePoints<'a> {
             samples: branch.samples_at(point),
             response_dof: Some(branch.response_dof()),
             refinement: condensed.refinement(),
-            exchange: false,
+            exchange: Exchanged::None,
             ..self.solver.fixed()
         };
         let omega = branch.omega_at(point).unwrap_or(f64::NAN);

@@ -15,7 +15,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::options::{Response, SolverOptions};
+use crate::options::{Exchanged, Response, SolverOptions};
 use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, peak_row, peak_shift};
 use std::sync::Arc;
 
@@ -114,7 +114,7 @@ impl<'a> HeldSliders<'a> {
         let solver = SolverOptions {
             harmonics,
             keep_even_harmonics: true,
-            exchange: false,
+            exchange: Exchanged::None,
             ..solver.fixed()
         };
         Ok(Self {

@@ -67,7 +67,7 @@ pub fn estimate_at_with(
     };
     let solver = &SolverOptions {
         samples,
-        exchange: branch.condensed_at(point).has_exchanges(),
+        exchange: branch.condensed_at(point).exchanged(),
         content,
         ..*solver
     };

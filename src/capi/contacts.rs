@@ -66,7 +66,8 @@ pub struct hbvib_contact {
     pub sector_offset: i64,
     /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
     /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and
-    /// HBVIB_REGULARISED.
+    /// HBVIB_REGULARISED. Infinite: a HBVIB_JENKINS contact is rigid while it sticks, in forced
+    /// responses.
     pub kt: f64,
     /// Normal stiffness, force per length, >= 0, of HBVIB_UNILATERAL; > 0 of HBVIB_FRICTION_2D and
     /// HBVIB_FRICTION_3D, but 0 under a constant load; 0 for others.

@@ -246,7 +246,7 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         memory_limit: number(o.memory_limit, "memory_limit")?,
         stability: stability(o.stability)?,
         freedom: flag(o.freedom, "freedom")?,
-        exchange: false,
+        exchange: SolverOptions::default().exchange,
         content: SolverOptions::default().content,
     };
     options.check()?;

@@ -11,7 +11,7 @@
 
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
-use crate::condense::exchanged_motions::select_exchanged;
+use crate::condense::exchanged_motions::{check_rigid, select_exchanged};
 use crate::condense::flexibility::Workspace;
 use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
@@ -29,7 +29,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
-use crate::options::{DampingForm, Flexibility, SolverOptions};
+use crate::options::{DampingForm, Exchanged, Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -272,14 +272,16 @@ impl Condensed {
         raise_for_springs(model, &assembled, &structural, &mut stiffness);
         let mut reference_stiffness = reference_stiffness(&stiffness, &structural)?;
         let mut exchanges = try_vec(representatives.len(), None, "the contacts")?;
-        if options.exchange && mode.is_none() {
+        if options.exchange != Exchanged::None && mode.is_none() {
             select_exchanged(
                 model,
+                options.exchange,
                 &assembled,
                 (&stiffness, &mut reference_stiffness),
                 &mut exchanges,
             )?;
         }
+        check_rigid(model, &assembled, &exchanges)?;
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = match (reference, mode) {
             (Some(given), _) => given,

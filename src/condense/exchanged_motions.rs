@@ -6,10 +6,11 @@ use crate::condense::exchange::Exchange;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::relative_coordinates::AssembledDirection;
 use crate::condense::sweep::Sweep;
-use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 use crate::model::Model;
+use crate::options::Exchanged;
 use num_complex::Complex64;
 use std::f64::consts::E;
 
@@ -24,6 +25,7 @@ const NOMINAL: f64 = 160.0;
 /// then.
 pub(super) fn select_exchanged(
     model: &Model,
+    which: Exchanged,
     assembled: &[AssembledDirection],
     (stiffness, reference): (&[f64], &mut [f64]),
     exchanges: &mut [Option<Exchange>],
@@ -35,7 +37,13 @@ pub(super) fn select_exchanged(
     for at in assembled {
         let (c, contact) = (at.coordinate, &model.contacts()[at.contact]);
         let is_loaded = model.speed_loads().iter().any(|load| load.contact == at.contact);
-        if count[c] == 1 && reference[c] < stiffness[c] && !is_loaded && contact.exchanged(1.0, 1.0).is_some() {
+        let is_meant = which == Exchanged::NearRigid || contact.is_rigid();
+        if is_meant
+            && count[c] == 1
+            && reference[c] < stiffness[c]
+            && !is_loaded
+            && contact.exchanged(1.0, 1.0).is_some()
+        {
             let compliance = stiffness[c].recip();
             exchanges[c] = Some(Exchange {
                 stiffness: 1.0,
@@ -48,7 +56,39 @@ pub(super) fn select_exchanged(
     Ok(())
 }
 
+/// Refuses a rigid slider without an exchanged motion: it has no other equations.
+///
+/// # Errors
+/// `Unsupported`.
+pub(super) fn check_rigid(
+    model: &Model,
+    assembled: &[AssembledDirection],
+    exchanges: &[Option<Exchange>],
+) -> Result<()> {
+    let mut without = assembled.iter().filter(|at| exchanges[at.coordinate].is_none());
+    match without.find(|at| model.contacts()[at.contact].is_rigid()) {
+        None => Ok(()),
+        Some(at) => fail!(
+            Unsupported,
+            "contact {}: kt = inf, a rigid slider, needs a forced response without stability, free sliders and samples, a motion on which no \
+             other contact acts, a constant load and no place of its slider; take a finite kt elsewhere",
+            at.contact
+        ),
+    }
+}
+
 impl Condensed {
+    /// Sliders whose motions are exchanged.
+    #[must_use]
+    pub fn exchanged(&self) -> Exchanged {
+        let finite = |exchange: &Exchange| exchange.compliance > 0.0;
+        match (self.has_exchanges(), self.exchanges.iter().flatten().any(finite)) {
+            (false, _) => Exchanged::None,
+            (true, false) => Exchanged::Rigid,
+            (true, true) => Exchanged::NearRigid,
+        }
+    }
+
     /// Whether some motion is exchanged.
     #[must_use]
     pub fn has_exchanges(&self) -> bool {
@@ -95,11 +135,16 @@ impl Condensed {
             };
             let at_nominal = flexibility[c * n + c].norm();
             exchange.stiffness = (E * NOMINAL * at_nominal).recip();
+            self.stiffness[c] = exchange.stiffness;
+            if exchange.compliance == 0.0 {
+                // A rigid stick does not ring.
+                self.exchanges[c] = Some(exchange);
+                continue;
+            }
             // The mass −1/(Gω²) at the nominal harmonic, then at the ring of that mass.
             let near = omega * (at_nominal / exchange.compliance).sqrt();
             let there = without_reference(self, (i, near / number), interrupt)?;
             exchange.ring = near * (there[c * n + c].norm() / exchange.compliance).sqrt();
-            self.stiffness[c] = exchange.stiffness;
             self.exchanges[c] = Some(exchange);
         }
         Ok(())

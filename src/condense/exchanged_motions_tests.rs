@@ -5,7 +5,7 @@ use crate::condense::frequency_cache::FrequencyCache;
 use crate::condense::test_chains::{DAMPED, structure};
 use crate::contact::Contact;
 use crate::interrupt::Interrupt;
-use crate::options::SolverOptions;
+use crate::options::{Exchanged, SolverOptions};
 use num_complex::Complex64;
 
 /// Whatever the forces are, the motion that follows from the exchanged one is that of the structure under them.
@@ -24,7 +24,7 @@ fn exchanged_motions_are_those_of_the_structure() {
             exchange,
             ..SolverOptions::default()
         };
-        let [plain, exchanged] = [false, true].map(|exchange| {
+        let [plain, exchanged] = [Exchanged::None, Exchanged::NearRigid].map(|exchange| {
             let condensed = Condensed::new(&model, &options(exchange), (0.6, 0.9), &interrupt).unwrap();
             let tables = FrequencyCache::new(&condensed, 0, (0.7, 0.7), &interrupt).unwrap();
             (condensed, tables)
@@ -80,7 +80,7 @@ fn slopes_of_exchanged_tables_are_differences() {
     model.add_contact(&Contact::jenkins(1, None, 1e7, 0.3, 1.0)).unwrap();
     let options = SolverOptions {
         harmonics: 5,
-        exchange: true,
+        exchange: Exchanged::NearRigid,
         ..SolverOptions::default()
     };
     let condensed = Condensed::new(&model, &options, (0.6, 0.9), &interrupt).unwrap();

@@ -11,7 +11,7 @@ impl Contact {
     /// `NotFinite` or `Argument`, naming the constant, its value and its range.
     pub fn check_constants(&self) -> Result<()> {
         for (name, value, may_be_infinite) in [
-            ("kt", self.kt, false),
+            ("kt", self.kt, self.ask(|law| law.may_be_rigid())),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
             (
@@ -41,6 +41,12 @@ impl Contact {
             }
         }
         self.check_slider()?;
+        if self.kt.is_infinite() && self.preload.is_infinite() {
+            return fail!(
+                Argument,
+                "contact: kt = inf under an infinite preload ties both sides; make what it connects one degree of freedom"
+            );
+        }
         let constants = [
             ("kt", self.kt),
             ("kn", self.kn),
@@ -96,6 +102,12 @@ impl Contact {
                     Unsupported,
                     "contact: place of the slider along {name} = {place}, but a {} has none there",
                     self.law_name()
+                );
+            }
+            if self.kt.is_infinite() {
+                return fail!(
+                    Unsupported,
+                    "contact: place of the slider along {name} = {place} under kt = inf, needs a finite kt"
                 );
             }
             if self.preload.is_infinite() {

@@ -28,7 +28,8 @@ pub struct Contact {
     pub frame: Option<Frame>,
     /// Side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
-    /// Stiffness at small motion, force per length, at least 0; 0 for a unilateral spring.
+    /// Stiffness at small motion, force per length, at least 0; 0 for a unilateral spring. Infinite: a Jenkins contact is rigid
+    /// while it sticks.
     pub kt: f64,
     /// Stiffness of a unilateral spring, force per length, at least 0; 0 for the others.
     pub kn: f64,
@@ -97,6 +98,12 @@ impl Contact {
     #[must_use]
     pub fn load(&self) -> f64 {
         self.constants().load()
+    }
+
+    /// Whether the contact is rigid while it sticks, [`Contact::kt`] infinite.
+    #[must_use]
+    pub fn is_rigid(&self) -> bool {
+        self.kt.is_infinite() && self.role() == Role::Active
     }
 
     /// Slip limit μN₀; zero without friction under any load.

@@ -125,6 +125,11 @@ pub trait ContactLaw {
         false
     }
 
+    /// Whether an infinite stick stiffness is allowed: rigid Coulomb friction.
+    fn may_be_rigid(&self) -> bool {
+        false
+    }
+
     /// Whether the constants make sense per unit of area.
     fn is_per_area(&self) -> bool {
         true

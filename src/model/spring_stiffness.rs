@@ -5,8 +5,12 @@ use crate::error::{Result, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::Row;
+use crate::model::structure::MatrixKind;
 pub use crate::model::wave::Wave;
 use num_complex::Complex64;
+
+/// A tie over the stiffness of the structure: natural frequencies are below those of tied sides by 10⁻⁸ or so, the rounding of K as large.
+const TIE: f64 = 1e8;
 
 impl Model {
     /// Rows of force and motion, and stiffness, of the springs of the model and of the `stuck` contacts in a wave.
@@ -41,6 +45,7 @@ impl Model {
         let structure = self.structure();
         let mut add = |force: &Row, motion: &Row, stiffness: f64| match stiffness {
             0.0 => Ok(()),
+            f64::INFINITY => take(force, motion, self.tie(motion)),
             stiffness => take(force, motion, stiffness),
         };
         for s in self.springs() {
@@ -56,6 +61,12 @@ impl Model {
             }
         }
         Ok(())
+    }
+
+    /// Stiffness in place of an infinite one, as of a rigid slider that sticks: [`TIE`] times that of the structure at its sides.
+    fn tie(&self, motion: &Row) -> f64 {
+        let own = |p| self.structure().wave_diagonal(MatrixKind::Stiffness, 0, p).norm();
+        TIE * motion.iter().flatten().map(|(p, _)| own(*p)).fold(0.0, f64::max)
     }
 
     /// K of a wave, at a fixed speed with Ω²K₁, with aerodynamic forces per displacement, the springs of the model and

@@ -29,7 +29,7 @@ pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeGuess, ModeOption
 pub(crate) use response::check_responses;
 pub use response::{Component, Response};
 pub use run_up_options::{RUN_UP_INTEGRATED_TURNS, RUN_UP_MOST_TURNS, RunUpOptions};
-pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
+pub use solver_options::{Exchanged, Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
 pub use sweep_options::SweepOptions;
 pub use synthesis_options::SynthesisOptions;
 pub use time_options::{SteadyMethod, TimeOptions, VerifyOptions};

@@ -75,10 +75,22 @@ pub struct SolverOptions {
     /// Free sliders of each stored point of a forced response, with the derivatives of its amplitude by their places (see
     /// [`freedom`](crate::freedom())). A nonlinear mode refuses it.
     pub freedom: bool,
-    /// Whether near-rigid sliders have exchanged motions, see [`crate::condense::exchange`]; an analysis sets it.
-    pub exchange: bool,
+    /// Sliders that have exchanged motions, see [`crate::condense::exchange`]; an analysis sets it.
+    pub exchange: Exchanged,
     /// Harmonics that are carried beyond those which forces and laws excite by themselves; an analysis with a guess sets it.
     pub content: Content,
+}
+
+/// Sliders under a constant load whose motions are exchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Exchanged {
+    /// None.
+    #[default]
+    None,
+    /// Rigid ones, which have no other equations.
+    Rigid,
+    /// Near-rigid ones, too.
+    NearRigid,
 }
 
 impl Default for SolverOptions {
@@ -103,7 +115,7 @@ impl Default for SolverOptions {
             memory_limit: 0,
             stability: None,
             freedom: false,
-            exchange: false,
+            exchange: Exchanged::None,
             content: Content::default(),
         }
     }

@@ -1,13 +1,16 @@
 //! Near-rigid contacts that really slip, with a tolerance, against integration in time from event to event
 //! (relative error below 1e-8; rigid Coulomb friction from a separate program, which 2e6 and 4e8 meet within 4e-5).
 
-use crate::common::sweep;
+use crate::common::{all_harmonics, harmonics, sweep};
+use hbvib::analysis::{forced_response, nonlinear_mode, verify};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
+use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
+use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions, VerifyOptions};
 use hbvib::results::Branch;
 use num_complex::Complex64;
 
@@ -60,7 +63,7 @@ const IN_TIME: [(f64, [f64; 2], [f64; 2]); 6] = [
 #[test]
 fn single_frequencies_with_real_slip_are_within_the_tolerance() {
     for (omega, stiff, rigid) in IN_TIME {
-        for (kt, [re, im]) in [(3e4, stiff), (2e6, rigid), (4e8, rigid)] {
+        for (kt, [re, im]) in [(3e4, stiff), (2e6, rigid), (4e8, rigid), (f64::INFINITY, rigid)] {
             let branch = sweep(&chain(kt), &solver(), omega, omega, &[]);
             let name = format!("kt {kt:e}, {omega}");
             assert_eq!(branch.status(), Status::Ok, "{name}");
@@ -83,7 +86,7 @@ fn single_frequencies_with_real_slip_are_within_the_tolerance() {
 
 #[test]
 fn a_sweep_through_the_onset_of_slip_takes_few_harmonics() {
-    for kt in [3e4, 2e6, 4e8] {
+    for kt in [3e4, 2e6, 4e8, f64::INFINITY] {
         let branch = sweep(&chain(kt), &solver(), 0.3, 0.5505, &[0.55]);
         assert_eq!(branch.status(), Status::Ok, "{kt:e}");
         assert!(branch.harmonics() <= 63 && branch.points() < 200, "{kt:e}");
@@ -123,4 +126,121 @@ fn energies_and_loops_are_those_of_the_motion_of_the_contact() {
     // Where it sticks it rests, but for what the harmonics leave out.
     let largest = found.motion.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
     assert!((largest / summary.half_range[0] - 1.0).abs() < 0.01);
+}
+
+/// A mass on a spring 1 under the force cos ωt with rigid friction that slips without a stop: Den Hartog, Trans. ASME APM-53-9 (1931),
+/// has its largest motion √(V² − (fc U)²), V = 1/(1 − r²), U = sin(π/r)/(r(1 + cos(π/r))) with r = ω. The error falls as 1/H.
+#[test]
+fn a_mass_on_a_rigid_slider_moves_as_in_closed_form() {
+    let limit = 0.3;
+    let mut model = Model::new(1).unwrap();
+    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[1.0])).unwrap();
+    }
+    let rigid = Contact::jenkins(0, None, f64::INFINITY, 1.0, limit);
+    model.add_contact(&rigid).unwrap();
+    model.add_force(0, 1, 1.0.into()).unwrap();
+    for r in [0.6_f64, 0.8, 1.3, 1.7] {
+        let (sin, cos) = (std::f64::consts::PI / r).sin_cos();
+        let (v, u) = (1.0 / (1.0 - r * r), sin / (r * (1.0 + cos)));
+        let exact = (v * v - (limit * u).powi(2)).sqrt();
+        for highest in [31, 127] {
+            let branch = sweep(&model, &harmonics(highest), r, r, &[]);
+            let x = all_harmonics(&branch, 0);
+            let at = |k: usize| -> f64 {
+                let turn = |(h, x): (usize, &Complex64)| (x * Complex64::cis(k as f64 * 1e-3 * h as f64)).re;
+                x.iter().enumerate().map(turn).sum()
+            };
+            let largest = (0..6284).map(at).fold(0.0, f64::max);
+            let error = (largest / exact - 1.0).abs();
+            println!("{r}, H {highest}: {error:.1e}");
+            assert!(error <= 0.08 / highest as f64, "{r}, {highest}: {error:e}");
+        }
+    }
+}
+
+/// The limit of ever stiffer sliders, with one or two of them and at the sizes of each way to the flexibility.
+#[test]
+fn a_rigid_slider_is_the_limit_of_stiff_ones() {
+    for n in [6, 101, 200, 700] {
+        for count in [1, 2] {
+            let solved = |kt: f64| {
+                let own: Vec<f64> = (0..n * n).map(|i| f64::from(u8::from(i % (n + 1) == 0))).collect();
+                let spring = |i: usize| match (i / n).abs_diff(i % n) {
+                    0 => 2.0,
+                    1 => -1.0,
+                    _ => 0.0,
+                };
+                let stiffness: Vec<f64> = (0..n * n).map(spring).collect();
+                let mut model = Model::new(n).unwrap();
+                for (kind, matrix) in [(MatrixKind::Mass, &own), (MatrixKind::Stiffness, &stiffness)] {
+                    model.set_matrix(kind, &MatrixView::dense(n, matrix)).unwrap();
+                }
+                model.set_rayleigh(0.02, 1e-3).unwrap();
+                for k in 0..count {
+                    let contact = Contact::jenkins(n / 2 + 2 * k, None, kt, 0.3, 0.5);
+                    model.add_contact(&contact).unwrap();
+                }
+                model.add_force(n / 2 - 3, 1, 0.6.into()).unwrap();
+                let solver = SolverOptions {
+                    response_dof: Some(n / 2 - 2),
+                    tolerance: 1e-2,
+                    ..SolverOptions::default()
+                };
+                let branch = sweep(&model, &solver, 0.31, 0.33, &[]);
+                assert_eq!(branch.status(), Status::Ok, "{n}, {kt:e}");
+                assert!(branch.slip_fraction()[0] > 0.0, "{n}, {kt:e}");
+                (branch.amplitude()[0], branch.amplitude()[branch.points() - 1])
+            };
+            let (rigid, stiff) = (solved(f64::INFINITY), solved(1e9));
+            let gap = (rigid.0 / stiff.0 - 1.0).abs().max((rigid.1 / stiff.1 - 1.0).abs());
+            assert!(gap < 1e-7, "{n} masses, {count} sliders: {gap:e}");
+        }
+    }
+}
+
+/// Analyses without these equations refuse a rigid slider by name, natural modes hold it.
+#[test]
+fn a_rigid_slider_is_refused_elsewhere() {
+    let model = chain(f64::INFINITY);
+    let range = ForcedOptions {
+        omega_start: 0.5,
+        omega_stop: 0.6,
+        ..ForcedOptions::default()
+    };
+    let refused = |text: String| assert!(text.contains("contact 0") && text.contains("kt = inf"), "{text}");
+    let fixed = SolverOptions {
+        samples: 64,
+        ..harmonics(3)
+    };
+    let found = forced_response(&model, &fixed, &range, &mut Hooks::default());
+    refused(found.err().unwrap().to_string());
+    let mode_range = ModeOptions {
+        log10_start: -2.0,
+        log10_stop: 0.0,
+        ..ModeOptions::default()
+    };
+    let mode = nonlinear_mode(&model, &harmonics(3), &mode_range, &mut Hooks::default());
+    refused(mode.err().unwrap().to_string());
+    let branch = sweep(&model, &harmonics(15), 0.6, 0.6, &[]);
+    let in_time = verify(&model, &branch, 0, &VerifyOptions::default(), &mut Hooks::default());
+    refused(in_time.err().unwrap().to_string());
+    let mut two = model.clone();
+    two.add_contact(&Contact::jenkins(4, None, 1.0, 0.3, 1.0)).unwrap();
+    let found = forced_response(&two, &harmonics(3), &range, &mut Hooks::default());
+    refused(found.err().unwrap().to_string());
+    let mut tied = model.clone();
+    let infinite = Contact::jenkins(1, None, f64::INFINITY, 0.3, f64::INFINITY);
+    assert!(
+        tied.add_contact(&infinite)
+            .unwrap_err()
+            .to_string()
+            .contains("kt = inf")
+    );
+    // A mass that is held leaves chains of four and three.
+    let modes = model.lowest_modes(0, ContactState::Stuck, 2).unwrap();
+    let held = |n: usize| 2.0 * (std::f64::consts::PI / (2.0 * (n + 1) as f64)).sin();
+    for (found, exact) in modes.omega.iter().zip([held(4), held(3)]) {
+        assert!((found / exact - 1.0).abs() < 1e-7, "{found} for {exact}");
+    }
 }

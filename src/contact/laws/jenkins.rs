@@ -17,7 +17,7 @@ use crate::contact::laws::saturated::Saturated;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::Piece;
-use crate::error::Result;
+use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};
 use crate::interrupt::Interrupt;
@@ -120,6 +120,10 @@ impl ContactLaw for JenkinsContact {
         true
     }
 
+    fn may_be_rigid(&self) -> bool {
+        true
+    }
+
     fn normal_load(&self, _y: f64) -> f64 {
         self.preload
     }
@@ -141,6 +145,12 @@ impl ContactLaw for JenkinsContact {
     }
 
     fn in_time(&self) -> Result<LawInTime> {
+        if self.kt.is_infinite() {
+            return fail!(
+                Unsupported,
+                "a Jenkins contact of kt = inf cannot be integrated in time, needs a finite kt"
+            );
+        }
         Ok(LawInTime::events(
             Slider::under_constant_load(self.kt, self.slip_limit).starting_at(self.slider),
         ))
