@@ -1,5 +1,6 @@
 //! The basis of one wave: its matrices, its factor, and blocks until the certificate is met.
 
+use crate::condense::basis_outlook::is_worth_its_columns;
 use crate::condense::certificate::Certificate;
 use crate::condense::memory_limit::within;
 use crate::condense::residual_directions::residual_directions;
@@ -121,6 +122,7 @@ fn build<T: Entry>(
     };
     let mut residuals = Vec::new();
     let (mut before, mut idle) = (f64::INFINITY, 0);
+    let mut is_worth = None;
     loop {
         interrupt.part(Phase::Condensation, wave.pencil.order(), most)?;
         // The certificate uses the basis for the rows of the contacts.
@@ -135,7 +137,12 @@ fn build<T: Entry>(
         let full = order + krylov.next_columns() > most || krylov.next_columns() == 0;
         // Rounding is no reason for a larger basis.
         krylov.give_basis(back(wave.basis));
-        let complete = found.basis <= limit || full;
+        let mut complete = found.basis <= limit || full;
+        if !complete && is_worth.is_none() {
+            let worth = is_worth_its_columns(matrices, (wave.inputs.len(), most), interrupt)?;
+            is_worth = Some(worth);
+            complete = !worth;
+        }
         // Directions of residuals that have not helped twice, as at two frequencies, leave the choice to all candidates.
         idle = if found.basis > before / LEAST_GAIN { idle + 1 } else { 0 };
         if idle > 1 {

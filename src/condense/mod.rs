@@ -1,5 +1,6 @@
 //! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
 
+mod basis_outlook;
 mod certificate;
 mod condensation;
 mod condensed;

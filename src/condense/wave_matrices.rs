@@ -20,7 +20,20 @@ pub(super) struct WaveMatrices<'a> {
     pub conjugated: bool,
     pub key: WaveKey,
     pub frequency: f64,
+    /// The factors that a basis is an alternative to; `None` where it is tried in any case.
+    pub instead_of: Option<Factors>,
     pub memory_limit: usize,
+}
+
+/// The factors that a basis is an alternative to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factors {
+    /// Highest angular frequency at which the wave is needed.
+    pub highest: f64,
+    /// Number of harmonics that belong to it.
+    pub harmonics: usize,
+    /// Whether they are needed along a range.
+    pub along_range: bool,
 }
 
 /// K, M and the damping of a wave.

@@ -11,7 +11,7 @@ use crate::condense::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
 use crate::condense::reduced_block::reduced_block;
 use crate::condense::sweep::Sweep;
 use crate::condense::wave_cache::ALL_UP_TO;
-use crate::condense::wave_matrices::WaveMatrices;
+use crate::condense::wave_matrices::{Factors, WaveMatrices};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
@@ -262,6 +262,7 @@ fn wave_of(
         conjugated,
         key: group.key,
         frequency: reference_frequency(request, group),
+        instead_of: instead_of(request, group),
         memory_limit: request.options.memory_limit,
     };
     let Some((wave, error)) = prepare(&matrices, inputs, (limit, most), error, interrupt)? else {
@@ -280,6 +281,21 @@ fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
         .filter(|&h| h > 0);
     let lowest = numbers.min().unwrap_or(1);
     request.sweep.of_harmonic(lowest)[1]
+}
+
+/// The factors that the basis of a wave is an alternative to: in between all modes and a size where these are too dear.
+fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
+    let n = request.ndof();
+    if request.is_forced() || n <= ALL_UP_TO || n > DIRECT_UP_TO {
+        return None;
+    }
+    let numbers = group.members.iter().map(|&(i, _)| request.numbers[i]);
+    let highest = numbers.max().unwrap_or(0);
+    Some(Factors {
+        highest: request.sweep.of_harmonic(highest)[2],
+        harmonics: group.members.len(),
+        along_range: request.sweep.is_range(),
+    })
 }
 
 /// The largest certificate of the harmonics of a group; a lower bound of it where that exceeds `enough`, with the `residuals` there.

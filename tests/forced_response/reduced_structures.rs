@@ -453,3 +453,49 @@ fn plates_with_few_and_many_sliders_respond_as_by_factors() {
         }
     }
 }
+
+/// A chain of 1,200 masses: few of its resonances are held by a basis, two thirds of them are left to factors, and so is a basis that
+/// takes longer than these.
+#[test]
+fn a_chain_with_many_resonances_is_left_to_factors() {
+    let n = 1200;
+    let (mut k, mut m) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        (k[i * (n + 1)], m[i * (n + 1)]) = (2.0, 1.0);
+        if i > 0 {
+            k[i * n + i - 1] = -1.0;
+            k[(i - 1) * n + i] = -1.0;
+        }
+    }
+    let mut model = Model::new(n).unwrap();
+    for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
+        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
+    }
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    model
+        .add_contact(&Contact::jenkins(n / 2, None, 0.2, 0.004, 1.0))
+        .unwrap();
+    model.add_force(n / 3, 1, Complex64::ONE).unwrap();
+    for (from, on_basis) in [(0.004, true), (0.1, false), (0.5, false)] {
+        let solve = |flexibility| {
+            let range = ForcedOptions {
+                omega_start: from,
+                omega_stop: 1.01 * from,
+                at: &[1.004 * from],
+                ..ForcedOptions::default()
+            };
+            forced_response(&model, &options(flexibility, 3), &range, &mut Hooks::default()).unwrap()
+        };
+        let (own, factors) = (solve(Flexibility::Automatic), solve(Flexibility::Direct));
+        assert_eq!((own.status(), factors.status()), (Status::Ok, Status::Ok), "{from}");
+        assert_eq!(own.reduction().basis > 0, on_basis, "{from}");
+        let reaches = |branch: &Branch| {
+            let point = branch.at(0)[0].point;
+            let last = branch.points() - 1;
+            [0, point, last].map(|point| branch.response_at(point).unwrap()[0].norm())
+        };
+        for (own, factors) in reaches(&own).iter().zip(&reaches(&factors)) {
+            assert!((own / factors - 1.0).abs() < 1e-7, "{from}: {own} for {factors}");
+        }
+    }
+}

@@ -85,6 +85,14 @@ fn analysed(
     by(SymmetricOrdering::Amd)
 }
 
+/// The shape of the factors in the order of minimum degrees.
+pub(super) fn analysed_by_degrees(
+    pattern: SymbolicSparseColMatRef<'_, usize>,
+    interrupt: &Interrupt<'_>,
+) -> Result<SymbolicCholesky<usize>> {
+    analysed(pattern, Order::Degrees, interrupt)
+}
+
 /// Number of entries of L for a matrix with the pattern of `a`, in the order that [`Cholesky`] takes.
 ///
 /// # Errors

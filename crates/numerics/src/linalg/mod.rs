@@ -15,6 +15,7 @@ pub mod gmres;
 mod graph;
 pub mod held_rows;
 pub mod hermitian;
+pub mod inertia;
 pub mod kept_matrix;
 pub mod lanczos;
 pub mod least_squares;

@@ -1,0 +1,57 @@
+//! Whether a basis is worth its columns, which its first blocks, that do not suffice, cannot tell: a basis needs about two columns for each
+//! natural frequency up to the highest one that it serves. These are counted by one factorisation, whose size tells what factors at
+//! each frequency would take instead.
+
+use crate::condense::memory_limit::within;
+use crate::condense::wave_matrices::{Assembled, WaveMatrices};
+use crate::error::Result;
+use crate::interrupt::Interrupt;
+use crate::linalg::inertia::eigenvalues_below;
+use crate::linalg::sparse::Columns;
+
+/// Columns of a basis for each natural frequency up to the highest, for each input, and besides: 2.0 to 2.4 of the first on chains of 1,500
+/// and 3,000 masses and grids of 1,444 and 2,916 with 1 to 30 contacts.
+const OF_RESONANCE: usize = 2;
+const OF_INPUT: usize = 5;
+const BESIDES: usize = 10;
+
+/// Work of a basis over the cube of its columns, and of complex LU factors over the entries of L, in that of n⁻¹ entries²: by times of
+/// the same models.
+const OF_COLUMNS: f64 = 2.5;
+const OF_ENTRIES: f64 = 6.0;
+
+/// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency.
+const ALONG_RANGE: f64 = 600.0;
+const AT_ONE: f64 = 5.0;
+
+/// Whether a basis for `inputs` forces, of `most` columns at most, is larger than its first blocks with gain: its columns suffice, and take
+/// less time than the factors. `true` where the natural frequencies cannot be counted.
+///
+/// # Errors
+/// `OutOfMemory`, `Argument` for the limit of memory; `StoppedByCaller`.
+pub(super) fn is_worth_its_columns(
+    matrices: &WaveMatrices<'_>,
+    (inputs, most): (usize, usize),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let Some(factors) = matrices.instead_of else {
+        return Ok(true);
+    };
+    let Some(Assembled { stiffness, mass, .. }) = matrices.assembled(interrupt)? else {
+        return Ok(true);
+    };
+    let real = stiffness.is_real() && mass.is_real();
+    let allow = |bytes| within(matrices.memory_limit, bytes + matrices.model.kept().bytes());
+    let sigma = factors.highest * factors.highest;
+    let Some(below) = eigenvalues_below(&stiffness, (sigma, &mass), real, allow, interrupt)? else {
+        return Ok(true);
+    };
+    let columns = OF_RESONANCE * below.count + OF_INPUT * inputs + BESIDES;
+    if columns > most {
+        return Ok(false);
+    }
+    let entries = below.entries as f64;
+    let of_one = OF_ENTRIES * entries + entries * entries / stiffness.columns() as f64;
+    let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
+    Ok(OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one)
+}
