@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ._order_statistics import at_rank, ends
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -152,13 +154,8 @@ class WheelStudy:
         n = len(values)
         if n == 0:
             raise ValueError("no wheel has a result")
-        tail = (1 - confidence) / 2
-        below = _binomial(n, probability)
-        # The r-th of the ordered values lies below the quantile with the probability that at least r wheels do.
-        low = int(np.searchsorted(below, tail, side="right"))
-        high = int(np.searchsorted(below, 1 - tail, side="left")) + 1
-        return Quantile(float(np.quantile(values, probability)), float(values[low - 1]) if low >= 1 else -np.inf,
-                        float(values[high - 1]) if high <= n else np.inf)
+        low, high = ends(n, probability, (1 - confidence) / 2)
+        return Quantile(float(np.quantile(values, probability)), at_rank(values, low), at_rank(values, high))
 
     def weibull(self) -> WheelWeibull:
         """The Weibull distribution of maxima of the greatest likelihood for the amplification (Castanier & Pierre 2006,
@@ -183,15 +180,6 @@ class WheelStudy:
             best = int(np.argmax([fit[0] for fit in fits]))
             ends = trials[max(best - 1, 0)], trials[min(best + 1, 40)]
         return WheelWeibull(float(values[-1] + span * np.exp(trials[best])), *fits[best][1:])
-
-
-def _binomial(n: int, p: float) -> FloatArray:
-    """P(X <= k) of a binomial distribution for k = 0 .. n."""
-    k = np.arange(n + 1)
-    logs = np.concatenate([[0.0], np.cumsum(np.log(np.arange(1, n + 1)))])
-    weights = logs[n] - logs[k] - logs[n - k] + k * np.log(p) + (n - k) * np.log1p(-p)
-    found: FloatArray = np.cumsum(np.exp(weights))
-    return found
 
 
 def _of_bound(values: FloatArray, bound: float) -> tuple[float, float, float]:
