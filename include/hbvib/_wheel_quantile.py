@@ -71,6 +71,23 @@ class WheelQuantile:
         return (f"<hbvib.WheelQuantile: {self.value:.5g}, {self.lower:.5g} to {self.upper:.5g}, "
                 f"{len(self.wheels)} of {len(self.predicted)} wheels solved>")
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the solved wheels over their predictions, and the interval before the correction, with matplotlib. Returns the axes.
+        ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
+        ...                             damping=0.05)
+        >>> sector.add_force(0, 0.1)
+        >>> patterns = 0.005 * np.random.default_rng(1).standard_normal((500, 8))
+        >>> found = sector.wheel_quantile((1.4, 2.0), 0.9, patterns, kind="mass", dofs=[0], first=40, most=100, harmonics=1)
+        >>> found.plot().get_ylabel()
+        'largest blade'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.quantile(self, ax)
+
 
 class _Correction(NamedTuple):
     ratio: float

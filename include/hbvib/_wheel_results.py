@@ -1,7 +1,7 @@
 """Results of studies of mistuned wheels: peaks of all blades, distributions over patterns, the worst pattern."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -51,6 +51,23 @@ class WheelPeaks(NamedTuple):
         """
         of_all = np.array([one.amplitude for one in self.branch.responses])
         return np.array(self.branch.omega), of_all.max(axis=0)
+
+    def plot(self, ax: Any = None, *, hertz: bool = False) -> Any:
+        """Draws the responses of all blades, the largest at each frequency and the peak of the tuned wheel with matplotlib.
+        Returns the axes. ImportError without matplotlib.
+
+        ax, hertz   as in Branch.plot.
+
+        >>> import hbvib
+        >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
+        ...                             damping=0.05)
+        >>> sector.add_force(0, 0.1)
+        >>> axes = sector.wheel().wheel_peaks(sector, (1.4, 2.0), harmonics=1).plot()
+        >>> axes.get_ylabel()
+        'amplitude'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.blades(self, ax, hertz)
 
 
 class Quantile(NamedTuple):
@@ -157,6 +174,30 @@ class WheelStudy:
         low, high = ends(n, probability, (1 - confidence) / 2)
         return Quantile(float(np.quantile(values, probability)), at_rank(values, low), at_rank(values, high))
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the cumulative distribution of the amplification, and its Weibull distribution, with matplotlib. Returns the axes.
+        ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> axes = hbvib.WheelStudy([1.1, 1.2, 1.3], [0, 1, 2], [1, 1, 1], [0, 0, 0], 1.0, [1.1, 1.2, 1.29]).plot()
+        >>> axes.get_xlabel()
+        'amplification'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.distribution(self, ax)
+
+    def plot_patterns(self, ax: Any = None) -> Any:
+        """Draws the amplification over the number of the pattern, solved and foretold, with matplotlib. Returns the axes.
+        ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> axes = hbvib.WheelStudy([1.1, 1.2, 1.3], [0, 1, 2], [1, 1, 1], [0, 0, 0], 1.0, [1.1, 1.2, 1.29]).plot_patterns()
+        >>> axes.get_xlabel()
+        'pattern'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.patterns(self, ax)
+
     def weibull(self) -> WheelWeibull:
         """The Weibull distribution of maxima of the greatest likelihood for the amplification (Castanier & Pierre 2006,
         doi:10.2514/1.16345). The bound is sought up to a hundred times the span of the values above the largest of them.
@@ -221,3 +262,15 @@ class WorstPattern(NamedTuple):
     whitehead: float
     found: FloatArray
     sweeps: int
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the pattern as bars, one a blade, with matplotlib. Returns the axes. ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> axes = hbvib.WorstPattern(np.array([0.01, -0.01]), 1.0, 1.0, np.zeros(2), 0.0, 1.1, 1.2, np.ones(1), 1).plot()
+        >>> axes.get_ylabel()
+        'delta / %'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.bars(self, ax)

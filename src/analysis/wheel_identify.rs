@@ -194,10 +194,14 @@ fn of_family(
     if size == 0.0 {
         return fail!(Singular, "the measured points do not move in the tuned modes");
     }
-    rows.iter_mut().for_each(|v| *v /= size);
+    for v in &mut rows {
+        *v /= size;
+    }
     let mut matrices = mistuning.matrices;
     if !mistuning.of_mass {
-        matrices.iter_mut().for_each(|v| *v /= unit * unit);
+        for v in &mut matrices {
+            *v /= unit * unit;
+        }
     }
     Ok(Reduced {
         modes: m,
