@@ -78,11 +78,7 @@ pub unsafe extern "C" fn hbvib_wheel_identify(
         let cyclic = read::<Model>(cyclic, 1)?;
         let (n, all) = (cyclic.ndof(), cyclic.structure().sectors());
         let dofs = unsafe { input(dofs, count(n_dofs, 3, "n_dofs")?, 4, "dofs") }?;
-        let dofs = indices(dofs, n, 4, "dofs")?;
-        let contacts = contact_state_of(contacts, 6)?;
-        let families = count(families, 7, "families")?;
         let points = unsafe { input(points, count(n_points, 8, "n_points")?, 9, "points") }?;
-        let points = indices(points, n, 9, "points")?;
         let modes = count(n_modes, 10, "n_modes")?;
         let real = |p, argument, name| unsafe { input::<f64>(p, modes, argument, name) };
         let (omega, sigma_omega) = (real(omega, 11, "omega")?, real(sigma_omega, 12, "sigma_omega")?);
@@ -110,6 +106,10 @@ pub unsafe extern "C" fn hbvib_wheel_identify(
         let delta = unsafe { output(delta, sectors, 17, "delta") }?;
         let covariance = optional((covariance, 18), "covariance")?;
         let (chi2, degrees) = (optional((chi2, 19), "chi2")?, optional((degrees, 20), "degrees")?);
+        let dofs = indices(dofs, n, 4, "dofs")?;
+        let contacts = contact_state_of(contacts, 6)?;
+        let families = count(families, 7, "families")?;
+        let points = indices(points, n, 9, "points")?;
         let measured = MeasuredModes {
             points: &points,
             omega,
