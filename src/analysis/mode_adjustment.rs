@@ -6,11 +6,13 @@
 //! ```text
 //! [ HᵀH/s²   0     D ] [dp]   [ Hᵀ(y − Hp)/s² ]
 //! [ 0        1/σ²  cᵀ] [dω] = [ (z − ω)/σ²    ]
-//! [ D        c     0 ] [ μ]   [ −g − B dδ     ]
+//! [ D        c    −τ²] [ μ]   [ −g − B dδ     ]
 //! ```
 //!
-//! so that e is a linear function of dδ: the least squares over all modes are the adjustment of observations with conditions (Helmert;
-//! Pope 1972), which sees the noise of the shapes also where they multiply the unknowns.
+//! with a residual τμ of the condition, whose deviation τ = 2σ s is that of the product of both errors, which the conditions leave out:
+//! without it two modes of one frequency would be taken as not coupled at all. So e is a linear function of dδ, and the least squares
+//! over all modes are the adjustment of observations with conditions (Helmert; Pope 1972), which sees the noise of the shapes also
+//! where they multiply the unknowns.
 
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
@@ -140,6 +142,7 @@ impl Observed {
         let (m, sectors, points) = (reduced.modes, reduced.sectors, reduced.points());
         let width = 2 * m + 1;
         let square = self.omega * self.omega;
+        let slack = 2.0 * self.of_frequency * self.of_shape;
         let (of_frequency, of_shape) = (self.of_frequency.powi(-2), self.of_shape.powi(-2));
         // D and c.
         let factor = if reduced.of_mass { -square } else { 1.0 };
@@ -167,6 +170,7 @@ impl Observed {
             let c = -2.0 * self.omega * inertia[j];
             matrix[width * (m + 1 + j) + m] = c;
             matrix[width * m + m + 1 + j] = c;
+            matrix[(width + 1) * (m + 1 + j)] = -slack * slack;
         }
         lu.factor(interrupt)?;
         // Right sides: the estimate, then the matrices of the sectors.
@@ -188,23 +192,27 @@ impl Observed {
         }
         lu.solve_columns(&mut self.steps, false, interrupt)?;
         // Residuals over their standard deviations, and their derivatives.
-        let mut columns = try_vec((points + 1) * (sectors + 1), 0.0, CONTEXT)?;
-        for (column, step) in columns.chunks_exact_mut(points + 1).zip(self.steps.chunks_exact(width)) {
+        let height = points + 1 + m;
+        let mut columns = try_vec(height * (sectors + 1), 0.0, CONTEXT)?;
+        for (column, step) in columns.chunks_exact_mut(height).zip(self.steps.chunks_exact(width)) {
             reduced.shown(&step[..m], &mut column[..points]);
             column[points] = step[m];
             for column in &mut column[..points] {
                 *column /= -self.of_shape;
             }
             column[points] /= -self.of_frequency;
+            for (column, multiplier) in column[points + 1..].iter_mut().zip(&step[m + 1..]) {
+                *column = slack * multiplier;
+            }
         }
-        let (e, j) = columns.split_at_mut(points + 1);
+        let (e, j) = columns.split_at_mut(height);
         for (e, residual) in e.iter_mut().zip(&residual) {
             *e += residual / self.of_shape;
         }
         e[points] += (self.frequency - self.omega) / self.of_frequency;
-        for (a, left) in j.chunks_exact(points + 1).enumerate() {
+        for (a, left) in j.chunks_exact(height).enumerate() {
             right[a] += dot(left, e);
-            for (b, other) in j.chunks_exact(points + 1).enumerate() {
+            for (b, other) in j.chunks_exact(height).enumerate() {
                 normal[sectors * b + a] += dot(left, other);
             }
         }

@@ -106,6 +106,17 @@ fn modes_of_a_wheel_without_noise_have_its_pattern() {
     }
 }
 
+/// The tuned wheel has pairs of modes of one frequency, of which any mixture is a mode.
+#[test]
+fn modes_of_a_tuned_wheel_have_no_pattern() {
+    let sector = sector(N);
+    let what = Mistuning::Blade(BladeProperty::Stiffness, &[0]);
+    let found = exact(&sector, &what, &[0.0; N]).identified(&sector, &what, 2).unwrap();
+    println!("{:.1e} in {} steps", gap(&found.delta, &[0.0; N]), found.steps);
+    assert!(gap(&found.delta, &[0.0; N]) < 1e-10);
+    assert!((0..N).all(|s| found.covariance[(N + 1) * s] > 1e-14));
+}
+
 /// Scale and phase of a shape are arbitrary, one mode is enough, and with a basis of one family something is left out.
 #[test]
 fn shapes_have_any_scale_and_phase_and_few_modes_are_enough() {
