@@ -2121,6 +2121,29 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_wheel_peaks
 
+      function hbvib_wheel_identify(cyclic, kind, n_dofs, dofs, direction, contacts, families, n_points, points, n_modes, omega, &
+         sigma_omega, shapes, sigma_shape, hooks, sectors, delta, covariance, chi2, degrees) bind(c) result(status)
+         import
+         type(c_ptr), value :: cyclic
+         integer(c_int32_t), value :: kind
+         integer(c_int64_t), value :: n_dofs
+         integer(c_int64_t), intent(in) :: dofs(*)
+         type(hbvib_matrix), intent(in), optional :: direction
+         integer(c_int32_t), value :: contacts
+         integer(c_int64_t), value :: families, n_points
+         integer(c_int64_t), intent(in) :: points(*)
+         integer(c_int64_t), value :: n_modes
+         real(c_double), intent(in) :: omega(*), sigma_omega(*)
+         complex(c_double_complex), intent(in) :: shapes(*)
+         real(c_double), intent(in) :: sigma_shape(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: sectors
+         real(c_double), intent(inout) :: delta(*)
+         real(c_double), intent(inout), optional :: covariance(*), chi2(*)
+         integer(c_int64_t), intent(inout), optional :: degrees
+         integer(c_int32_t) :: status
+      end function hbvib_wheel_identify
+
       function hbvib_branch_freedom(model, branch, point, capacity, contact, direction, place, derivative, count, &
          hooks) bind(c) result(status)
          import

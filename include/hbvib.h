@@ -4701,6 +4701,62 @@ hbvib_status hbvib_wheel_peaks(const hbvib_model *wheel,
                                hbvib_wheel_info *info,
                                hbvib_branch **out);
 
+/// The pattern of a mistuned wheel from measured modes, with its covariance: that of the greatest
+/// likelihood under normal noise of frequencies and shapes. Modes without damping of the wheel are
+/// sought in the space of the tuned ones (component mode mistuning); families + 1 instead of
+/// families shows what that leaves out.
+///
+/// cyclic       the model of the tuned sector.
+/// kind         HBVIB_MISTUNING_STIFFNESS, _FREQUENCY or _MASS.
+/// n_dofs       degrees of freedom of the blade of a sector, 0 with a direction.
+/// dofs         their numbers, n_dofs numbers, each once.
+/// direction    matrix of a sector instead of a blade, as for hbvib_wheel_mistune; or NULL.
+/// contacts     their state in the measurement: HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
+/// families     tuned modes of each nodal diameter, from the lowest, that span those of the wheel:
+///              up to the measured ones, and some more.
+/// n_points     degrees of freedom of each sector that were measured, at least 1.
+/// points       their numbers in the sector.
+/// n_modes      number of measured modes, at least 1.
+/// omega        their angular frequencies, n_modes numbers above 0.
+/// sigma_omega  standard deviations of these, above 0.
+/// shapes       complex numbers (real part, imaginary part) of the shapes, of any scale and phase:
+///              mode after mode, sector after sector, point after point.
+/// sigma_shape  standard deviation of each part of a number of a shape, in its scale: one for each
+///              mode, above 0.
+/// hooks        phase, log and cancellation; progress is not called. NULL: none.
+/// sectors      number of sectors: length of delta.
+/// delta        receives delta of each sector, as hbvib_wheel_mistune takes it.
+/// covariance   receives sectors * sectors numbers, or NULL.
+/// chi2         receives the sum of the squares of residuals over standard deviations, or NULL:
+///              about the number that degrees receives where noise is all that is left.
+/// degrees      receives the number of data less that of unknowns, or NULL.
+/// Errors: HBVIB_E_ARGUMENT (kind, families, a standard deviation, a shape that is zero, a fixed
+/// point), HBVIB_E_INDEX (dofs, points), HBVIB_E_DIMENSION (numbers), HBVIB_E_NOT_FINITE,
+/// HBVIB_E_SINGULAR (the modes do not tell the pattern), HBVIB_E_NO_CONVERGENCE,
+/// HBVIB_E_UNSUPPORTED (a plain model, gyroscopic forces, complex matrices, damping), those of
+/// hbvib_linear_modes and hbvib_wheel_mistune. Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_wheel_identify(const hbvib_model *cyclic,
+                                  int32_t kind,
+                                  int64_t n_dofs,
+                                  const int64_t *dofs,
+                                  const hbvib_matrix *direction,
+                                  int32_t contacts,
+                                  int64_t families,
+                                  int64_t n_points,
+                                  const int64_t *points,
+                                  int64_t n_modes,
+                                  const double *omega,
+                                  const double *sigma_omega,
+                                  const double *shapes,
+                                  const double *sigma_shape,
+                                  const hbvib_hooks *hooks,
+                                  int64_t sectors,
+                                  double *delta,
+                                  double *covariance,
+                                  double *chi2,
+                                  int64_t *degrees);
+
 /// The sliders of a stored point of a forced response that stick through the period and change its
 /// vibration: each may lie anywhere within the limit of its friction, and every such state is a
 /// solution. None where no contact sticks all the time, or none of the others slips or opens.

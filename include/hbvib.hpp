@@ -1077,6 +1077,12 @@ struct Fit {
   FitInfo info;
   std::vector<double> theta, covariance, residuals, values;
 };
+/// A pattern from measured modes with its covariance, row after row; chi2 is about `degrees` where noise is all that is left.
+struct IdentifiedPattern {
+  std::vector<double> delta, covariance;
+  double chi2;
+  Index degrees;
+};
 /// Least loss at values of one parameter, NaN where no fit was found, and the values of all parameters there, row after row.
 struct FitProfile {
   FitProfileInfo info;
@@ -1438,6 +1444,19 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   /// Mistunes the wheel of a sector by a number for each; dofs of the blade, contact -1: all with a normal load.
   void mistune(const Model& sector, hbvib_mistuning kind, In<double> delta, In<Index> dofs = {}, Index contact = -1) {
     use(hbvib_wheel_mistune, sector.get(), kind, dofs.length(), dofs.data(), nullptr, contact, delta.length(), delta.data());
+  }
+  /// The pattern of a wheel of this sector from measured modes: their angular frequencies, and shapes of all sectors at the points,
+  /// mode after mode, sector after sector, with standard deviations. `families` tuned modes of each nodal diameter are the basis.
+  IdentifiedPattern identify_pattern(hbvib_mistuning kind, In<Index> blade, hbvib_contact_state contacts, Index families, In<Index> points,
+                                     In<double> omega, In<double> sigma_omega, In<Complex> shapes, In<double> sigma_shape) const {
+    const Index n = sectors(), modes = omega.length();
+    if (sigma_omega.length() != modes || sigma_shape.length() != modes || shapes.length() != modes * n * points.length())
+      throw Error(HBVIB_E_DIMENSION, 13, std::to_string(shapes.length()) + " numbers of shapes, needs modes x sectors x points; one sigma a mode");
+    IdentifiedPattern found{std::vector<double>(detail::room(n)), std::vector<double>(detail::room(n, n)), 0, 0};
+    use(hbvib_wheel_identify, kind, blade.length(), blade.data(), nullptr, contacts, families, points.length(), points.data(), modes,
+        omega.data(), sigma_omega.data(), reinterpret_cast<const double*>(shapes.data()), sigma_shape.data(), nullptr, n,
+        found.delta.data(), found.covariance.data(), &found.chi2, &found.degrees);
+    return found;
   }
 
   /// Adds Re(amplitude exp(i harmonic omega t)) on a degree of freedom.

@@ -1200,6 +1200,7 @@ hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 hbvib_status hbvib_wheel_info_init(hbvib_wheel_info *i, size_t size_of_i);
 hbvib_status hbvib_wheel_peaks(const hbvib_model *wheel, const hbvib_model *cyclic, const hbvib_response *blade, const hbvib_solver_options *solver, double omega_start, double omega_stop, const hbvib_hooks *hooks, int64_t capacity, double *amplitude, double *omega, double *error, int64_t *count, hbvib_wheel_info *info, hbvib_branch **out);
+hbvib_status hbvib_wheel_identify(const hbvib_model *cyclic, int32_t kind, int64_t n_dofs, const int64_t *dofs, const hbvib_matrix *direction, int32_t contacts, int64_t families, int64_t n_points, const int64_t *points, int64_t n_modes, const double *omega, const double *sigma_omega, const double *shapes, const double *sigma_shape, const hbvib_hooks *hooks, int64_t sectors, double *delta, double *covariance, double *chi2, int64_t *degrees);
 hbvib_status hbvib_branch_freedom(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int64_t capacity, int64_t *contact, int64_t *direction, double *place, double *derivative, int64_t *count, const hbvib_hooks *hooks);
 hbvib_status hbvib_band_options_init(hbvib_band_options *o, size_t size_of_o);
 hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);

@@ -3216,6 +3216,38 @@ static void call_wheel_peaks(Call *a) {
   finish(a, status_);
 }
 
+static void call_wheel_identify(Call *a) {
+  const hbvib_model *cyclic_ = handle(a, "cyclic");
+  int32_t kind_ = (int32_t)whole32(a, "kind");
+  int64_t n_dofs_ = whole(a, "n_dofs");
+  const int64_t *dofs_ = wholes(a, "dofs");
+  const hbvib_matrix *direction_ = structs(a, "direction", &MATRIX_STRUCT);
+  int32_t contacts_ = (int32_t)whole32(a, "contacts");
+  int64_t families_ = whole(a, "families");
+  int64_t n_points_ = whole(a, "n_points");
+  const int64_t *points_ = wholes(a, "points");
+  int64_t n_modes_ = whole(a, "n_modes");
+  const double *omega_ = reals(a, "omega");
+  const double *sigma_omega_ = reals(a, "sigma_omega");
+  const double *shapes_ = complexes(a, "shapes");
+  const double *sigma_shape_ = reals(a, "sigma_shape");
+  const hbvib_hooks *hooks_ = hooks(a, "hooks");
+  int64_t sectors_ = whole(a, "sectors");
+  int64_t delta_n = room(a, "delta");
+  double *delta_ = array(delta_n, 1 * sizeof(double));
+  int64_t covariance_n = room(a, "covariance");
+  double *covariance_ = array(covariance_n, 1 * sizeof(double));
+  int64_t chi2_n = room(a, "chi2");
+  double *chi2_ = array(chi2_n, 1 * sizeof(double));
+  int64_t degrees_ = 0;
+  hbvib_status status_ = hbvib_wheel_identify(cyclic_, kind_, n_dofs_, dofs_, direction_, contacts_, families_, n_points_, points_, n_modes_, omega_, sigma_omega_, shapes_, sigma_shape_, hooks_, sectors_, delta_, covariance_, chi2_, &degrees_);
+  give_reals(a, delta_, delta_n);
+  give_reals(a, covariance_, covariance_n);
+  give_reals(a, chi2_, chi2_n);
+  give_number(a, (double)degrees_);
+  finish(a, status_);
+}
+
 static void call_branch_freedom(Call *a) {
   const hbvib_model *model_ = handle(a, "model");
   const hbvib_branch *branch_ = handle(a, "branch");
@@ -3719,6 +3751,7 @@ static const Function FUNCTIONS[] = {
   {"batch_status", call_batch_status, 2},
   {"batch_branch", call_batch_branch, 2},
   {"wheel_peaks", call_wheel_peaks, 11},
+  {"wheel_identify", call_wheel_identify, 19},
   {"branch_freedom", call_branch_freedom, 9},
   {"band", call_band, 13},
   {"band_curve", call_band_curve, 13},

@@ -151,6 +151,7 @@ pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};
+pub use analysis::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
 pub use analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 #[doc(inline)]

@@ -46,6 +46,7 @@ from ._decay import Decay, decay_backbone
 from ._errors import (ArgumentError, BusyError, CallbackError, Error, FreedError, NumericalError, OutOfMemoryError,
                       OutOfRangeError, Stopped, StoppedEarly, UnsupportedError)
 from ._fit_results import Fit, Predicted, Profile, SuspiciousUnits
+from ._intentional import IntentionalPattern, WorstCase
 from ._law import evaluate_contact
 from ._library import __version__, get_include, lib, structs
 from ._life import Life, LifeEvents
@@ -63,6 +64,8 @@ from ._tables import from_dataframe, from_xarray
 from ._time_sweep import TimeSweep
 from ._types import *
 from ._units import Units
+from ._wheel_identify import IdentifiedPattern
+from ._wheel_quantile import WheelQuantile
 from ._wheel_results import Quantile, WheelPeaks, WheelStudy, WheelWeibull, WorstPattern
 
 __all__ = [
@@ -73,7 +76,7 @@ __all__ = [
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
     "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep", "RunUp", "Mission", "CampbellResponse",
-    "WheelPeaks", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "IdentifiedPattern", "IntentionalPattern", "WorstCase", "WheelPeaks", "WheelQuantile", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     "Units",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "from_dataframe", "from_xarray", "decay_backbone", "campbell_response",

@@ -1204,6 +1204,7 @@ batch_status: h l
 batch_branch: h l p
 wheel_info_init: wheel_info z
 wheel_peaks: h h response solver_options d d hooks l p p p p wheel_info p
+wheel_identify: h i l p matrix i l l p l p p p p hooks l p p p p
 branch_freedom: h h l l p p p p p hooks
 band_options_init: band_options z
 band_info_init: band_info z
@@ -1463,6 +1464,10 @@ if TYPE_CHECKING:
         def hbvib_wheel_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_wheel_peaks(self, wheel: Any, cyclic: Any, blade: Any, solver: Any, omega_start: float, omega_stop:
             float, hooks: Any, capacity: int, amplitude: Any, omega: Any, error: Any, count: Any, info: Any, out:
+            Any) -> int: ...
+        def hbvib_wheel_identify(self, cyclic: Any, kind: int, n_dofs: int, dofs: Any, direction: Any, contacts: int,
+            families: int, n_points: int, points: Any, n_modes: int, omega: Any, sigma_omega: Any, shapes: Any,
+            sigma_shape: Any, hooks: Any, sectors: int, delta: Any, covariance: Any, chi2: Any, degrees:
             Any) -> int: ...
         def hbvib_branch_freedom(self, model: Any, branch: Any, point: int, capacity: int, contact: Any, direction: Any,
             place: Any, derivative: Any, count: Any, hooks: Any) -> int: ...

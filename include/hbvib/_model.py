@@ -18,6 +18,7 @@ from ._calls import _call
 from ._convert import _array, _member, _whole
 from ._damper import _Dampers
 from ._fit import _Fits
+from ._intentional import _Intentional
 from ._library import lib
 from ._life import _Lives
 from ._linear_modes import _LinearModes
@@ -28,14 +29,15 @@ from ._structs import _new
 from ._time_integration import _TimeIntegration
 from ._time_sweep import _TimeSweeps
 from ._wheel import _Wheels
-from ._wheel_studies import _WheelStudies
+from ._wheel_identify import _WheelIdentifications
+from ._wheel_quantile import _WheelQuantiles
 
 if TYPE_CHECKING:
     from ._choices import MatrixKinds, SectorFrames
 
 
 class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands, _ModeBands, _Fits,
-            _StaticHistories, _Wheels, _WheelStudies, _Dampers, _Lives, _TimeSweeps):
+            _StaticHistories, _Wheels, _WheelQuantiles, _WheelIdentifications, _Intentional, _Dampers, _Lives, _TimeSweeps):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.
 

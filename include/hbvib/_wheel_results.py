@@ -1,9 +1,11 @@
 """Results of studies of mistuned wheels: peaks of all blades, distributions over patterns, the worst pattern."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+
+from ._order_statistics import at_rank, ends
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -49,6 +51,23 @@ class WheelPeaks(NamedTuple):
         """
         of_all = np.array([one.amplitude for one in self.branch.responses])
         return np.array(self.branch.omega), of_all.max(axis=0)
+
+    def plot(self, ax: Any = None, *, hertz: bool = False) -> Any:
+        """Draws the responses of all blades, the largest at each frequency and the peak of the tuned wheel with matplotlib.
+        Returns the axes. ImportError without matplotlib.
+
+        ax, hertz   as in Branch.plot.
+
+        >>> import hbvib
+        >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
+        ...                             damping=0.05)
+        >>> sector.add_force(0, 0.1)
+        >>> axes = sector.wheel().wheel_peaks(sector, (1.4, 2.0), harmonics=1).plot()
+        >>> axes.get_ylabel()
+        'amplitude'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.blades(self, ax, hertz)
 
 
 class Quantile(NamedTuple):
@@ -152,13 +171,32 @@ class WheelStudy:
         n = len(values)
         if n == 0:
             raise ValueError("no wheel has a result")
-        tail = (1 - confidence) / 2
-        below = _binomial(n, probability)
-        # The r-th of the ordered values lies below the quantile with the probability that at least r wheels do.
-        low = int(np.searchsorted(below, tail, side="right"))
-        high = int(np.searchsorted(below, 1 - tail, side="left")) + 1
-        return Quantile(float(np.quantile(values, probability)), float(values[low - 1]) if low >= 1 else -np.inf,
-                        float(values[high - 1]) if high <= n else np.inf)
+        low, high = ends(n, probability, (1 - confidence) / 2)
+        return Quantile(float(np.quantile(values, probability)), at_rank(values, low), at_rank(values, high))
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the cumulative distribution of the amplification, and its Weibull distribution, with matplotlib. Returns the axes.
+        ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> axes = hbvib.WheelStudy([1.1, 1.2, 1.3], [0, 1, 2], [1, 1, 1], [0, 0, 0], 1.0, [1.1, 1.2, 1.29]).plot()
+        >>> axes.get_xlabel()
+        'amplification'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.distribution(self, ax)
+
+    def plot_patterns(self, ax: Any = None) -> Any:
+        """Draws the amplification over the number of the pattern, solved and foretold, with matplotlib. Returns the axes.
+        ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> axes = hbvib.WheelStudy([1.1, 1.2, 1.3], [0, 1, 2], [1, 1, 1], [0, 0, 0], 1.0, [1.1, 1.2, 1.29]).plot_patterns()
+        >>> axes.get_xlabel()
+        'pattern'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.patterns(self, ax)
 
     def weibull(self) -> WheelWeibull:
         """The Weibull distribution of maxima of the greatest likelihood for the amplification (Castanier & Pierre 2006,
@@ -183,15 +221,6 @@ class WheelStudy:
             best = int(np.argmax([fit[0] for fit in fits]))
             ends = trials[max(best - 1, 0)], trials[min(best + 1, 40)]
         return WheelWeibull(float(values[-1] + span * np.exp(trials[best])), *fits[best][1:])
-
-
-def _binomial(n: int, p: float) -> FloatArray:
-    """P(X <= k) of a binomial distribution for k = 0 .. n."""
-    k = np.arange(n + 1)
-    logs = np.concatenate([[0.0], np.cumsum(np.log(np.arange(1, n + 1)))])
-    weights = logs[n] - logs[k] - logs[n - k] + k * np.log(p) + (n - k) * np.log1p(-p)
-    found: FloatArray = np.cumsum(np.exp(weights))
-    return found
 
 
 def _of_bound(values: FloatArray, bound: float) -> tuple[float, float, float]:
@@ -233,3 +262,15 @@ class WorstPattern(NamedTuple):
     whitehead: float
     found: FloatArray
     sweeps: int
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the pattern as bars, one a blade, with matplotlib. Returns the axes. ImportError without matplotlib.
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> axes = hbvib.WorstPattern(np.array([0.01, -0.01]), 1.0, 1.0, np.zeros(2), 0.0, 1.1, 1.2, np.ones(1), 1).plot()
+        >>> axes.get_ylabel()
+        'delta / %'
+        """
+        from . import _wheel_plots
+        return _wheel_plots.bars(self, ax)

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 _DIFFERENCE = 1e-5
 #: Most evaluations of an ascent to the worst pattern.
 _MOST_SWEEPS = 300
+#: Numbers of patterns whose largest blades are predicted at a time.
+_NUMBERS_AT_ONCE = 2_000_000
 #: A blade as a degree of freedom of a sector, or a Response.
 Blade = Union[int, Response]
 
@@ -109,20 +111,11 @@ class _WheelStudies(_HasUnits):
         sector = cast("Model", self)
         given = _array("patterns", patterns, np.float64, (None, sector.sectors))
         wheel, parameters, transform = self._directions(kind, dofs, direction)
-        watched = [_of_sector(_blade(blade), s * sector.ndof) for s in range(sector.sectors)]
-        found = wheel.batch(omega, parameters, transform(given), threads=threads, responses=watched, progress=progress, phase=phase,
-                            cancel=cancel, **solver)
-        of_blades = np.array([peaks.amplitude for peaks in found.responses])
-        at = np.array([peaks.omega for peaks in found.responses])
-        largest = np.where(np.isfinite(of_blades), of_blades, -np.inf).argmax(axis=0)
-        each = np.arange(len(given))
-        tuned, gradient, _ = self._peak_of_blade(wheel, parameters, watched[0], omega, solver)
-        if not np.isfinite(gradient).all():
-            gradient, _ = self._by_differences(np.zeros(sector.sectors), kind, dofs, direction, watched[0], omega, solver)
-        # Blade s of a pattern is blade 0 of the pattern that is shifted by s.
-        shifted = np.stack([np.roll(gradient, s) for s in range(sector.sectors)])
-        predicted = tuned + (transform(given) @ shifted.T).max(axis=1)
-        return WheelStudy(of_blades[largest, each], largest, at[largest, each], found.status, tuned, predicted)
+        largest, of, at, status = self._largest_blades(
+            wheel, parameters, transform(given), omega, _blade(blade), threads=threads, progress=progress, phase=phase, cancel=cancel,
+            **solver)
+        tuned, predicted = self._predicted(wheel, parameters, transform, given, (kind, dofs, direction), _blade(blade), omega, solver)
+        return WheelStudy(largest, of, at, status, tuned, predicted)
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def worst_pattern(self, omega: ArrayLike, box: float, *, kind: Mistunings = "stiffness", dofs: Optional[ArrayLike] = None,
@@ -160,17 +153,9 @@ class _WheelStudies(_HasUnits):
 
         def at(pattern: FloatArray) -> tuple[float, FloatArray, float]:
             nonlocal sweeps
-            sweeps += 1
-            other = sector.wheel()
-            other.mistune(sector, kind, pattern, dofs=dofs, direction=direction)
-            amplitude, gradient, frequency = self._peak_of_blade(other, parameters, watched, omega, solver)
-            if not np.isfinite(gradient).all():
-                gradient, more = self._by_differences(pattern, kind, dofs, direction, watched, omega, solver)
-                sweeps += more
-                return amplitude, gradient, frequency
-            # By delta instead of the factor on the direction.
-            slope = (transform(pattern + 1e-6) - transform(pattern - 1e-6)) / 2e-6
-            return amplitude, gradient * slope, frequency
+            *found, more = self._with_slope(pattern, (kind, dofs, direction), parameters, transform, watched, omega, solver)
+            sweeps += more
+            return cast("tuple[float, FloatArray, float]", tuple(found))
 
         for _ in range(starts):
             ends.append(ascend(at, random.uniform(-box, box, sector.sectors), box, _MOST_SWEEPS))
@@ -178,6 +163,44 @@ class _WheelStudies(_HasUnits):
         whitehead = (1 + np.sqrt(sector.sectors)) / 2
         return WorstPattern(pattern, value, frequency, gradient, foretold(pattern, gradient, box) / value, value / tuned,
                             float(whitehead), np.array([end.value for end in ends]), sweeps)
+
+    def _with_slope(self, pattern: FloatArray, mistuning: Any, parameters: Sequence[Parameter], transform: Any, watched: Response,
+                    omega: ArrayLike, solver: Any) -> tuple[float, FloatArray, float, int]:
+        """Highest peak of a blade of a pattern, its derivatives by delta, its frequency, and the sweeps they took."""
+        sector, (kind, dofs, direction) = cast("Model", self), mistuning
+        other = sector.wheel()
+        other.mistune(sector, kind, pattern, dofs=dofs, direction=direction)
+        amplitude, gradient, frequency = self._peak_of_blade(other, parameters, watched, omega, solver)
+        if not np.isfinite(gradient).all():
+            gradient, more = self._by_differences(pattern, mistuning, watched, omega, solver)
+            return amplitude, gradient, frequency, 1 + more
+        # By delta instead of the factor on the direction.
+        slope = (transform(pattern + 1e-6) - transform(pattern - 1e-6)) / 2e-6
+        return amplitude, gradient * slope, frequency, 1
+
+    def _largest_blades(self, wheel: Model, parameters: Sequence[Parameter], values: FloatArray, omega: ArrayLike, blade: Response,
+                        **options: Any) -> Any:
+        """Highest peak of each wheel, its blade and frequency, and the status of the wheel."""
+        sector = cast("Model", self)
+        watched = [_of_sector(blade, s * sector.ndof) for s in range(sector.sectors)]
+        found = wheel.batch(omega, parameters, values, responses=watched, **options)
+        of_blades = np.array([peaks.amplitude for peaks in found.responses])
+        at = np.array([peaks.omega for peaks in found.responses])
+        largest = np.where(np.isfinite(of_blades), of_blades, -np.inf).argmax(axis=0)
+        each = np.arange(len(values))
+        return of_blades[largest, each], largest, at[largest, each], found.status
+
+    def _predicted(self, wheel: Model, parameters: Sequence[Parameter], transform: Any, patterns: FloatArray, mistuning: Any,
+                   blade: Response, omega: ArrayLike, solver: Any) -> tuple[float, FloatArray]:
+        """The peak of the tuned wheel, and the largest blade of each pattern by its derivatives."""
+        watched, sectors = _of_sector(blade, 0), patterns.shape[1]
+        tuned, gradient, _ = self._peak_of_blade(wheel, parameters, watched, omega, solver)
+        if not np.isfinite(gradient).all():
+            gradient, _ = self._by_differences(np.zeros(sectors), mistuning, watched, omega, solver)
+        # Blade s of a pattern is blade 0 of the pattern that is shifted by s.
+        shifted = np.stack([np.roll(gradient, s) for s in range(sectors)])
+        parts = np.array_split(patterns, max(1, patterns.size // _NUMBERS_AT_ONCE))
+        return tuned, tuned + np.concatenate([(transform(part) @ shifted.T).max(axis=1) for part in parts])
 
     def _directions(self, kind: Mistunings, dofs: Optional[ArrayLike], direction: Any) -> Any:
         """The tuned wheel, one parameter a sector, and the values of the parameters for a pattern."""
@@ -196,11 +219,11 @@ class _WheelStudies(_HasUnits):
             parameters.append(Parameter(cast(Any, name), direction=_difference(one.matrix(cast(Any, name)), before)))
         return wheel, parameters, (lambda x: (1 + x) ** 2 - 1) if kind == "frequency" else (lambda x: x)
 
-    def _by_differences(self, pattern: FloatArray, kind: Mistunings, dofs: Optional[ArrayLike], direction: Any, watched: Response,
-                        omega: ArrayLike, solver: Any) -> tuple[FloatArray, int]:
+    def _by_differences(self, pattern: FloatArray, mistuning: Any, watched: Response, omega: ArrayLike,
+                        solver: Any) -> tuple[FloatArray, int]:
         """Derivatives of the highest peak of a blade by delta of each sector, and the sweeps they took: central differences, for
         a peak at which a contact begins to slip or touch, where the exact ones do not exist while those of the peak do."""
-        sector, gradient = cast("Model", self), np.empty(len(pattern))
+        (kind, dofs, direction), sector, gradient = mistuning, cast("Model", self), np.empty(len(pattern))
         for s in range(len(pattern)):
             ends = []
             for sign in (1, -1):

@@ -50,6 +50,7 @@ pub mod life_load;
 mod life_step;
 pub mod linear_contacts;
 pub mod mission;
+mod mode_adjustment;
 pub mod mode_band;
 mod mode_discretised;
 mod mode_equations;
@@ -86,6 +87,7 @@ mod unbounded_response;
 mod verified_responses;
 pub mod verify;
 mod watched_responses;
+pub mod wheel_identify;
 pub mod wheel_peaks;
 mod worn_state;
 
@@ -123,4 +125,5 @@ pub use crate::analysis::static_history::{LoadHistory, StaticStep, static_histor
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};
 pub use crate::analysis::time_response::time_response;
 pub use crate::analysis::verify::{Verification, verify};
+pub use crate::analysis::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
 pub use crate::analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};

@@ -110,18 +110,10 @@ pub unsafe extern "C" fn hbvib_wheel_mistune(
             }
             Quantity::Force => return changed(&mut wheel, &cyclic, &Mistuning::Force, delta),
         };
-        match (dofs.is_empty(), direction.is_null(), which) {
-            (false, true, _) => changed(&mut wheel, &cyclic, &Mistuning::Blade(property, &dofs), delta),
-            (true, false, Some(which)) => unsafe {
-                with_matrix(direction, ("direction", 6), cyclic.ndof(), |a| {
-                    changed(&mut wheel, &cyclic, &Mistuning::Matrix(which, a), delta)
-                })
-            },
-            (true, false, None) => {
-                fail!(Argument, "a direction for frequencies; needs the dofs of a blade").with_argument(6)
-            }
-            (true, true, _) => fail!(Argument, "n_dofs = 0 and no direction; needs one of them").with_argument(4),
-            (false, false, _) => fail!(Argument, "dofs and a direction; needs one of them").with_argument(6),
+        unsafe {
+            with_blade((property, which), (&dofs, 4), (direction, 6), cyclic.ndof(), |what| {
+                changed(&mut wheel, &cyclic, what, delta)
+            })
         }
     })
 }
@@ -142,6 +134,48 @@ fn quantity(kind: i32) -> Result<Quantity> {
         5 => Quantity::Force,
         other => return fail!(Argument, "kind = {other}, needs HBVIB_MISTUNING_STIFFNESS = 0 .. 5"),
     })
+}
+
+/// Passes a property of the blades, by their degrees of freedom or by a direction, to `then`. Each has the number of its argument.
+unsafe fn with_blade<T>(
+    (property, which): (BladeProperty, Option<MatrixKind>),
+    (dofs, n_dofs_at): (&[usize], i32),
+    (direction, at): (*const hbvib_matrix, i32),
+    n: usize,
+    then: impl FnOnce(&Mistuning<'_>) -> Result<T>,
+) -> Result<T> {
+    match (dofs.is_empty(), direction.is_null(), which) {
+        (false, true, _) => then(&Mistuning::Blade(property, dofs)),
+        (true, false, Some(which)) => unsafe {
+            with_matrix(direction, ("direction", at), n, |a| then(&Mistuning::Matrix(which, a)))
+        },
+        (true, false, None) => {
+            fail!(Argument, "a direction for frequencies; needs the dofs of a blade").with_argument(at)
+        }
+        (true, true, _) => fail!(Argument, "n_dofs = 0 and no direction; needs one of them").with_argument(n_dofs_at),
+        (false, false, _) => fail!(Argument, "dofs and a direction; needs one of them").with_argument(at),
+    }
+}
+
+/// The same by the number of a kind, which is one of the blades.
+///
+/// # Safety
+/// As for [`with_matrix`].
+pub(super) unsafe fn with_quantity<T>(
+    (kind, kind_at): (i32, i32),
+    dofs: (&[usize], i32),
+    direction: (*const hbvib_matrix, i32),
+    n: usize,
+    then: impl FnOnce(&Mistuning<'_>) -> Result<T>,
+) -> Result<T> {
+    let Quantity::Blade(property, which) = quantity(kind).with_argument(kind_at)? else {
+        return fail!(
+            Unsupported,
+            "kind = {kind}: modes show no loads and forces; needs a stiffness, frequency or mass"
+        )
+        .with_argument(kind_at);
+    };
+    unsafe { with_blade((property, which), dofs, direction, n, then) }
 }
 
 fn changed(wheel: &mut Model, cyclic: &Model, what: &Mistuning<'_>, delta: &[f64]) -> Result<Status> {

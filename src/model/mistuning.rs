@@ -26,7 +26,7 @@ const LARGEST_ATTACHMENT: usize = 4_000_000;
 /// Difference of mirrored entries of a stiffness, relative to the largest, that is rounding.
 const MIRROR_ROUNDING: f64 = 1e-10;
 
-type Entries = Vec<(usize, usize, Complex64)>;
+pub(super) type Entries = Vec<(usize, usize, Complex64)>;
 
 /// A property of the blades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,7 +177,7 @@ impl Model {
 
 impl Structure {
     /// Entries of a matrix of a sector that a caller gives.
-    fn of_direction(&self, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
+    pub(super) fn of_direction(&self, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
         if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
             return fail!(
                 Unsupported,
@@ -199,7 +199,7 @@ impl Structure {
     }
 
     /// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
-    fn of_blade(&self, property: BladeProperty, dofs: &[usize]) -> Result<(MatrixKind, Entries)> {
+    pub(super) fn of_blade(&self, property: BladeProperty, dofs: &[usize]) -> Result<(MatrixKind, Entries)> {
         let n = self.ndof();
         // Place of an independent degree of freedom in the blade.
         let mut place = try_vec(n, None, CONTEXT)?;

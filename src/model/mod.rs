@@ -43,6 +43,7 @@ pub mod spring_stiffness;
 pub mod static_tangents;
 pub mod structure;
 mod stuck_shapes;
+pub(crate) mod tuned_family;
 pub mod wave;
 pub mod wave_matrix;
 mod wheel;

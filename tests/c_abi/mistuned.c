@@ -116,6 +116,34 @@ int main(void)
         REFUSED("capacity", hbvib_wheel_peaks(wheel, cyclic, NULL, NULL, 1, 3, NULL, 2, amplitude, NULL, NULL, &blades, NULL, NULL),
                 HBVIB_E_DIMENSION, 8, "capacity = 2");
     }
+    {
+        double omega[SECTORS], sigma[SECTORS], shapes[2 * SECTORS * SECTORS], found[SECTORS], covariance[SECTORS * SECTORS], chi2 = -1;
+        hbvib_model *other = NULL;
+        int64_t degrees = 0;
+        WORKS("wheel", hbvib_wheel_new(cyclic, &other));
+        WORKS("blade", hbvib_wheel_mistune(other, cyclic, HBVIB_MISTUNING_FREQUENCY, 1, &blade, NULL, 0, SECTORS, delta));
+        WORKS("modes", hbvib_linear_modes(other, 0, HBVIB_CONTACTS_STUCK, SECTORS, omega, shapes));
+        for (s = 0; s < SECTORS; s++) sigma[s] = 1e-3;
+        WORKS("pattern", hbvib_wheel_identify(cyclic, HBVIB_MISTUNING_FREQUENCY, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1, &blade,
+                                              SECTORS, omega, sigma, shapes, sigma, NULL, SECTORS, found, covariance, &chi2, &degrees));
+        for (s = 0; s < SECTORS; s++) EXPECT("pattern", fabs(found[s] - delta[s]) < 1e-10 && covariance[(SECTORS + 1) * s] > 0);
+        EXPECT("residuals", chi2 >= 0 && chi2 < 1e-10 && degrees == SECTORS * (SECTORS - 1));
+        WORKS("the pattern alone", hbvib_wheel_identify(cyclic, HBVIB_MISTUNING_FREQUENCY, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1,
+                                                        &blade, SECTORS, omega, sigma, shapes, sigma, NULL, SECTORS, found, NULL, NULL, NULL));
+        REFUSED("loads", hbvib_wheel_identify(cyclic, HBVIB_MISTUNING_PRELOAD, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1, &blade, SECTORS,
+                                              omega, sigma, shapes, sigma, NULL, SECTORS, found, NULL, NULL, NULL),
+                HBVIB_E_UNSUPPORTED, 2, "loads");
+        REFUSED("points", hbvib_wheel_identify(cyclic, HBVIB_MISTUNING_STIFFNESS, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1, &far,
+                                               SECTORS, omega, sigma, shapes, sigma, NULL, SECTORS, found, NULL, NULL, NULL),
+                HBVIB_E_INDEX, 9, "points");
+        REFUSED("overlap", hbvib_wheel_identify(cyclic, HBVIB_MISTUNING_STIFFNESS, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1, &blade,
+                                                SECTORS, omega, sigma, shapes, sigma, NULL, SECTORS, omega, NULL, NULL, NULL),
+                HBVIB_E_ARGUMENT, 17, "overlap");
+        REFUSED("sectors", hbvib_wheel_identify(cyclic, HBVIB_MISTUNING_STIFFNESS, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1, &blade,
+                                                SECTORS, omega, sigma, shapes, sigma, NULL, 4, found, NULL, NULL, NULL),
+                HBVIB_E_DIMENSION, 16, "sectors");
+        WORKS("other", hbvib_model_free(other));
+    }
     WORKS("wheel", hbvib_model_free(wheel));
     WORKS("cyclic", hbvib_model_free(cyclic));
     return verdict(90);

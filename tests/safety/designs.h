@@ -239,6 +239,28 @@ static hbvib_status damped(const hbvib_model *model, uint64_t *sum)
     return status;
 }
 
+/* The pattern of a wheel from the tuned modes of its sectors with other amplitudes. */
+static hbvib_status pattern(const hbvib_model *model, uint64_t *sum)
+{
+    enum { MOST = 64 };
+    static double shapes[2 * 2 * MOST], delta[MOST], covariance[MOST * MOST];
+    static const double sigma[2] = {1e-3, 1e-3};
+    const int64_t blade = 0, sectors = hbvib_model_sectors(model);
+    double omega[2], chi2 = 0;
+    hbvib_status status = HBVIB_OK;
+    int64_t s;
+    STEP(hbvib_linear_modes(model, 1, HBVIB_CONTACTS_STUCK, 1, omega, NULL));
+    omega[1] = 1.001 * omega[0];
+    for (s = 0; s < 2 * sectors; s++) {
+        shapes[2 * s] = cos(6.283185307179586 * (double)(s % sectors) / (double)sectors - (s < sectors ? 0 : 1.5)) + 0.01 * (double)(s % 3);
+        shapes[2 * s + 1] = 0;
+    }
+    STEP(hbvib_wheel_identify(model, HBVIB_MISTUNING_STIFFNESS, 1, &blade, NULL, HBVIB_CONTACTS_STUCK, 1, 1, &blade, 2, omega, sigma, shapes,
+                              sigma, NULL, sectors, delta, covariance, &chi2, NULL));
+    if (status >= 0) digest(sum, delta, (size_t)sectors * sizeof(double));
+    return status;
+}
+
 static const analysis DESIGNS_AND_STABILITY[] = {
     {"sensitivities", ring, sensitive},
     {"sensitivities, friction in a plane", friction_3d, sensitive},
@@ -254,6 +276,7 @@ static const analysis DESIGNS_AND_STABILITY[] = {
     {"stability, unilateral", unilateral, stable},
     {"limit cycles", self_excited, cycles},
     {"damped modes of a wheel", faces, damped},
+    {"pattern of a wheel", small_ring, pattern},
 };
 enum { N_DESIGNS = sizeof DESIGNS_AND_STABILITY / sizeof *DESIGNS_AND_STABILITY };
 

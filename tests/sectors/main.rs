@@ -4,6 +4,7 @@
 mod common;
 
 mod boundary_sector;
+mod identified_wheel;
 mod mistuned_wheel;
 mod sector_contacts;
 mod sector_frequencies;

@@ -104,6 +104,7 @@ pub const SECTIONS: [Section; 13] = [
             "parameter_optima",
             "batch",
             "wheel_peaks",
+            "wheel_identify",
             "band",
             "band_curves",
             "mode_bands",

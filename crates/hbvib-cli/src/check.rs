@@ -6,7 +6,7 @@ use crate::job::Job;
 use crate::model_report::ModelReport;
 use crate::{
     band_curve, campbell, fit_run, kicks, life, map, mode_band, motion_files, passages, print, residual_state, study,
-    tornado, wheel_response,
+    tornado, wheel_patterns, wheel_response,
 };
 use hbvib::{ContactState, Model};
 use std::f64::consts::TAU;
@@ -106,6 +106,9 @@ pub fn parts(job: &Job, built: &Built) -> Outcome<()> {
     }
     if let Some(part) = &job.wheel {
         wheel_response::check(part, built)?;
+        if let Some(path) = &part.patterns {
+            wheel_patterns::check(part, &job.path(path), built)?;
+        }
     }
     if let Some(part) = &job.life {
         life::check(part, built)?;

@@ -204,8 +204,15 @@ pub struct WheelPart {
     /// Degrees of freedom of the blade of a sector; not for preload and force.
     #[serde(default)]
     pub dofs: Vec<DofName>,
-    /// One number a sector: the quantity times 1 + that.
+    /// One number a sector: the quantity times 1 + that. Needed without `patterns`.
+    #[serde(default)]
     pub pattern: Vec<f64>,
+    /// File of many patterns, one a line.
+    pub patterns: Option<PathBuf>,
+    /// The largest blade of each of them.
+    pub patterns_csv: Option<PathBuf>,
+    /// Their amplification and its distribution. SVG or, where its name ends with .png, PNG.
+    pub patterns_figure: Option<PathBuf>,
     /// Range of frequency.
     pub from_hz: f64,
     pub to_hz: f64,

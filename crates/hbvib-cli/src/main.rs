@@ -104,6 +104,7 @@ mod varied;
 mod verification;
 mod vtu;
 mod vtu_series;
+mod wheel_patterns;
 mod wheel_response;
 
 use arguments::{Arguments, LogForm, Verb};

@@ -13,7 +13,7 @@ use crate::solver::solver;
 use crate::stored_response::Stored;
 use crate::{
     band_curve, campbell, check, contact_tables, fit_run, html_report, kicks, life, map, mode_band, motion_files,
-    output, passages, residual_state, solutions, study, tornado, verification, wheel_response,
+    output, passages, residual_state, solutions, study, tornado, verification, wheel_patterns, wheel_response,
 };
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
@@ -148,8 +148,15 @@ fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool, files: &mut File
         ended(outcome, "mode_band", stop, files, end);
     }
     if let Some(part) = job.wheel.as_ref().filter(|_| end.goes_on(stop)) {
-        let outcome = watched(stop, |hooks| wheel_response::write(part, built, hooks, files));
-        ended(outcome, "wheel", stop, files, end);
+        if !part.pattern.is_empty() {
+            let outcome = watched(stop, |hooks| wheel_response::write(part, built, hooks, files));
+            ended(outcome, "wheel", stop, files, end);
+        }
+        if let Some(path) = part.patterns.as_ref().filter(|_| end.goes_on(stop)) {
+            let path = job.path(path);
+            let outcome = watched(stop, |hooks| wheel_patterns::write(part, &path, built, hooks, files));
+            ended(outcome, "wheel", stop, files, end);
+        }
     }
     if let Some(part) = job.life.as_ref().filter(|_| end.goes_on(stop)) {
         let outcome = watched(stop, |hooks| life::write(part, built, hooks, files));

@@ -23,14 +23,19 @@ const BLADES: RGBColor = RGBColor(150, 150, 150);
 /// # Errors
 /// A sentence.
 pub fn check(part: &WheelPart, built: &Built) -> Outcome<()> {
-    mistuned(part, built)?;
+    if !part.pattern.is_empty() || part.patterns.is_none() {
+        mistuned(part, &part.pattern, built)?;
+    }
     solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built)
         .map(|_| ())
         .map_err(|e| format!("[wheel]: {e}"))
 }
 
-/// The wheel with its pattern.
-fn mistuned(part: &WheelPart, built: &Built) -> Outcome<Model> {
+/// The wheel with a pattern.
+///
+/// # Errors
+/// A sentence.
+pub fn mistuned(part: &WheelPart, pattern: &[f64], built: &Built) -> Outcome<Model> {
     let said = |e: &dyn std::fmt::Display| format!("[wheel]: {e}");
     let mut wheel = built.model.wheel().map_err(|e| said(&e))?;
     let dofs: Outcome<Vec<usize>> = part.dofs.iter().map(|name| built.nodes.dof(name)).collect();
@@ -44,10 +49,23 @@ fn mistuned(part: &WheelPart, built: &Built) -> Outcome<Model> {
         MistunedName::Preload => Mistuning::Preload(None),
         MistunedName::Force => Mistuning::Force,
     };
-    wheel
-        .mistune(&built.model, &kind, &part.pattern)
-        .map_err(|e| said(&e))?;
+    wheel.mistune(&built.model, &kind, pattern).map_err(|e| said(&e))?;
     Ok(wheel)
+}
+
+/// Peaks of all blades of a wheel.
+///
+/// # Errors
+/// A sentence.
+pub fn peaks(part: &WheelPart, wheel: &Model, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<WheelPeaks> {
+    let said = |e: &dyn std::fmt::Display| format!("[wheel]: {e}");
+    let solver = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built).map_err(|e| said(&e))?;
+    let range = ForcedOptions {
+        omega_start: TAU * part.from_hz,
+        omega_stop: TAU * part.to_hz,
+        ..ForcedOptions::default()
+    };
+    wheel_peaks(wheel, &built.model, &Response::default(), &solver, &range, hooks).map_err(|e| said(&e))
 }
 
 /// Computes and writes the peaks of all blades.
@@ -55,16 +73,8 @@ fn mistuned(part: &WheelPart, built: &Built) -> Outcome<Model> {
 /// # Errors
 /// A sentence.
 pub fn write(part: &WheelPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut Files<'_>) -> Outcome<Written> {
-    let said = |e: &dyn std::fmt::Display| format!("[wheel]: {e}");
-    let wheel = mistuned(part, built)?;
-    let solver = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built).map_err(|e| said(&e))?;
-    let range = ForcedOptions {
-        omega_start: TAU * part.from_hz,
-        omega_stop: TAU * part.to_hz,
-        ..ForcedOptions::default()
-    };
-    let blade = Response::default();
-    let found = wheel_peaks(&wheel, &built.model, &blade, &solver, &range, hooks).map_err(|e| said(&e))?;
+    let wheel = mistuned(part, &part.pattern, built)?;
+    let found = peaks(part, &wheel, built, hooks)?;
     if found.branch.status() != Status::Ok {
         let sentence = found.branch.status().sentence();
         return Ok((format!("[wheel]: the response ended early: {sentence}\n"), true));

@@ -47,6 +47,68 @@ fn a_wheel_has_its_largest_blade_and_amplification() {
     assert!(figure.contains("<polyline") && figure.contains("blades of the wheel"));
 }
 
+/// The first pattern is that of the other harmonic balance; the second is the first, turned by two sectors; the third is tuned.
+#[test]
+fn many_patterns_have_their_largest_blades_and_their_distribution() {
+    let numbers: Vec<f64> = PATTERN
+        .trim_matches(['[', ']'])
+        .split(',')
+        .map(|x| x.trim().parse().unwrap())
+        .collect();
+    let line = |shift: usize, factor: f64| {
+        let turned = (0..24).map(|s| format!("{}", factor * numbers[(s + 24 - shift) % 24]));
+        turned.collect::<Vec<_>>().join(" ")
+    };
+    let file = std::env::temp_dir().join(format!("hbvib_patterns_{}.csv", std::process::id()));
+    let text = format!(
+        "# three wheels\n{}\n\n{}\n{}\n",
+        line(0, 1.0),
+        line(2, 1.0),
+        line(0, 0.0)
+    );
+    fs::write(&file, text.replace(' ', ", ")).unwrap();
+    let part = format!(
+        "[wheel]\ndofs = [0]\npatterns = '{}'\nfrom_hz = 209.0\nto_hz = 211.0\nharmonics = 3\nresponse_dof = 0\n\
+         patterns_csv = 'patterns.csv'\npatterns_figure = 'patterns.svg'\n",
+        file.display()
+    );
+    let (output, folder) = run("patterns", &part);
+    let (text, errors) = (
+        crate::common::printed(&output.stdout),
+        crate::common::printed(&output.stderr),
+    );
+    assert!(output.status.success(), "{text}{errors}");
+    assert!(
+        text.contains("3 patterns: the largest amplification is 1.0932"),
+        "{text}"
+    );
+    let csv = fs::read_to_string(folder.join("patterns.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.iter().map(|row| row[1] as usize).collect::<Vec<_>>()[..2], [3, 5]);
+    assert!((rows[0][3] / 8.280_100_222_407_677e-4 - 1.0).abs() < 1e-9);
+    assert!((rows[1][3] / rows[0][3] - 1.0).abs() < 1e-9);
+    assert!((rows[2][4] - 1.0).abs() < 1e-9);
+    let figure = fs::read_to_string(folder.join("patterns.svg")).unwrap();
+    assert!(figure.contains("<polyline") && figure.contains("share of the patterns"));
+
+    fs::write(&file, "0.1 0.2\n").unwrap();
+    let (output, _) = run("short_patterns", &part);
+    let errors = crate::common::printed(&output.stderr);
+    assert!(
+        !output.status.success() && errors.contains("pattern 0") && errors.contains("24"),
+        "{errors}"
+    );
+    fs::write(&file, "0.1 x\n").unwrap();
+    let (output, _) = run("wrong_patterns", &part);
+    let errors = crate::common::printed(&output.stderr);
+    assert!(!output.status.success() && errors.contains("line 1: x"), "{errors}");
+    fs::remove_file(&file).unwrap();
+}
+
 #[test]
 fn a_wheel_that_cannot_be_made_is_refused_by_its_part() {
     for (name, keys, words) in [

@@ -170,13 +170,38 @@ void senses() {
   claim(wheel.interference(HBVIB_CONTACTS_STUCK, 2).equal_senses, "equal senses at rest");
 }
 
+/// The pattern of a mistuned wheel from its own modes.
+void patterns() {
+  auto sector = Model::cyclic(1, 8);
+  const double mass[1][1] = {{1}}, stiffness[1][1] = {{3}}, next[1][1] = {{-0.1}};
+  sector.set_matrix(HBVIB_MASS, mass);
+  sector.set_matrix(HBVIB_STIFFNESS, stiffness);
+  sector.set_coupling(HBVIB_STIFFNESS, next);
+  const std::vector<double> delta{0.01, -0.02, 0.005, 0, 0.015, -0.01, 0.02, -0.005};
+  const std::vector<Index> blade{0};
+  auto wheel = sector.wheel();
+  wheel.mistune(sector, HBVIB_MISTUNING_MASS, delta, blade);
+  const auto modes = wheel.linear_modes(0, HBVIB_CONTACTS_STUCK, 8);
+  std::vector<Complex> shapes;
+  for (Index k = 0; k < 8; k++)
+    for (Index s = 0; s < 8; s++) shapes.push_back(modes.shapes(k, s));
+  const std::vector<double> sigma(8, 1e-3);
+  const auto found = sector.identify_pattern(HBVIB_MISTUNING_MASS, blade, HBVIB_CONTACTS_STUCK, 1, blade, modes.omega, sigma, shapes, sigma);
+  for (std::size_t s = 0; s < 8; s++) claim(std::fabs(found.delta[s] - delta[s]) < 1e-10 && found.covariance[9 * s] > 0, "a pattern");
+  claim(found.degrees == 56 && found.chi2 < 1e-10, "nothing is left");
+  shapes.pop_back();
+  refused("too few numbers", HBVIB_E_DIMENSION, 13, "63 numbers",
+          [&] { sector.identify_pattern(HBVIB_MISTUNING_MASS, blade, HBVIB_CONTACTS_STUCK, 1, blade, modes.omega, sigma, shapes, sigma); });
+}
+
 }  // namespace
 
 int main() {
-  return verdict(110, [] {
+  return verdict(120, [] {
     pressed();
     parts();
     speed();
     senses();
+    patterns();
   });
 }

@@ -319,11 +319,12 @@ for name, (structs, others) in OF_STRUCTS.items():
     check(f"{name}: every argument is a field", arguments <= fields, arguments - fields)
 
 # Calls that need no claim: without arguments that could be dropped, drawings, files, those of test_every_constant.py, and wheels of
-# test_wheels.py, fits of test_fits.py, add_damper, whose arguments are fields of test_every_field.py, modal coordinates of
+# test_wheels.py and test_wheel_statistics.py, fits of test_fits.py, add_damper, whose arguments are fields of test_every_field.py, modal coordinates of
 # test_axis_nodes.py.
 PLAIN = {
     "add_contact", "add_damper", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic",
     "free", "from_bytes", "load", "matrix", "mistune", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
+    "wheel_quantile", "intentional_pattern", "identify_pattern", "blade_frequencies", "pattern_of_blades",
     "fit", "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
     "limit_cycles",
     "modal_coordinates", "mode_point", "point",

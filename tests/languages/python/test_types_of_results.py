@@ -20,6 +20,7 @@ PACKAGE = os.path.dirname(os.path.abspath(hbvib.__file__))
 # and directions, of which its kind decides.
 UNTYPED = {
     "Contact.constants",
+    "WheelPeaks.plot", "WheelQuantile.plot", "WheelStudy.plot", "WheelStudy.plot_patterns", "WorstPattern.plot",
     "BandCurve.plot", "CampbellResponse.plot", "Life.plot", "Branch.plot", "Branch.plot_loop", "Branch.to_dataframe", "Branch.to_xarray", "Model.plot_campbell", "Model.plot_interference",
     "Model.matrix", "io.Matrices.damping", "io.Matrices.mass", "io.Matrices.stiffness", "io.Matrices.structural",
 }
