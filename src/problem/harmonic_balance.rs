@@ -191,8 +191,10 @@ impl<'a> HarmonicBalance<'a> {
         };
         self.forces.set_scale(scale);
         let interrupt = self.forces.interrupt();
-        self.tables.tabulate(self.condensed, omega, interrupt)?;
         self.forces.evaluate(u, omega)?;
+        // Where all contacts stick no force of theirs is left beside κ y.
+        let acts = path.is_some() || (0..self.condensed.coordinates()).any(|c| !self.forces.is_inactive(c));
+        self.tables.tabulate(self.condensed, (omega, acts), interrupt)?;
         if self.condensed.coordinates() == 1 && path.is_none() {
             self.balance_single(u, out);
             return Ok(());
@@ -513,7 +515,8 @@ impl Problem for HarmonicBalance<'_> {
                 Ok(u.iter().all(|x| x.is_finite()))
             }
             InitialGuess::Reference => {
-                self.tables.tabulate(self.condensed, p, self.forces.interrupt())?;
+                self.tables
+                    .tabulate(self.condensed, (p, false), self.forces.interrupt())?;
                 let set = self.condensed.set();
                 let m = set.packed_len();
                 let coordinates = self.condensed.coordinates();
