@@ -153,6 +153,7 @@ impl Structure {
                 wheel.blocks_mut(kind)?.own = Some(KeptMatrix::new(a)?);
             }
         }
+        wheel.wheel = Some((sectors, self.engine_order));
         wheel.rayleigh = self.rayleigh;
         wheel.loss_factor = self.loss_factor;
         wheel.loss_of_stiffness = self.loss_of_stiffness;

@@ -20,6 +20,7 @@ use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual, put};
 use crate::problem::passed_resonance;
 use crate::problem::residual_scale::Squares;
+use crate::problem::ring_blocks::RingBlocks;
 use crate::problem::single_balance::{self, SingleForce};
 use crate::problem::static_force::static_force;
 use num_complex::Complex64;
@@ -73,6 +74,8 @@ pub(super) struct ProductMemory {
     pub column: Vec<f64>,
     /// Stored contact Jacobians.
     pub kept: Vec<f64>,
+    /// Of a whole wheel.
+    pub ring: Option<Box<RingBlocks>>,
 }
 
 impl<'a> HarmonicBalance<'a> {
@@ -112,6 +115,7 @@ impl<'a> HarmonicBalance<'a> {
             products: ProductMemory {
                 change: try_vec(condensed.unknowns(), 0.0, CONTEXT)?,
                 harmonic: [of_harmonic()?, of_harmonic()?],
+                ring: RingBlocks::new(condensed)?.map(Box::new),
                 ..ProductMemory::default()
             },
             gauges: None,
