@@ -131,7 +131,7 @@ impl LinearSystem for AutomaticSystem {
             let operator = jacobian.matrix_free();
             let ring = operator.as_ref().and_then(|operator| operator.ring());
             self.krylov = Some(boxed(|| match ring {
-                Some(ring) => KrylovSystem::of_ring(self.n, (lengths, ring), MOST_PRODUCTS),
+                Some(ring) => KrylovSystem::of_ring(self.n, (lengths.group, ring), MOST_PRODUCTS),
                 None => KrylovSystem::new(self.n, lengths, MOST_PRODUCTS),
             })?);
         }

@@ -153,11 +153,11 @@ impl KrylovSystem {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub(super) fn of_ring(n: usize, (lengths, ring): (Lengths, Ring<'_>), most_products: usize) -> Result<Self> {
-        let factors = boxed(|| RingFactors::new(n, lengths.group, ring))?;
+    pub fn of_ring(n: usize, (group, ring): (usize, Ring<'_>), most_products: usize) -> Result<Self> {
+        let factors = boxed(|| RingFactors::new(n, group, ring))?;
         Ok(Self {
             ring: Some(factors),
-            ..Self::new(n, lengths, most_products)?
+            ..Self::new(n, Lengths::of_ring(group), most_products)?
         })
     }
 
