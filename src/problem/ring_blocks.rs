@@ -232,3 +232,7 @@ fn are_alike(condensed: &Condensed, sectors: usize) -> bool {
                 .all(|(c, of_first)| *of_first < k && *c == of_first + s * k)
     })
 }
+
+#[cfg(test)]
+#[path = "ring_blocks_tests.rs"]
+mod tests;
