@@ -18,8 +18,8 @@ use crate::model::structure::MatrixKind;
 /// i of sector s is s * ndof + i and contact c is s * contacts + c, with ndof degrees of freedom
 /// and `contacts` contacts of a sector; sectors count from 0. The phases of the engine order are
 /// in the forces. Forces of several engine orders e at one speed are those in harmonics e of a
-/// model under engine order 1. A degree of freedom on the right face of a sector keeps its number; the
-/// left face of the next sector moves it, each in the frame of its own sector.
+/// model under engine order 1. A degree of freedom on the right face of a sector keeps its number;
+/// the left face of the next sector moves it, each in the frame of its own sector.
 ///
 /// cyclic  model of a sector; later changes of it have no effect on the wheel.
 /// out     receives the wheel; untouched on error. Free it by hbvib_model_free.

@@ -233,8 +233,8 @@ impl FrequencyCache {
             && self.way == Way::Factorised
             && condensed.coordinates() >= EXCITED_ALONE_FROM
             && !condensed.has_exchanges();
-        let is_current = |(at, way, whole): (f64, Way, bool)| at == omega && way == self.way && (whole || alone);
-        if self.tabulated.is_some_and(is_current) {
+        let is_current = |whole| self.tabulated == Some((omega, self.way, whole));
+        if is_current(true) || (alone && is_current(false)) {
             return Ok(());
         }
         self.tabulated = None;

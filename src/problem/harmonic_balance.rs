@@ -74,7 +74,7 @@ pub(super) struct ProductMemory {
     pub column: Vec<f64>,
     /// Stored contact Jacobians.
     pub kept: Vec<f64>,
-    /// Of a whole wheel.
+    /// Means over the sectors, where the structure is a whole wheel.
     pub ring: Option<Box<RingBlocks>>,
 }
 

@@ -4,8 +4,7 @@
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::complex_columns;
-use crate::linalg::linear_system::MatrixFree;
-use crate::linalg::linear_system::ring::Ring;
+use crate::linalg::linear_system::{MatrixFree, Ring};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::{Problem, put};
 use crate::problem::ring_blocks::RingBlocks;

@@ -2,14 +2,14 @@
 //! strongly, then by those of the mean coupling of each pair of numbers by itself, and by the identity beyond.
 //!
 //! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
-//! the whole matrix is solved directly. A wheel has the waves of [`crate::linalg::linear_system::ring`] instead.
+//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead.
 
 use crate::error::{Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::gmres::Gmres;
 use crate::linalg::linear_system::dense::DenseSystem;
-use crate::linalg::linear_system::ring::{Ring, RingFactors};
-use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree};
+use crate::linalg::linear_system::sector_waves::RingFactors;
+use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree, Ring};
 use crate::linalg::lu::Lu;
 use num_complex::Complex64;
 
@@ -24,7 +24,7 @@ pub struct KrylovSystem {
     block: DenseSystem,
     lengths: Lengths,
     pairs: Pairs,
-    /// Of a wheel, instead of block and pairs.
+    /// Factors of the waves of a wheel, instead of block and pairs.
     ring: Option<Box<RingFactors>>,
     memory: Gmres,
     most_products: usize,

@@ -7,17 +7,16 @@
 //! where J = ∂R/∂u belongs to a problem, r = ∂R/∂p is its derivative by the parameter, s_u and s_p are the units of
 //! unknowns and parameter, and t is the row of one further condition. One file a backend: [`dense`] factors the whole
 //! matrix, [`krylov`] iterates with products, and factors the block of the strongly coupled unknowns and the mean
-//! coupling of those beyond it, or, of a wheel, [`ring`]: the waves that equal sectors would have.
+//! coupling of those beyond it, or, of a wheel, the waves that equal sectors would have.
 
 pub mod automatic;
 mod continuum;
 pub mod dense;
 pub mod krylov;
-pub mod ring;
+mod sector_waves;
 
 use crate::error::{Result, fail};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::ring::Ring;
 use num_complex::Complex64;
 
 /// The Jacobian J of a problem at the point evaluated last.
@@ -107,6 +106,15 @@ pub trait MatrixFree {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()>;
+}
+
+/// Sectors whose groups of unknowns stand one after another.
+#[derive(Clone, Copy, Debug)]
+pub struct Ring<'a> {
+    /// Number N of sectors.
+    pub sectors: usize,
+    /// Per pair of numbers of a group its factor λ from a sector to the next.
+    pub lags: &'a [Complex64],
 }
 
 /// The rest of the bordered matrix K.

@@ -12,21 +12,12 @@
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
-use crate::linalg::linear_system::{Border, MatrixFree};
+use crate::linalg::linear_system::{Border, MatrixFree, Ring};
 use crate::linalg::lu::Lu;
 use core::f64::consts::TAU;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the linear system of a wheel";
-
-/// Sectors whose groups of unknowns stand one after another.
-#[derive(Clone, Copy, Debug)]
-pub struct Ring<'a> {
-    /// Number N of sectors.
-    pub sectors: usize,
-    /// Per pair of numbers of a group its factor λ from a sector to the next.
-    pub lags: &'a [Complex64],
-}
 
 /// Factors of one wave.
 enum Wave {
@@ -235,5 +226,5 @@ fn turn((x, group): (&mut [f64], usize), turns: &[Complex64], (s, sectors): (usi
 }
 
 #[cfg(test)]
-#[path = "ring_tests.rs"]
+#[path = "sector_waves_tests.rs"]
 mod tests;

@@ -4,8 +4,7 @@ use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::automatic::AutomaticSystem;
 use crate::linalg::linear_system::dense::DenseSystem;
-use crate::linalg::linear_system::ring::Ring;
-use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree};
+use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree, Ring};
 use core::f64::consts::TAU;
 use num_complex::Complex64;
 
