@@ -146,6 +146,7 @@ fn a_mistuned_wheel_of_faces_is_that_of_the_sector_from_its_blocks() {
     let again = Model::load(&wheel.save().unwrap()).unwrap();
     assert!(all_harmonics(&solve(&again), 0) == x);
     assert_eq!(again.save().unwrap(), wheel.save().unwrap());
+    assert_eq!(again.structure().whole_wheel(), Some((N, 3)));
 }
 
 #[test]
