@@ -880,14 +880,16 @@ hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **
 /// i of sector s is s * ndof + i and contact c is s * contacts + c, with ndof degrees of freedom
 /// and `contacts` contacts of a sector; sectors count from 0. The phases of the engine order are
 /// in the forces. Forces of several engine orders e at one speed are those in harmonics e of a
-/// model under engine order 1.
+/// model under engine order 1. A degree of freedom on the right face of a sector keeps its number;
+/// the left face of the next sector moves it, each in the frame of its own sector.
 ///
-/// cyclic  model of a sector, without faces; later changes of it have no effect on the wheel.
+/// cyclic  model of a sector; later changes of it have no effect on the wheel.
 /// out     receives the wheel; untouched on error. Free it by hbvib_model_free.
-/// Errors: HBVIB_E_UNSUPPORTED (a plain model, a sector with faces, complex aerodynamic forces,
-/// aerodynamic forces per displacement with damping by stiffness), HBVIB_E_ARGUMENT (a nodal
-/// diameter without matrix), HBVIB_E_DIMENSION (too large), HBVIB_E_NULL, HBVIB_E_HANDLE,
-/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+/// Errors: HBVIB_E_UNSUPPORTED (a plain model, complex aerodynamic forces, aerodynamic forces per
+/// displacement with damping by stiffness, a contact or spring with another sector in a Cartesian
+/// frame), HBVIB_E_ARGUMENT (a nodal diameter without matrix), HBVIB_E_DIMENSION (too large),
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one
+/// model.
 HBVIB_NODISCARD
 hbvib_status hbvib_wheel_new(const hbvib_model *cyclic, hbvib_model **out);
 
@@ -917,7 +919,7 @@ typedef enum {
 /// kind       a value of enum hbvib_mistuning.
 /// n_dofs     degrees of freedom of the blade of a sector, 0 with a direction and for
 ///            HBVIB_MISTUNING_PRELOAD and HBVIB_MISTUNING_FORCE.
-/// dofs       their numbers, n_dofs numbers, each once.
+/// dofs       their numbers, n_dofs numbers, each once, none on the right face.
 /// direction  matrix of a sector, delta times which is added to stiffness, mass or damping, instead
 ///            of a blade; not with HBVIB_MISTUNING_FREQUENCY. Or NULL.
 /// contact    contact of the sector for HBVIB_MISTUNING_PRELOAD, -1: all with a normal load; else

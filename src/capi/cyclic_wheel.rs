@@ -18,14 +18,16 @@ use crate::model::structure::MatrixKind;
 /// i of sector s is s * ndof + i and contact c is s * contacts + c, with ndof degrees of freedom
 /// and `contacts` contacts of a sector; sectors count from 0. The phases of the engine order are
 /// in the forces. Forces of several engine orders e at one speed are those in harmonics e of a
-/// model under engine order 1.
+/// model under engine order 1. A degree of freedom on the right face of a sector keeps its number;
+/// the left face of the next sector moves it, each in the frame of its own sector.
 ///
-/// cyclic  model of a sector, without faces; later changes of it have no effect on the wheel.
+/// cyclic  model of a sector; later changes of it have no effect on the wheel.
 /// out     receives the wheel; untouched on error. Free it by hbvib_model_free.
-/// Errors: HBVIB_E_UNSUPPORTED (a plain model, a sector with faces, complex aerodynamic forces,
-/// aerodynamic forces per displacement with damping by stiffness), HBVIB_E_ARGUMENT (a nodal
-/// diameter without matrix), HBVIB_E_DIMENSION (too large), HBVIB_E_NULL, HBVIB_E_HANDLE,
-/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+/// Errors: HBVIB_E_UNSUPPORTED (a plain model, complex aerodynamic forces, aerodynamic forces per
+/// displacement with damping by stiffness, a contact or spring with another sector in a Cartesian
+/// frame), HBVIB_E_ARGUMENT (a nodal diameter without matrix), HBVIB_E_DIMENSION (too large),
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one
+/// model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_wheel_new(cyclic: *const hbvib_model, out: *mut *mut hbvib_model) -> hbvib_status {
     call(|| {
@@ -64,7 +66,7 @@ pub enum hbvib_mistuning {
 /// kind       a value of enum hbvib_mistuning.
 /// n_dofs     degrees of freedom of the blade of a sector, 0 with a direction and for
 ///            HBVIB_MISTUNING_PRELOAD and HBVIB_MISTUNING_FORCE.
-/// dofs       their numbers, n_dofs numbers, each once.
+/// dofs       their numbers, n_dofs numbers, each once, none on the right face.
 /// direction  matrix of a sector, delta times which is added to stiffness, mass or damping, instead
 ///            of a blade; not with HBVIB_MISTUNING_FREQUENCY. Or NULL.
 /// contact    contact of the sector for HBVIB_MISTUNING_PRELOAD, -1: all with a normal load; else

@@ -233,6 +233,7 @@ impl Condensed {
             contact_classes: ContactClasses::new(model)?,
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
+            wheel: model.structure().whole_wheel(),
             refinement: 1,
         })
     }
@@ -341,6 +342,7 @@ impl Condensed {
             contact_classes,
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
+            wheel: model.structure().whole_wheel(),
             refinement: options.refinement,
         };
         Ok((condensed, assembled))

@@ -99,6 +99,8 @@ pub struct Condensed {
     pub(super) contact_classes: ContactClasses,
     pub(super) sectors: usize,
     pub(super) in_step: usize,
+    /// Sectors and engine order, where the structure is a whole wheel.
+    pub(super) wheel: Option<(usize, i64)>,
     /// Factor of the samples of laws without exact events.
     pub(super) refinement: usize,
 }
@@ -276,6 +278,12 @@ impl Condensed {
     #[must_use]
     pub fn sectors(&self) -> usize {
         self.sectors
+    }
+
+    /// Number of sectors and engine order of the forces, where the structure is a whole wheel.
+    #[must_use]
+    pub fn wheel(&self) -> Option<(usize, i64)> {
+        self.wheel
     }
 
     /// Harmonics in which all sectors move alike are the multiples of this number.

@@ -33,8 +33,8 @@ fn exchanged_motions_are_those_of_the_structure() {
         let own: Vec<usize> = (0..2).filter(|&c| exchanged.is_exchanged(c)).collect();
         let [own] = own[..] else { panic!("{own:?}") };
         assert!(!plain.has_exchanges() && exchanged.is_exchanged(own));
-        of_plain.tabulate(&plain, 0.7, &interrupt).unwrap();
-        of_exchanged.tabulate(&exchanged, 0.7, &interrupt).unwrap();
+        of_plain.tabulate(&plain, (0.7, true), &interrupt).unwrap();
+        of_exchanged.tabulate(&exchanged, (0.7, true), &interrupt).unwrap();
         let set = exchanged.set();
         assert!(set.has_mean());
         let (m, unit) = (set.packed_len(), plain.length() / exchanged.length());
@@ -86,7 +86,7 @@ fn slopes_of_exchanged_tables_are_differences() {
     let condensed = Condensed::new(&model, &options, (0.6, 0.9), &interrupt).unwrap();
     let at = |omega: f64| {
         let mut tables = FrequencyCache::new(&condensed, 0, (0.6, 0.9), &interrupt).unwrap();
-        tables.tabulate(&condensed, omega, &interrupt).unwrap();
+        tables.tabulate(&condensed, (omega, true), &interrupt).unwrap();
         tables
     };
     let step = 1e-5;

@@ -5,7 +5,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{Variable, add_slope_product, fill_slope, multiply};
-use crate::condense::flexibility::{CONTEXT, Workspace, made, read};
+use crate::condense::flexibility::{CONTEXT, Table, Workspace, made, read};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::multiply_adjoint;
@@ -97,6 +97,44 @@ impl Workspace {
             *last += 2.0 * omega * product(&self.load, unbalance);
         }
         Ok(())
+    }
+
+    /// The column of the excitation of H and ∂H/∂ω of the i-th carried harmonic at `omega`; the others of `table` are then zero.
+    ///
+    /// With the motion x = Z⁻¹F it is R x and R ∂x/∂ω, ∂x/∂ω = Z⁻¹(∂F/∂ω − Z′ x).
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn tabulate_excited(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (n, block) = (condensed.ndof(), &condensed.blocks()[i]);
+        if self.motion.is_empty() {
+            self.motion = try_vec(2 * n, Complex64::ZERO, CONTEXT)?;
+        }
+        let mut motion = core::mem::take(&mut self.motion);
+        let (x, dx) = motion.split_at_mut(n);
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        block.force_at(omega, &mut self.load);
+        x.copy_from_slice(&self.load);
+        dynamic.solve(condensed, i, omega, x, false, interrupt)?;
+        if dynamic.should_refine(condensed, i, x) {
+            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
+        }
+        let found = self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt);
+        let first = table.value.len() - (condensed.coordinates() + 1);
+        let rows = || block.rows.iter().chain([&self.responses[i]]);
+        for (values, motion) in [(&mut table.value, &*x), (&mut table.slope, &*dx)] {
+            values[..first].fill(Complex64::ZERO);
+            read(rows(), motion, &mut values[first..]);
+        }
+        self.motion = motion;
+        found
     }
 
     /// The change R ∂x/∂ω of the motion x under the excitation and contact forces that do not change, `contact_force` being that of

@@ -27,6 +27,11 @@ const ALL_SLOPES_UP_TO: usize = 64;
 /// The same for sums over modes, whose slopes along one motion take products with vectors alone.
 const ALL_MODAL_SLOPES_UP_TO: usize = 8;
 
+/// Coordinates from which a table by factorisation is made of its last column alone where no contact acts on the motion: kind
+/// tuned. A wheel of 24 contacts, all of which stick over most of its range, takes a twentieth of the time there; with fewer
+/// contacts the other columns cost less than the factors.
+const EXCITED_ALONE_FROM: usize = 8;
+
 /// Deviation of a sum from a refined solution over the error of a factorisation.
 const BEYOND_FACTORS: f64 = 10.0;
 
@@ -53,8 +58,8 @@ pub struct FrequencyCache {
     /// Per harmonic, whether its table has the slopes of the response degree of freedom only, and whether it is from modes.
     lacks_slopes: Vec<bool>,
     is_modal: Vec<bool>,
-    /// Frequency of the current tables, and how they were made.
-    tabulated: Option<(f64, Way)>,
+    /// Frequency of the current tables, how they were made, and whether with the columns of the contacts.
+    tabulated: Option<(f64, Way, bool)>,
     way: Way,
 }
 
@@ -196,7 +201,7 @@ impl FrequencyCache {
         change: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let Some((omega, _)) = self.tabulated.filter(|_| self.lacks_slopes[i]) else {
+        let Some((omega, ..)) = self.tabulated.filter(|_| self.lacks_slopes[i]) else {
             return Ok(());
         };
         if let Some(Some(modal)) = self.modal.get(i).filter(|_| self.is_modal[i]) {
@@ -210,18 +215,32 @@ impl FrequencyCache {
     /// Their frequency; `None` before the first ones.
     #[must_use]
     pub fn frequency(&self) -> Option<f64> {
-        self.tabulated.map(|(omega, _)| omega)
+        self.tabulated.map(|(omega, ..)| omega)
     }
 
-    /// Makes the tables at `omega`, unless they are current.
+    /// Makes the tables at `omega`, unless they are current; without `contacts`, where no contact acts on the motion, the columns of
+    /// these may stay zero.
     ///
     /// # Errors
     /// Those of [`Workspace::evaluate`].
-    pub fn tabulate(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
-        if self.tabulated == Some((omega, self.way)) {
+    pub fn tabulate(
+        &mut self,
+        condensed: &Condensed,
+        (omega, contacts): (f64, bool),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let alone = !contacts
+            && self.way == Way::Factorised
+            && condensed.coordinates() >= EXCITED_ALONE_FROM
+            && !condensed.has_exchanges();
+        let is_current = |whole| self.tabulated == Some((omega, self.way, whole));
+        if is_current(true) || (alone && is_current(false)) {
             return Ok(());
         }
         self.tabulated = None;
+        if alone {
+            return self.tabulate_excited(condensed, omega, interrupt);
+        }
         if self.way == Way::Quick
             && let Some(lanes) = &self.lanes
             && lanes.evaluate(omega, &mut self.current)
@@ -231,7 +250,7 @@ impl FrequencyCache {
                     condensed.exchange(i, table);
                 }
             }
-            self.tabulated = Some((omega, self.way));
+            self.tabulated = Some((omega, self.way, true));
             return Ok(());
         }
         let workspace = &mut self.workspace;
@@ -273,7 +292,22 @@ impl FrequencyCache {
             condensed.exchange(i, table);
             self.constant[i] = block.number == 0 && block.tied.is_none();
         }
-        self.tabulated = Some((omega, self.way));
+        self.tabulated = Some((omega, self.way, true));
+        Ok(())
+    }
+
+    /// The tables by factorisation with the column of the excitation alone.
+    fn tabulate_excited(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
+        for (i, table) in self.current.iter_mut().enumerate() {
+            if self.constant[i] {
+                continue;
+            }
+            interrupt.check()?;
+            self.workspace
+                .tabulate_excited(condensed, (i, omega), table, interrupt)?;
+            (self.lacks_slopes[i], self.is_modal[i]) = (false, false);
+        }
+        self.tabulated = Some((omega, self.way, false));
         Ok(())
     }
 }

@@ -18,6 +18,9 @@ const OF_EXTENDED: f64 = 1e-2;
 /// Largest residual of a step over that of its start.
 const EXTENDED_SYSTEM_COARSEST: f64 = 0.1;
 
+/// Unknowns of a whole wheel from which its waves are factored instead of a block: with fewer the block is the cheaper one.
+const WAVES_FROM: usize = 480;
+
 /// Unknowns up to which factoring the whole matrix is faster than iterating with factors of the compliant harmonics.
 const EXTENDED_SYSTEM_DENSE_UP_TO: usize = 24;
 
@@ -39,8 +42,9 @@ pub(super) struct ExtendedSystem<P> {
     parameter: f64,
     pub at: Residual,
     system: Box<dyn LinearSystem>,
-    /// Harmonics that the linear system factors.
+    /// Harmonics that the linear system factors, or the sectors of a wheel whose waves it factors.
     factored: Factored,
+    sectors: Option<usize>,
     /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
     pub stalled: bool,
     /// Whether the equations are those of exchanged motions, see [`crate::condense::exchange`].
@@ -83,6 +87,7 @@ impl<P: Problem> ExtendedSystem<P> {
             at: Residual::new(n)?,
             system,
             factored,
+            sectors: None,
             stalled: false,
             is_monotone: false,
             goal: 0.0,
@@ -109,7 +114,11 @@ impl<P: Problem> ExtendedSystem<P> {
     /// suffice.
     pub fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
         let (packed, pairs) = self.factored_numbers();
-        if !self.work.spend(self.sizes.factors(packed, pairs)) {
+        let operations = match self.sectors {
+            Some(sectors) => self.sizes.factors_of_waves(sectors),
+            None => self.sizes.factors(packed, pairs),
+        };
+        if !self.work.spend(operations) {
             return Ok(false);
         }
         let border = Border {
@@ -152,8 +161,7 @@ impl<P: Problem> ExtendedSystem<P> {
             (self.goal / self.residual()).clamp(EXTENDED_SYSTEM_TOLERANCE, EXTENDED_SYSTEM_COARSEST)
         };
         let n = step.len();
-        let (packed, pairs) = self.factored_numbers();
-        let each = self.sizes.product(packed, pairs);
+        let each = self.of_product();
         let most = (self.work.left() / each) as usize;
         self.system.limit_products(most.min(MOST_PRODUCTS));
         for (b, r) in self.b.iter_mut().zip(&self.at.values) {
@@ -171,8 +179,7 @@ impl<P: Problem> ExtendedSystem<P> {
     /// J⁻¹b with the matrix factored last; `false` where the iteration did not converge with the work that is left.
     pub fn solve_for(&mut self, b: &[f64], x: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
         let n = x.len();
-        let (packed, pairs) = self.factored_numbers();
-        let each = self.sizes.product(packed, pairs);
+        let each = self.of_product();
         self.system
             .limit_products(((self.work.left() / each) as usize).min(MOST_PRODUCTS));
         self.b[..n].copy_from_slice(b);
@@ -186,7 +193,16 @@ impl<P: Problem> ExtendedSystem<P> {
 
     /// Whether its solutions take many products, because the block does not hold all compliant harmonics.
     pub fn iterates_long(&self) -> bool {
-        self.factored.each > self.factored.block
+        self.sectors.is_none() && self.factored.each > self.factored.block
+    }
+
+    /// Operations of a product.
+    fn of_product(&self) -> f64 {
+        let (packed, pairs) = self.factored_numbers();
+        match self.sectors {
+            Some(sectors) => self.sizes.product_of_waves(sectors),
+            None => self.sizes.product(packed, pairs),
+        }
     }
 
     /// Bytes of the system.
@@ -211,8 +227,10 @@ impl<P: PackedHarmonics> ExtendedSystem<P> {
     /// A problem of these sizes at a parameter value, with the work that it may take.
     pub fn iterative(problem: P, parameter: f64, factored: Factored, (sizes, work): (Sizes, Work)) -> Result<Self> {
         let factored = factored_of(&problem, factored);
-        let system = krylov(&problem, factored)?;
-        Self::new(problem, parameter, (Box::new(system), factored), (sizes, work))
+        let (system, sectors) = krylov(&problem, factored)?;
+        let mut made = Self::new(problem, parameter, (Box::new(system), factored), (sizes, work))?;
+        made.sectors = sectors;
+        Ok(made)
     }
 
     /// Selects another parameter value, the harmonics that are factored, and the work for this point.
@@ -221,7 +239,8 @@ impl<P: PackedHarmonics> ExtendedSystem<P> {
         self.work = work;
         let factored = factored_of(&self.problem, factored);
         if factored != self.factored {
-            self.system = Box::new(krylov(&self.problem, factored)?);
+            let (system, sectors) = krylov(&self.problem, factored)?;
+            (self.system, self.sectors) = (Box::new(system), sectors);
             self.factored = factored;
         }
         Ok(())
@@ -241,16 +260,22 @@ fn factored_of(problem: &impl PackedHarmonics, factored: Factored) -> Factored {
     }
 }
 
-fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<KrylovSystem> {
+/// The system, with the sectors of a wheel whose waves it factors, as long as no block of all harmonics is asked for.
+fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<(KrylovSystem, Option<usize>)> {
     let set = problem.harmonics();
     let part = packed_up_to(set, factored.block);
+    let group = set.packed_len();
+    if let Some(ring) = problem.ring().filter(|_| part < group && problem.size() >= WAVES_FROM) {
+        let system = KrylovSystem::of_ring(problem.size(), (group, ring), MOST_PRODUCTS)?;
+        return Ok((system, Some(ring.sectors)));
+    }
     let lengths = Lengths {
-        group: set.packed_len(),
+        group,
         part,
         middle: packed_up_to(set, factored.each).max(part),
         behind: problem.behind(),
     };
-    KrylovSystem::new(problem.size(), lengths, MOST_PRODUCTS)
+    Ok((KrylovSystem::new(problem.size(), lengths, MOST_PRODUCTS)?, None))
 }
 
 #[cfg(test)]

@@ -156,6 +156,19 @@ impl Sizes {
         fill + OF_FACTORS * 2.0 / 3.0 * order.powi(3) + 8.0 / 3.0 * pairs * self.coordinates.powi(3)
     }
 
+    /// Operations of the factors of the waves of a wheel: half as many complex matrices of the order of a sector as it has sectors.
+    pub fn factors_of_waves(&self, sectors: usize) -> f64 {
+        let (sectors, order) = (sectors as f64, self.unknowns() / sectors as f64);
+        let fill = 8.0 * self.blocks * self.packed * self.packed + 8.0 * sectors * order * order;
+        fill + OF_FACTORS * 0.5 * sectors * 8.0 / 3.0 * order.powi(3)
+    }
+
+    /// Operations of one product of an iteration with such factors.
+    pub fn product_of_waves(&self, sectors: usize) -> f64 {
+        let (sectors, order) = (sectors as f64, self.unknowns() / sectors as f64);
+        self.product(0.0, 0.0) + 0.5 * sectors * 8.0 * order * order + 8.0 * sectors * self.unknowns()
+    }
+
     /// Operations of one product of an iteration with such a preconditioner.
     pub fn product(&self, packed: f64, pairs: f64) -> f64 {
         let order = self.coordinates * packed;

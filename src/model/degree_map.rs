@@ -2,7 +2,8 @@
 //!
 //! A fixed degree of freedom does not move; one on the right face of a sector is the turned image of the left face of
 //! the next sector. With the independent motion q_s of sector s, all degrees of freedom are u_s = T₀ q_s + T₁ q_{s+1};
-//! a row of T₀ or T₁ is the image of a degree of freedom.
+//! a row of T₀ or T₁ is the image of a degree of freedom. In a whole wheel both are rows of one matrix: the images of the right
+//! face of a sector are the left face of the next one, in the frame of the sector.
 
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::model::sector_faces::{Faces, Place};
@@ -32,6 +33,8 @@ struct Images {
     origin: Vec<usize>,
     fixed: Vec<bool>,
     faces: Option<Faces>,
+    /// In a whole wheel the degrees of freedom of each of its sectors, whose faces these are.
+    wheel: Option<usize>,
 }
 
 impl DegreeMap {
@@ -56,11 +59,36 @@ impl DegreeMap {
     /// # Errors
     /// `Argument` for a pair that is fixed on one side only, and where all are fixed; `OutOfMemory`.
     pub(super) fn new(fixed: Vec<bool>, faces: Option<Faces>) -> Result<Self> {
+        Self::with(fixed, faces, None)
+    }
+
+    /// The map of all sectors of a wheel, one after another, each with so many degrees of freedom and these faces; others may stand
+    /// behind them.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn of_wheel(fixed: Vec<bool>, faces: Faces, of_sector: usize) -> Result<Self> {
+        Self::with(fixed, Some(faces), Some(of_sector))
+    }
+
+    fn with(fixed: Vec<bool>, faces: Option<Faces>, wheel: Option<usize>) -> Result<Self> {
         let given = fixed.len();
+        let n = wheel.unwrap_or(given);
         let mut place = try_vec(given, Place::Interior, CONTEXT)?;
         if let Some(faces) = &faces {
-            faces.check_fixed(&fixed)?;
-            faces.places(&mut place);
+            match wheel {
+                None => faces.check_fixed(&fixed)?,
+                Some(n) => check_wheel(faces, &fixed, n)?,
+            }
+            faces.places(&mut place[..n]);
+        }
+        // The last sector is followed by the first one.
+        let sectors = faces
+            .as_ref()
+            .filter(|_| wheel.is_some())
+            .map_or(1, |faces| faces.sectors);
+        for s in 1..sectors {
+            place.copy_within(..n, s * n);
         }
         let mut number = try_vec(given, usize::MAX, CONTEXT)?;
         let mut origin = Vec::new();
@@ -80,8 +108,14 @@ impl DegreeMap {
             if number[dof] != usize::MAX {
                 try_push(&mut terms, (number[dof], 1.0), CONTEXT)?;
             } else if let (Place::Right { row, component }, Some(faces), false) = (place, &faces, fixed[dof]) {
-                next[dof] = true;
+                next[dof] = wheel.is_none();
+                let first = if wheel.is_some() {
+                    (dof / n + 1) % sectors * n
+                } else {
+                    0
+                };
                 for (left, coefficient) in faces.image(*row, *component) {
+                    let left = first + left;
                     if number[left] != usize::MAX {
                         try_push(&mut terms, (number[left], coefficient), CONTEXT)?;
                     }
@@ -98,6 +132,7 @@ impl DegreeMap {
                 origin,
                 fixed,
                 faces,
+                wheel,
             })),
         })
     }
@@ -115,14 +150,17 @@ impl DegreeMap {
     /// # Errors
     /// `Index`; `Argument` for a pair of the faces that is fixed on one side only, and where all are fixed.
     pub(super) fn fixing(&self, dofs: &[usize]) -> Result<Self> {
-        let (fixed, faces) = match self.images.as_deref() {
-            None => (try_vec(self.given, false, CONTEXT)?, None),
-            Some(images) => (
-                try_copy(&images.fixed, CONTEXT)?,
-                images.faces.as_ref().map(Faces::try_clone).transpose()?,
-            ),
+        let (fixed, faces, wheel) = self.parts()?;
+        Self::with(marked(fixed, dofs)?, faces, wheel)
+    }
+
+    /// Copies of the marks of fixed degrees of freedom and of the faces, and what they are of.
+    fn parts(&self) -> Result<(Vec<bool>, Option<Faces>, Option<usize>)> {
+        let Some(images) = self.images.as_deref() else {
+            return Ok((try_vec(self.given, false, CONTEXT)?, None, None));
         };
-        Self::new(marked(fixed, dofs)?, faces)
+        let faces = images.faces.as_ref().map(Faces::try_clone).transpose()?;
+        Ok((try_copy(&images.fixed, CONTEXT)?, faces, images.wheel))
     }
 
     /// The same map with `count` independent degrees of freedom behind all others.
@@ -135,7 +173,8 @@ impl DegreeMap {
         };
         let mut fixed = try_vec(self.given + count, false, CONTEXT)?;
         fixed[..self.given].copy_from_slice(&images.fixed);
-        Self::new(fixed, images.faces.as_ref().map(Faces::try_clone).transpose()?)
+        let faces = images.faces.as_ref().map(Faces::try_clone).transpose()?;
+        Self::with(fixed, faces, images.wheel)
     }
 
     /// The map onto `order` other independent degrees of freedom, the first of which are the given old ones; the images of
@@ -161,13 +200,7 @@ impl DegreeMap {
         for (origin, &number) in origin.iter_mut().zip(held) {
             *origin = self.origin(number);
         }
-        let (fixed, faces) = match self.images.as_deref() {
-            None => (try_vec(self.given, false, CONTEXT)?, None),
-            Some(images) => (
-                try_copy(&images.fixed, CONTEXT)?,
-                images.faces.as_ref().map(Faces::try_clone).transpose()?,
-            ),
-        };
+        let (fixed, faces, wheel) = self.parts()?;
         Ok(Self {
             given: self.given,
             images: Some(Arc::new(Images {
@@ -177,6 +210,7 @@ impl DegreeMap {
                 origin,
                 fixed,
                 faces,
+                wheel,
             })),
         })
     }
@@ -206,7 +240,14 @@ impl DegreeMap {
 
     /// The faces of a sector.
     pub(super) fn faces(&self) -> Option<&Faces> {
-        self.images.as_ref()?.faces.as_ref()
+        let images = self.images.as_ref()?;
+        images.faces.as_ref().filter(|_| images.wheel.is_none())
+    }
+
+    /// The faces of the sectors of a whole wheel, and the degrees of freedom of one of them.
+    pub(super) fn faces_of_wheel(&self) -> Option<(&Faces, usize)> {
+        let images = self.images.as_ref()?;
+        Some((images.faces.as_ref()?, images.wheel?))
     }
 
     /// Image of a degree of freedom: the sector of the independent ones that move it, counted from its own, and their
@@ -236,7 +277,10 @@ impl DegreeMap {
         match self.images.as_deref() {
             None => Some(dof),
             Some(images) if images.next[dof] || images.fixed[dof] => None,
-            Some(images) => images.terms.get(images.start[dof]).map(|&(number, _)| number),
+            Some(images) => {
+                let first = images.terms.get(images.start[dof]).map(|&(number, _)| number);
+                first.filter(|&number| images.origin[number] == dof)
+            }
         }
     }
 
@@ -282,6 +326,21 @@ impl DegreeMap {
             *x = all[self.origin(j)];
         }
     }
+}
+
+/// Refuses pairs of a wheel that can move on one side only: of the right face of each sector and the left one of the next.
+fn check_wheel(faces: &Faces, fixed: &[bool], n: usize) -> Result<()> {
+    for s in 0..faces.sectors {
+        let mut sides = try_copy(&fixed[s * n..(s + 1) * n], CONTEXT)?;
+        let next = (s + 1) % faces.sectors * n;
+        for left in faces.left.iter().flatten() {
+            sides[*left] = fixed[next + left];
+        }
+        faces
+            .check_fixed(&sides)
+            .map_err(|e| e.at(format_args!("sectors {s} and {}", (s + 1) % faces.sectors)))?;
+    }
+    Ok(())
 }
 
 /// Marks degrees of freedom as fixed.

@@ -13,7 +13,7 @@ use crate::linalg::kept_matrix::KeptMatrix;
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
-use crate::model::sector_matrices::of_independent;
+use crate::model::sector_matrices::{Entries, of_both_sectors};
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wheel::symmetrised;
 use num_complex::Complex64;
@@ -25,8 +25,6 @@ const LARGEST_ATTACHMENT: usize = 4_000_000;
 
 /// Difference of mirrored entries of a stiffness, relative to the largest, that is rounding.
 const MIRROR_ROUNDING: f64 = 1e-10;
-
-pub(super) type Entries = Vec<(usize, usize, Complex64)>;
 
 /// A property of the blades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,14 +186,7 @@ impl Structure {
         if kind == MatrixKind::Mass && direction.part == Part::General {
             return fail!(Argument, "a mass is symmetric, but its direction was passed as GENERAL");
         }
-        let a = of_independent(self.degrees(), direction.copy_in("direction", self.degrees().given())?)?;
-        let mut entries = Vec::new();
-        for j in 0..a.cols {
-            for (i, v) in a.column(j) {
-                try_push(&mut entries, (i, j, v), CONTEXT)?;
-            }
-        }
-        Ok(entries)
+        of_both_sectors(self.degrees(), &direction.copy_in("direction", self.degrees().given())?)
     }
 
     /// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
@@ -207,6 +198,12 @@ impl Structure {
         for (k, &dof) in dofs.iter().enumerate() {
             if dof >= self.degrees().given() {
                 return fail!(Index, "dofs[{k}] = {dof}, needs 0 .. {}", self.degrees().given() - 1);
+            }
+            if self.degrees().image(dof).0 != 0 {
+                return fail!(
+                    Argument,
+                    "dofs[{k}] = {dof} is on the right face, which the next sector moves; give that of the left face there"
+                );
             }
             let Some(number) = self.degrees().number(dof) else {
                 continue;

@@ -3,7 +3,7 @@
 //!
 //! Little-endian: mark (8 bytes), version (4), 0 (4), length L of the model (8), the model (L), checksum of all
 //! bytes before it (8). Version 2 adds the aerodynamic influence, version 3 the places of sliders, version 4 rigid bodies and
-//! centrifugal forces; a model without is written as an earlier version.
+//! centrifugal forces, version 5 whole wheels; a model without is written as an earlier version.
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
@@ -13,14 +13,14 @@ use crate::model::mechanical_model::Model;
 use crate::model::reduced_wave::KeptWaves;
 use crate::model::speed::{Speed, SpeedLoad};
 use crate::model::spring::Spring;
-use crate::model::structure::Structure;
+use crate::model::structure::{MAX_SECTORS, Structure};
 use num_complex::Complex64;
 
 /// First bytes of a saved model. A transfer as text changes some of them.
 const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// Bytes before the model.
 const HEAD: usize = 24;
@@ -59,7 +59,8 @@ impl Model {
         out.bytes(&MARK);
         out.u32(
             match (self.has_bodies(), self.has_places(), self.structure.has_aero()) {
-                (true, _, _) => VERSION,
+                _ if self.structure.wheel.is_some() => VERSION,
+                (true, _, _) => 4,
                 (false, true, _) => 3,
                 (false, false, true) => 2,
                 (false, false, false) => 1,
@@ -125,7 +126,8 @@ impl Model {
                 out.f64(value);
             }
         }
-        let has_places = self.has_places() || self.has_bodies();
+        let has_bodies = self.has_bodies() || self.structure.wheel.is_some();
+        let has_places = self.has_places() || has_bodies;
         if has_places {
             out.bool(self.structure.has_aero());
         }
@@ -139,13 +141,17 @@ impl Model {
                 }
             }
         }
-        if self.has_bodies() {
+        if has_bodies {
             for contact in &self.contacts {
                 contact.rigid_to(out);
             }
             for force in self.excitation.forces() {
                 out.f64(force.per_speed2);
             }
+        }
+        if let Some((sectors, engine_order)) = self.structure.wheel {
+            out.count(sectors);
+            out.i64(engine_order);
         }
         Ok(())
     }
@@ -233,6 +239,13 @@ impl Model {
                 checked.map_err(|e| e.at(format_args!("contact {i}")))?;
             }
             model.excitation.load_centrifugal(|| input.finite())?;
+        }
+        if version >= 5 {
+            let wheel = (input.count()?, input.i64()?);
+            if model.structure.sectors() > 1 || !(2..=MAX_SECTORS).contains(&wheel.0) {
+                return Err(input.damaged("a wheel has a number of sectors that it cannot have"));
+            }
+            model.structure.wheel = Some(wheel);
         }
         Ok(model)
     }

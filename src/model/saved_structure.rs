@@ -89,11 +89,17 @@ pub(super) fn save_degrees(degrees: &DegreeMap, out: &mut ByteWriter<'_>) {
     for &fixed in fixed {
         out.bool(fixed);
     }
-    let Some(faces) = degrees.faces() else {
+    let of_wheel = degrees.faces_of_wheel();
+    let Some(faces) = degrees.faces().or(of_wheel.map(|(faces, _)| faces)) else {
         out.bool(false);
         return;
     };
     out.bool(true);
+    // A plain structure with faces is a whole wheel.
+    if let Some((faces, of_sector)) = of_wheel {
+        out.count(faces.sectors);
+        out.count(of_sector);
+    }
     out.count(faces.components);
     out.bool(faces.frame == SectorFrame::Cylindrical);
     out.bool(faces.forward);
@@ -118,15 +124,22 @@ fn load_degrees(structure: &Structure, input: &mut ByteReader<'_>) -> Result<Deg
     for fixed in &mut fixed {
         *fixed = input.bool()?;
     }
-    let faces = if input.bool()? {
-        Some(load_faces(structure, input)?)
-    } else {
-        None
-    };
-    DegreeMap::new(fixed, faces)
+    if !input.bool()? {
+        return DegreeMap::new(fixed, None);
+    }
+    if structure.sectors > 1 {
+        let faces = load_faces(structure, (ndof, structure.sectors), input)?;
+        return DegreeMap::new(fixed, Some(faces));
+    }
+    let (sectors, of_sector) = (input.count()?, input.count()?);
+    if sectors < 2 || of_sector.checked_mul(sectors).is_none_or(|all| all > ndof) {
+        return Err(input.damaged("the sectors of a wheel are more than its degrees of freedom"));
+    }
+    let faces = load_faces(structure, (of_sector, sectors), input)?;
+    DegreeMap::of_wheel(fixed, faces, of_sector)
 }
 
-fn load_faces(structure: &Structure, input: &mut ByteReader<'_>) -> Result<Faces> {
+fn load_faces(structure: &Structure, (ndof, sectors): (usize, usize), input: &mut ByteReader<'_>) -> Result<Faces> {
     let components = input.count()?;
     let frame = if input.bool()? {
         SectorFrame::Cylindrical
@@ -147,8 +160,8 @@ fn load_faces(structure: &Structure, input: &mut ByteReader<'_>) -> Result<Faces
         }
     }
     let description = SectorDescription {
-        ndof: structure.degrees.given(),
-        sectors: structure.sectors,
+        ndof,
+        sectors,
         engine_order: structure.engine_order,
         components,
         left: &sides[0],

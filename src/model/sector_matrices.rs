@@ -9,7 +9,8 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the matrices of the sector";
 
-type Entries = Vec<(usize, usize, Complex64)>;
+/// Row, column and value.
+pub(super) type Entries = Vec<(usize, usize, Complex64)>;
 
 /// The blocks of a matrix of the sector. Its own block has the symmetry of the matrix exactly.
 ///
@@ -59,6 +60,24 @@ pub(super) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blo
         previous: kept(previous)?,
         diameters: Vec::new(),
     })
+}
+
+/// Entries of a matrix of sector 0, given for all of its degrees of freedom, over the independent ones of this sector and, behind
+/// them, of the next.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn of_both_sectors(map: &DegreeMap, a: &Csc) -> Result<Entries> {
+    let n = map.independent();
+    let mut count = 0;
+    visit(map, a, |_, _, _| count += 1);
+    let mut entries = Entries::new();
+    entries
+        .try_reserve_exact(count)
+        .map_err(|_| Error::out_of_memory(CONTEXT))?;
+    let place = |(sector, p): (i64, usize)| p + if sector == 0 { 0 } else { n };
+    visit(map, a, |row, column, v| entries.push((place(row), place(column), v)));
+    Ok(entries)
 }
 
 /// Calls `take` with (sector, number) of row and column, and the value, for all terms.

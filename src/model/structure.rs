@@ -74,6 +74,8 @@ pub struct Structure {
     pub(super) speed: Speed,
     /// Modal damping as a matrix by the residue of the nodal diameter, as matrices per diameter; empty: none.
     pub(super) modal_damping: Vec<Option<KeptMatrix>>,
+    /// Sectors and engine order, where this is a whole wheel: what its equations may be taken for, and no result depends on.
+    pub(super) wheel: Option<(usize, i64)>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],
 }
@@ -96,6 +98,7 @@ impl Structure {
             loss_of_stiffness: false,
             speed: Speed::Fixed(0.0),
             modal_damping: Vec::new(),
+            wheel: None,
             aero: Default::default(),
         })
     }
@@ -201,6 +204,12 @@ impl Structure {
             Some(blocks) => Ok(&mut blocks[which as usize]),
             None => fail!(Internal, "the matrices of the structure are shared"),
         }
+    }
+
+    /// Number of sectors and engine order of the forces, where this is a whole wheel.
+    #[must_use]
+    pub fn whole_wheel(&self) -> Option<(usize, i64)> {
+        self.wheel
     }
 
     /// Independent degrees of freedom of one sector, the order of its matrices.

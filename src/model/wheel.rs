@@ -1,7 +1,8 @@
 //! The wheel as a plain model: all of its sectors with their contacts, springs and forces.
 //!
 //! Degree of freedom i of sector s (from 0) is s·n + i, contact c of it is s·m + c, with n degrees of freedom and m contacts
-//! a sector. Forces lag with the engine order, so that the wheel without mistuning moves as the wave of the sector
+//! a sector. The right face of a sector with faces is moved by the left one of the next, and both are in the frame of their own
+//! sector. Forces lag with the engine order, so that the wheel without mistuning moves as the wave of the sector
 //! (Castanier & Pierre 2006, doi:10.2514/1.16345).
 
 use crate::contact::Contact;
@@ -39,10 +40,11 @@ impl Model {
     /// to one speed are those in harmonic e under engine order 1.
     ///
     /// # Errors
-    /// `Unsupported` for a plain model, a sector with faces, and complex aerodynamic coefficients; `Argument` when a nodal
-    /// diameter was not given; `Dimension` for a wheel that is too large; `OutOfMemory`.
+    /// `Unsupported` for a plain model, complex aerodynamic coefficients, and contacts and springs with another sector whose axes
+    /// are turned; `Argument` when a nodal diameter was not given; `Dimension` for a wheel that is too large; `OutOfMemory`.
     pub fn wheel(&self) -> Result<Self> {
         let interrupt = Interrupt::none();
+        self.check_axes()?;
         let (n, sectors) = (self.ndof(), self.structure().sectors());
         let mut wheel = Self::new(1)?;
         wheel.structure = self.structure().whole(&interrupt)?;
@@ -80,6 +82,33 @@ impl Model {
     }
 }
 
+impl Model {
+    /// Refuses relative motions with a sector whose Cartesian axes are turned: the side there would need a direction of its own.
+    fn check_axes(&self) -> Result<()> {
+        let Some(faces) = self.structure().degrees().faces() else {
+            return Ok(());
+        };
+        let contacts = self.contacts().iter().enumerate();
+        let contacts = contacts
+            .filter(|(_, contact)| contact.dof_b.iter().any(Option::is_some))
+            .map(|(i, contact)| ("contact", i, contact.sector_offset));
+        let springs = self.springs().iter().enumerate();
+        let springs = springs
+            .filter(|(_, spring)| spring.dof_b.is_some())
+            .map(|(i, spring)| ("spring", i, spring.sector_offset));
+        for (what, i, offset) in contacts.chain(springs) {
+            if faces.turn_of(offset).is_some() {
+                return fail!(
+                    Unsupported,
+                    "the wheel of a sector whose {what} {i} has sector_offset = {offset} in a Cartesian frame, whose axes are \
+                     turned there; use a cylindrical frame"
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Structure {
     /// The matrices of all sectors.
     fn whole(&self, interrupt: &Interrupt<'_>) -> Result<Self> {
@@ -88,12 +117,6 @@ impl Structure {
             return fail!(
                 Unsupported,
                 "a plain structure has no sectors to make a wheel of; use a cyclic model"
-            );
-        }
-        if self.degrees().faces().is_some() {
-            return fail!(
-                Unsupported,
-                "the wheel of a sector with faces; give its own block and its coupling to the next sector instead"
             );
         }
         let given = self.degrees().given();
@@ -111,7 +134,10 @@ impl Structure {
                     try_push(&mut all, fixed, CONTEXT)?;
                 }
             }
-            wheel.degrees = DegreeMap::new(all, None)?;
+            wheel.degrees = match self.degrees().faces() {
+                None => DegreeMap::new(all, None)?,
+                Some(faces) => DegreeMap::of_wheel(all, faces.try_clone()?, given)?,
+            };
         }
         let aero_stiffness = self.has_aero_stiffness();
         if aero_stiffness && (self.rayleigh.1 != 0.0 || self.loss_factor != 0.0) {
@@ -127,6 +153,7 @@ impl Structure {
                 wheel.blocks_mut(kind)?.own = Some(KeptMatrix::new(a)?);
             }
         }
+        wheel.wheel = Some((sectors, self.engine_order));
         wheel.rayleigh = self.rayleigh;
         wheel.loss_factor = self.loss_factor;
         wheel.loss_of_stiffness = self.loss_of_stiffness;

@@ -20,6 +20,7 @@ use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual, put};
 use crate::problem::passed_resonance;
 use crate::problem::residual_scale::Squares;
+use crate::problem::ring_blocks::RingBlocks;
 use crate::problem::single_balance::{self, SingleForce};
 use crate::problem::static_force::static_force;
 use num_complex::Complex64;
@@ -73,6 +74,8 @@ pub(super) struct ProductMemory {
     pub column: Vec<f64>,
     /// Stored contact Jacobians.
     pub kept: Vec<f64>,
+    /// Means over the sectors, where the structure is a whole wheel.
+    pub ring: Option<Box<RingBlocks>>,
 }
 
 impl<'a> HarmonicBalance<'a> {
@@ -112,6 +115,7 @@ impl<'a> HarmonicBalance<'a> {
             products: ProductMemory {
                 change: try_vec(condensed.unknowns(), 0.0, CONTEXT)?,
                 harmonic: [of_harmonic()?, of_harmonic()?],
+                ring: RingBlocks::new(condensed)?.map(Box::new),
                 ..ProductMemory::default()
             },
             gauges: None,
@@ -191,8 +195,10 @@ impl<'a> HarmonicBalance<'a> {
         };
         self.forces.set_scale(scale);
         let interrupt = self.forces.interrupt();
-        self.tables.tabulate(self.condensed, omega, interrupt)?;
         self.forces.evaluate(u, omega)?;
+        // Where all contacts stick no force of theirs is left beside κ y.
+        let acts = path.is_some() || (0..self.condensed.coordinates()).any(|c| !self.forces.is_inactive(c));
+        self.tables.tabulate(self.condensed, (omega, acts), interrupt)?;
         if self.condensed.coordinates() == 1 && path.is_none() {
             self.balance_single(u, out);
             return Ok(());
@@ -513,7 +519,8 @@ impl Problem for HarmonicBalance<'_> {
                 Ok(u.iter().all(|x| x.is_finite()))
             }
             InitialGuess::Reference => {
-                self.tables.tabulate(self.condensed, p, self.forces.interrupt())?;
+                self.tables
+                    .tabulate(self.condensed, (p, false), self.forces.interrupt())?;
                 let set = self.condensed.set();
                 let m = set.packed_len();
                 let coordinates = self.condensed.coordinates();

@@ -15,6 +15,7 @@ pub mod newton_products;
 mod parametric_problem;
 mod passed_resonance;
 mod residual_scale;
+mod ring_blocks;
 mod single_balance;
 mod slip_forces;
 pub mod static_force;

@@ -1,12 +1,13 @@
 //! Products with Newton's matrix of a forced response, and its block between the first harmonics, for linear
 //! solutions that never form the whole matrix.
 
-use crate::error::{Result, try_vec};
+use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::complex_columns;
-use crate::linalg::linear_system::MatrixFree;
+use crate::linalg::linear_system::{MatrixFree, Ring};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::{Problem, put};
+use crate::problem::ring_blocks::RingBlocks;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the products of the forced response";
@@ -83,6 +84,25 @@ impl MatrixFree for HarmonicBalance<'_> {
             self.forces
                 .add_mean_coupling((motion, i), (table, coordinates + 1), column);
         }
+    }
+
+    fn ring(&self) -> Option<Ring<'_>> {
+        self.products.ring.as_deref().map(RingBlocks::ring)
+    }
+
+    fn fill_ring(&mut self, wave: usize, matrix: &mut [Complex64]) -> Result<()> {
+        let Some(ring) = &mut self.products.ring else {
+            return fail!(Internal, "the waves of a structure that is no wheel");
+        };
+        self.forces.interrupt().check()?;
+        if wave == 0 {
+            let (tables, stride) = (self.tables.current(), self.condensed.coordinates() + 1);
+            ring.average(
+                (self.condensed, &self.forces),
+                (|i: usize| &tables[i].value[..], stride),
+            );
+        }
+        ring.fill(self.condensed, wave, matrix)
     }
 
     fn keep(&mut self) -> Result<()> {

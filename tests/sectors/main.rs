@@ -10,3 +10,4 @@ mod sector_contacts;
 mod sector_frequencies;
 mod sector_mode_rounding;
 mod sector_refusals;
+mod wheel_of_faces;

@@ -320,7 +320,6 @@ fn wheels_that_cannot_be_made_are_refused_by_name() {
 
 /// All blades of a pattern of 2 % at 208.8 Hz under 5 N, integrated in time from event to event.
 #[test]
-#[ignore = "seconds for one point: 51 harmonics of 24 contacts; for tests/deep.sh"]
 fn all_blades_of_a_mistuned_wheel_are_those_of_time_integration_within_the_tolerance() {
     let delta = [
         -0.001_873, 0.029_291, 0.018_418, 0.004_45, -0.026_29, -0.035_543, 0.0225, 0.015_718, -0.037_078, 0.011_988,

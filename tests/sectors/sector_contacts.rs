@@ -19,13 +19,13 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// The cylindrical sector and its independent degrees of freedom in the order of the test.
-struct Pair {
-    sector: BoundarySector,
-    origin: Vec<usize>,
+pub struct Pair {
+    pub sector: BoundarySector,
+    pub origin: Vec<usize>,
 }
 
 impl Pair {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let sector = BoundarySector::read(SectorFrame::Cylindrical);
         let (right, clamped) = (dofs(&sector.right), dofs(&sector.clamped));
         let origin = (0..sector.ndof()).filter(|d| !right.contains(d) && !clamped.contains(d));
@@ -35,12 +35,12 @@ impl Pair {
         }
     }
 
-    fn number(&self, dof: usize) -> usize {
+    pub fn number(&self, dof: usize) -> usize {
         self.origin.iter().position(|&d| d == dof).unwrap()
     }
 
     /// The sector from K₀ and K₁, built by T₀ and T₁.
-    fn reference(&self, engine_order: i64) -> Model {
+    pub fn reference(&self, engine_order: i64) -> Model {
         let (n, given) = (self.origin.len(), self.sector.ndof());
         let mut t = [DMatrix::<f64>::zeros(given, n), DMatrix::zeros(given, n)];
         for (j, &dof) in self.origin.iter().enumerate() {
@@ -70,7 +70,7 @@ impl Pair {
 
 const SLIP: f64 = 20.0;
 
-fn jenkins(a: usize, b: usize, sector_offset: i64) -> Contact {
+pub fn jenkins(a: usize, b: usize, sector_offset: i64) -> Contact {
     Contact {
         sector_offset,
         ..Contact::jenkins(a, Some(b), 2e7, 1.0, SLIP)
@@ -78,7 +78,7 @@ fn jenkins(a: usize, b: usize, sector_offset: i64) -> Contact {
 }
 
 /// A node on the free part of the right face, pair and component.
-const PAIR: usize = 7;
+pub const PAIR: usize = 7;
 
 #[test]
 fn contacts_inside_and_across_the_faces_give_the_response_of_the_sector_from_its_blocks() {

@@ -108,6 +108,11 @@ impl ContactForces<'_> {
         }
     }
 
+    /// The blocks ∂f/∂y of the force of a coordinate, each with the coordinate of its motion.
+    pub fn blocks_of_force(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        self.jacobians.of_force(coordinate)
+    }
+
     /// Term that is added to the diagonal of a mean in Newton's matrix.
     #[must_use]
     pub fn mean_floor(&self, coordinate: usize) -> f64 {

@@ -75,6 +75,14 @@ impl AutomaticSystem {
         }
         let operator = jacobian.matrix_free()?;
         let group = operator.group();
+        let direct_up_to = if operator.couples_all() {
+            DIRECT_IF_COUPLED
+        } else {
+            DIRECT_UP_TO
+        };
+        if operator.ring().is_some() {
+            return (operator.coupled() > direct_up_to).then_some(Lengths::of_ring(group));
+        }
         // The mean is one number, each harmonic a pair.
         let first = group % 2 + 2;
         let behind = operator.behind();
@@ -86,11 +94,6 @@ impl AutomaticSystem {
             part,
             middle: group,
             behind,
-        };
-        let direct_up_to = if operator.couples_all() {
-            DIRECT_IF_COUPLED
-        } else {
-            DIRECT_UP_TO
         };
         (part < group && operator.coupled() > direct_up_to).then_some(lengths)
     }
@@ -125,7 +128,12 @@ impl LinearSystem for AutomaticSystem {
         self.direct = self.direct.saturating_sub(1);
         self.iterates = lengths.is_some();
         if let (Some(lengths), None) = (lengths, &self.krylov) {
-            self.krylov = Some(boxed(|| KrylovSystem::new(self.n, lengths, MOST_PRODUCTS))?);
+            let operator = jacobian.matrix_free();
+            let ring = operator.as_ref().and_then(|operator| operator.ring());
+            self.krylov = Some(boxed(|| match ring {
+                Some(ring) => KrylovSystem::of_ring(self.n, (lengths.group, ring), MOST_PRODUCTS),
+                None => KrylovSystem::new(self.n, lengths, MOST_PRODUCTS),
+            })?);
         }
         self.backend()?.update(jacobian, border, interrupt)
     }
@@ -170,6 +178,11 @@ impl LinearSystem for AutomaticSystem {
         let tolerance = self.attainable(tolerance);
         self.backend()?
             .solve_by_earlier_factors(jacobian, tolerance, b, interrupt)
+    }
+
+    fn products(&self) -> usize {
+        let krylov = self.krylov.as_ref().filter(|_| self.iterates);
+        krylov.map_or(0, |krylov| krylov.products())
     }
 
     fn solve_directly(&mut self) -> bool {

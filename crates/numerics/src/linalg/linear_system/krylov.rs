@@ -2,13 +2,14 @@
 //! strongly, then by those of the mean coupling of each pair of numbers by itself, and by the identity beyond.
 //!
 //! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
-//! the whole matrix is solved directly.
+//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead.
 
-use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::error::{Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::gmres::Gmres;
 use crate::linalg::linear_system::dense::DenseSystem;
-use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree};
+use crate::linalg::linear_system::sector_waves::RingFactors;
+use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree, Ring};
 use crate::linalg::lu::Lu;
 use num_complex::Complex64;
 
@@ -23,6 +24,8 @@ pub struct KrylovSystem {
     block: DenseSystem,
     lengths: Lengths,
     pairs: Pairs,
+    /// Factors of the waves of a wheel, instead of block and pairs.
+    ring: Option<Box<RingFactors>>,
     memory: Gmres,
     most_products: usize,
     /// Products of the last solution.
@@ -54,6 +57,16 @@ pub struct Lengths {
 }
 
 impl Lengths {
+    /// Those of a wheel, which has neither block nor pairs.
+    pub(super) fn of_ring(group: usize) -> Self {
+        Self {
+            group,
+            part: 0,
+            middle: 0,
+            behind: 0,
+        }
+    }
+
     /// Positions of these pairs in a group.
     fn pairs(self) -> impl Iterator<Item = usize> {
         (self.part..self.middle.saturating_sub(1)).step_by(2)
@@ -120,6 +133,7 @@ impl KrylovSystem {
         Ok(Self {
             block: DenseSystem::new(order)?,
             pairs: Pairs::new(groups, lengths)?,
+            ring: None,
             lengths,
             memory: Gmres::default(),
             most_products,
@@ -135,6 +149,18 @@ impl KrylovSystem {
         })
     }
 
+    /// The same for the sectors of a wheel.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn of_ring(n: usize, (group, ring): (usize, Ring<'_>), most_products: usize) -> Result<Self> {
+        let factors = boxed(|| RingFactors::new(n, group, ring))?;
+        Ok(Self {
+            ring: Some(factors),
+            ..Self::new(n, Lengths::of_ring(group), most_products)?
+        })
+    }
+
     /// Numbers of the block among those of all groups, with those behind the groups; the last one, of the parameter, included.
     fn of_block(v: &[f64], lengths: Lengths) -> impl Iterator<Item = f64> {
         let (u, behind) = v.split_at(v.len() - 1 - lengths.behind);
@@ -146,11 +172,14 @@ impl KrylovSystem {
 
     /// v ← M⁻¹ v
     fn precondition(
-        (block, pairs): (&mut DenseSystem, &mut Pairs),
+        (block, pairs, ring): (&mut DenseSystem, &mut Pairs, &mut Option<Box<RingFactors>>),
         lengths: Lengths,
         reduced: &mut [f64],
         v: &mut [f64],
     ) {
+        if let Some(ring) = ring {
+            return ring.solve(v);
+        }
         for (to, from) in reduced.iter_mut().zip(Self::of_block(v, lengths)) {
             *to = from;
         }
@@ -181,14 +210,15 @@ impl KrylovSystem {
         self.products = 0;
         self.positive = true;
         let is_direct = self.is_direct();
-        let (factors, reduced) = ((&mut self.block, &mut self.pairs), &mut self.reduced);
+        let (factors, reduced) = ((&mut self.block, &mut self.pairs, &mut self.ring), &mut self.reduced);
         if !is_direct {
             let border = (&self.column[..], self.scales, &self.row[..]);
             let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
             let solved = self.memory.solve(b, tolerance, most, |v, out| {
                 interrupt.check()?;
                 preconditioned.copy_from_slice(v);
-                Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, preconditioned);
+                let factors = (&mut *factors.0, &mut *factors.1, &mut *factors.2);
+                Self::precondition(factors, lengths, reduced, preconditioned);
                 product(jacobian, border, scaled, preconditioned, out)
             })?;
             let Some(solved) = solved else {
@@ -197,7 +227,7 @@ impl KrylovSystem {
             };
             (self.products, self.positive) = (solved.products, solved.positive);
         }
-        Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, b);
+        Self::precondition(factors, lengths, reduced, b);
         Ok(true)
     }
 
@@ -242,6 +272,10 @@ impl LinearSystem for KrylovSystem {
         self.row.copy_from_slice(border.row);
         self.scales = border.scales;
         interrupt.check()?;
+        if let Some(ring) = &mut self.ring {
+            ring.set_border(border);
+            return operator(jacobian)?.keep();
+        }
         let is_direct = self.is_direct();
         let (matrix, active) = self.block.memory();
         if is_direct {
@@ -262,6 +296,15 @@ impl LinearSystem for KrylovSystem {
     }
 
     fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
+        if let Some(ring) = &mut self.ring {
+            ring.factor(operator(jacobian)?, interrupt)?;
+            ring.set_border(Border {
+                column: &self.column,
+                scales: self.scales,
+                row: &self.row,
+            });
+            return Ok(());
+        }
         if !self.is_direct() {
             self.pairs.factor(self.lengths, operator(jacobian)?, interrupt)?;
         }
@@ -314,6 +357,10 @@ impl LinearSystem for KrylovSystem {
 
     /// det K = det M · det K M⁻¹, and the determinant of a complex matrix taken as a real one is positive.
     fn is_positive(&self) -> bool {
-        self.block.is_positive() == self.positive
+        let factors = match &self.ring {
+            Some(ring) => ring.is_positive(),
+            None => self.block.is_positive(),
+        };
+        factors == self.positive
     }
 }

@@ -7,14 +7,15 @@
 //! where J = ∂R/∂u belongs to a problem, r = ∂R/∂p is its derivative by the parameter, s_u and s_p are the units of
 //! unknowns and parameter, and t is the row of one further condition. One file a backend: [`dense`] factors the whole
 //! matrix, [`krylov`] iterates with products, and factors the block of the strongly coupled unknowns and the mean
-//! coupling of those beyond it.
+//! coupling of those beyond it, or, of a wheel, the waves that equal sectors would have.
 
 pub mod automatic;
 mod continuum;
 pub mod dense;
 pub mod krylov;
+mod sector_waves;
 
-use crate::error::Result;
+use crate::error::{Result, fail};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 
@@ -79,6 +80,20 @@ pub trait MatrixFree {
     /// `x[at] + i·x[at + 1]`: the part of its 2 × 2 blocks that commutes with i.
     fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]);
 
+    /// The sectors of a wheel, where the groups of one stand after those of another; with unknowns behind the groups there are none.
+    fn ring(&self) -> Option<Ring<'_>> {
+        None
+    }
+
+    /// Fills the block of the wave p of [`Self::ring`], column-major and of the order of a sector: that of the mean of J over the
+    /// sectors, each in its own time, at the point evaluated last. Wave 0 comes first.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    fn fill_ring(&mut self, _wave: usize, _matrix: &mut [Complex64]) -> Result<()> {
+        fail!(Internal, "a matrix that has no sectors")
+    }
+
     /// Keeps J as it is at the point evaluated last, for [`Self::multiply`]; the problem may then be evaluated
     /// elsewhere.
     ///
@@ -91,6 +106,15 @@ pub trait MatrixFree {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()>;
+}
+
+/// Sectors whose groups of unknowns stand one after another.
+#[derive(Clone, Copy, Debug)]
+pub struct Ring<'a> {
+    /// Number N of sectors.
+    pub sectors: usize,
+    /// Per pair of numbers of a group its factor λ from a sector to the next.
+    pub lags: &'a [Complex64],
 }
 
 /// The rest of the bordered matrix K.
