@@ -1,0 +1,227 @@
+//! Modes of the stuck structure of one nodal diameter as contacts and forces see them: the relative motions of the contacts
+//! in each mode, and the static flexibility of all contacts together.
+//!
+//! A structure with sticking contacts under forces p of the contacts has the relative motions
+//! r = Σ ψ ψᴴ p / (ωₖ² − ω²) over all modes, with ψ = R φ. Those above the kept ones answer like springs:
+//! r ≈ Σ_kept + (R K⁻¹ Rᴴ − Σ_kept ψ ψᴴ / ωₖ²) p, as in mode acceleration; what that leaves out falls with
+//! (ω / ω_cut)² (Géradin & Rixen, Mechanical Vibrations, 2015, §2.9).
+
+use crate::contact::Contact;
+use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::definite::resists_all_motion;
+use crate::linalg::shifted_inverse::Inverse;
+use crate::linalg::sparse::Csc;
+use crate::linalg::{inner, remove};
+use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the modes of the contacts";
+
+/// Norm of a shape without what shapes before it have in common with it, below which it is no new one.
+const CONTACT_MODES_DEPENDENT: f64 = 1e-6;
+
+/// A force of one harmonic.
+#[derive(Clone)]
+pub(crate) struct SeenForce {
+    pub harmonic: usize,
+    /// Whether its wave travels against the sense of the modes: then all numbers are those of the conjugate force.
+    pub backward: bool,
+    /// φᴴ F of each mode.
+    pub modal: Vec<Complex64>,
+    /// R K⁻¹ F of each contact.
+    pub at_rest: Vec<Complex64>,
+}
+
+/// Modes of one nodal diameter.
+pub(crate) struct ContactModes {
+    /// Natural angular frequencies, ascending.
+    pub omega: Vec<f64>,
+    /// ψ = R φ, contact by mode.
+    pub rows: DMatrix<Complex64>,
+    /// R K⁻¹ Rᴴ of the stuck structure, contact by contact.
+    pub flexibility: DMatrix<Complex64>,
+    /// φᴴ C φ.
+    pub damping: DMatrix<Complex64>,
+    pub forces: Vec<SeenForce>,
+    /// Relative motions over the degrees of freedom, contact by contact.
+    motions: Vec<Vec<(usize, Complex64)>>,
+    /// M φ, column after column, mass-normalised.
+    images: Vec<Complex64>,
+    n: usize,
+}
+
+impl ContactModes {
+    /// The `modes` lowest modes of a nodal diameter 0 ..= N/2, for the given contacts of one direction each, and for the
+    /// forces (harmonic, whether its wave travels backward, amplitudes).
+    ///
+    /// # Errors
+    /// `Unsupported` where no stiffness resists some motion of the stuck structure; those of the eigensolvers;
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn new(
+        model: &Model,
+        diameter: usize,
+        (contacts, forces): (&[&Contact], &[(usize, bool, Vec<Complex64>)]),
+        modes: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Self> {
+        let structure = model.structure();
+        let n = structure.ndof();
+        let wave = Wave::Diameter(diameter as i64);
+        let mut pencil = model.pencil(wave, ContactState::Stuck)?;
+        pencil.leave_out_gyroscopic();
+        if !resists_all_motion(&pencil.stiffness, interrupt)? {
+            return fail!(
+                Unsupported,
+                "nothing holds the structure with sticking contacts in nodal diameter {diameter}"
+            );
+        }
+        let found = pencil.lowest(modes.min(n), interrupt)?;
+        let is_real = pencil.stiffness.is_real() && pencil.mass.is_real();
+        let (omega, shapes) = if is_real {
+            real_shapes(&found.omega, &found.shapes, &pencil.mass)?
+        } else {
+            (found.omega, found.shapes)
+        };
+        let mut motions = Vec::new();
+        for contact in contacts {
+            let row = structure.row(&structure.contact_motion(contact, 0), wave);
+            let mut terms = Vec::new();
+            for &term in row.iter().flatten() {
+                try_push(&mut terms, term, CONTEXT)?;
+            }
+            try_push(&mut motions, terms, CONTEXT)?;
+        }
+        let (count, kept) = (contacts.len(), omega.len());
+        check_memory::<Complex64>(count * (count + kept) + n + kept * (kept + n), CONTEXT)?;
+        let along = |motion: &[(usize, Complex64)], x: &[Complex64]| -> Complex64 {
+            motion.iter().map(|&(dof, a)| a * x[dof]).sum()
+        };
+        let shape = |k: usize| &shapes[k * n..(k + 1) * n];
+        let rows = DMatrix::from_fn(count, kept, |c, k| along(&motions[c], shape(k)));
+        let matrix = structure.diameter_matrix(MatrixKind::Damping, diameter as i64)?;
+        let mut damping = DMatrix::zeros(kept, kept);
+        let mut images = Vec::new();
+        for k in 0..kept {
+            interrupt.check_before(((kept + 1) * n) as u64)?;
+            let image = matrix.times(shape(k), CONTEXT)?;
+            for i in 0..kept {
+                damping[(i, k)] = inner(shape(i), &image);
+            }
+            for z in pencil.weight().times(shape(k), CONTEXT)? {
+                try_push(&mut images, z, CONTEXT)?;
+            }
+        }
+        let mut inverse = Inverse::new(&pencil.stiffness, (0.0, &pencil.mass), interrupt)?;
+        let mut flexibility = DMatrix::zeros(count, count);
+        let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        for c in 0..count {
+            x.fill(Complex64::ZERO);
+            for &(dof, a) in &motions[c] {
+                x[dof] += a.conj();
+            }
+            inverse.solve(&mut x, interrupt)?;
+            for (i, motion) in motions.iter().enumerate() {
+                flexibility[(i, c)] = along(motion, &x);
+            }
+        }
+        let mut seen = Vec::new();
+        for (harmonic, backward, force) in forces {
+            let mut modal = Vec::new();
+            for k in 0..kept {
+                try_push(&mut modal, inner(shape(k), force), CONTEXT)?;
+            }
+            x.copy_from_slice(force);
+            inverse.solve(&mut x, interrupt)?;
+            let mut at_rest = Vec::new();
+            for motion in &motions {
+                try_push(&mut at_rest, along(motion, &x), CONTEXT)?;
+            }
+            let (harmonic, backward) = (*harmonic, *backward);
+            let force = SeenForce {
+                harmonic,
+                backward,
+                modal,
+                at_rest,
+            };
+            try_push(&mut seen, force, CONTEXT)?;
+        }
+        Ok(Self {
+            omega,
+            rows,
+            flexibility,
+            damping,
+            forces: seen,
+            motions,
+            images,
+            n,
+        })
+    }
+
+    /// Number of modes.
+    pub fn modes(&self) -> usize {
+        self.omega.len()
+    }
+
+    /// φᴴ M x of each of the first `modes` modes.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn coordinates(&self, x: &[Complex64], modes: usize) -> Result<Vec<Complex64>> {
+        let mut found = Vec::new();
+        for image in self.images.chunks_exact(self.n).take(modes) {
+            try_push(&mut found, inner(image, x), CONTEXT)?;
+        }
+        Ok(found)
+    }
+
+    /// R x of each contact.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn relative(&self, x: &[Complex64]) -> Result<Vec<Complex64>> {
+        let mut found = Vec::new();
+        for motion in &self.motions {
+            let r = motion.iter().map(|&(dof, a)| a * x[dof]).sum();
+            try_push(&mut found, r, CONTEXT)?;
+        }
+        Ok(found)
+    }
+}
+
+/// Real shapes, orthonormal with the mass, of modes of a real structure, which an eigensolver may have turned by any phase
+/// and mixed where frequencies are equal.
+fn real_shapes(omega: &[f64], shapes: &[Complex64], mass: &Csc) -> Result<(Vec<f64>, Vec<Complex64>)> {
+    let n = mass.rows;
+    let (mut frequencies, mut found) = (Vec::new(), Vec::new());
+    for (&omega, shape) in omega.iter().zip(shapes.chunks_exact(n)) {
+        for part in [|z: Complex64| z.re, |z: Complex64| z.im] {
+            if frequencies.len() == shapes.len() / n {
+                break;
+            }
+            let mut x = try_copy(shape, CONTEXT)?;
+            for z in &mut x {
+                *z = part(*z).into();
+            }
+            for _ in 0..2 {
+                let image = mass.times(&x, CONTEXT)?;
+                for column in found.chunks_exact(n) {
+                    remove(&mut x, column, inner(column, &image));
+                }
+            }
+            let norm = inner(&x, &mass.times(&x, CONTEXT)?).re.max(0.0).sqrt();
+            if norm <= CONTACT_MODES_DEPENDENT {
+                continue;
+            }
+            for z in x {
+                try_push(&mut found, z / norm, CONTEXT)?;
+            }
+            try_push(&mut frequencies, omega, CONTEXT)?;
+        }
+    }
+    Ok((frequencies, found))
+}
