@@ -16,8 +16,8 @@ use crate::model::structure::Structure;
 use crate::options::FloquetOptions;
 use crate::results::Floquet;
 use crate::stability::{
-    Closure, Counts, ModalRing, Orbit, RingForce, SliderMap, SliderMotion, SliderState, Sliders, classified, closures, orbit,
-    scale_of_sliders,
+    Closure, Counts, ModalRing, Orbit, RingForce, SliderMap, SliderMotion, SliderState, Sliders, classified, closures,
+    orbit, scale_of_sliders,
 };
 use crate::time_integration::Number;
 use nalgebra::DVector;
@@ -159,7 +159,13 @@ pub(super) fn perturbed_sliders(
     let forces = forces_on(structure, &ring, seen)?;
     let in_time = SliderMotion::new(&ring, &seen.sliders, (motion.omega, lapses), forces, interrupt)?;
     let start = state_of_motion(structure, &ring, seen, (motion.omega, &harmonics), interrupt)?;
-    let found = orbit(&in_time, structure, start.clone(), (options.tolerance, options.refine), interrupt)?;
+    let found = orbit(
+        &in_time,
+        structure,
+        start.clone(),
+        (options.tolerance, options.refine),
+        interrupt,
+    )?;
     let Some(orbit) = found else {
         return fail!(
             NoConvergence,
@@ -259,7 +265,11 @@ fn on_ring(ring: &ModalRing<f64>, (diameter, backward): (usize, bool), modal: &[
                 continue;
             }
             let share = sectors / SQRT_2;
-            let (re, im) = if backward { (c.conj(), Complex64::I * c.conj()) } else { (c, -Complex64::I * c) };
+            let (re, im) = if backward {
+                (c.conj(), Complex64::I * c.conj())
+            } else {
+                (c, -Complex64::I * c)
+            };
             found[wave.place + k] = share * re;
             found[wave.place + ring.modes + k] = share * im;
         }
@@ -336,7 +346,11 @@ fn state_of_motion(
             let at = |time: usize| -> f64 {
                 let of = |(h, r): (usize, &Vec<Complex64>)| {
                     let turn = Complex64::cis(TAU * ((h * time) % times) as f64 / times as f64);
-                    let value = if h == 0 { r[c].re.into() } else { r[c] * structure.phase(h, s as i64) };
+                    let value = if h == 0 {
+                        r[c].re.into()
+                    } else {
+                        r[c] * structure.phase(h, s as i64)
+                    };
                     (value * turn).re
                 };
                 relative.iter().enumerate().map(of).sum()

@@ -79,7 +79,11 @@ impl KeptModes {
             Some(0) => Way::All,
             modes => {
                 let way = quickest(&*model.at_frequency(omega)?, omega, options.waves)?;
-                if way == Way::All && modes.is_some() { Way::Shapes } else { way }
+                if way == Way::All && modes.is_some() {
+                    Way::Shapes
+                } else {
+                    way
+                }
             }
         };
         self.way = Some(way);
@@ -96,7 +100,12 @@ impl KeptModes {
             Some(shapes) if enough => Arc::clone(shapes),
             _ => {
                 self.small.clear();
-                Arc::new(ShapesOfWaves::new(model, step_of_waves(model, waves), modes, interrupt)?)
+                Arc::new(ShapesOfWaves::new(
+                    model,
+                    step_of_waves(model, waves),
+                    modes,
+                    interrupt,
+                )?)
             }
         };
         self.shapes = Some(Arc::clone(&shapes));
@@ -111,13 +120,7 @@ impl KeptModes {
     }
 
     /// At least a number of modes as contacts see them, or all that there are.
-    fn seen(
-        &mut self,
-        model: &Model,
-        modes: usize,
-        waves: Waves,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<&SliderModes> {
+    fn seen(&mut self, model: &Model, modes: usize, waves: Waves, interrupt: &Interrupt<'_>) -> Result<&SliderModes> {
         let kept = self.sliders.take().filter(|seen| seen.suffices(modes));
         let seen = match kept {
             Some(seen) => seen,

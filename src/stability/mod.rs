@@ -6,7 +6,7 @@
 //! the zeros of sliders, and finds the eigenvalues that remain; `operations` counts what all this costs.
 //!
 //! Sectors with many contacts of friction have their modes and sliders as states instead: `modal_ring` has the equations of a
-//! block, `slider_motion` integrates its motion, `slider_orbit` shoots, and `slider_map` carries perturbations.
+//! block, `slipping` those of its slipping contacts, `slider_motion` integrates its motion, `slider_orbit` shoots, and `slider_map` carries perturbations.
 
 mod closure;
 mod known_directions;
@@ -18,6 +18,7 @@ mod ring;
 mod slider_map;
 mod slider_motion;
 mod slider_orbit;
+mod slipping;
 
 pub(crate) use closure::{Closure, closures};
 pub(crate) use modal_ring::{ModalRing, Sliders};

@@ -18,7 +18,7 @@ use crate::model::contact_modes::ContactModes;
 use crate::model::structure::Structure;
 use crate::stability::closure::Closure;
 use crate::time_integration::Number;
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::SQRT_2;
 
@@ -68,18 +68,6 @@ pub(crate) struct ModalRing<T: Number> {
     pub stiffness: Vec<f64>,
     /// Sectors by which the wave has moved after a lapse.
     follower: usize,
-}
-
-/// The equations while some contacts slip.
-pub(crate) struct Slipping<T: Number> {
-    /// The slipping contacts, ascending.
-    pub list: Vec<usize>,
-    /// E
-    pub inverse: DMatrix<T>,
-    /// E R_L
-    pub rows: DMatrix<T>,
-    /// Ω² − R_Lᴴ E R_L
-    pub stiffness: DMatrix<T>,
 }
 
 impl<T: Number> ModalRing<T> {
@@ -209,13 +197,7 @@ impl<T: Number> ModalRing<T> {
     }
 
     /// Real and imaginary part, times √2, of the coordinates of a wave whose conjugate belongs to the block.
-    fn add_pair(
-        &mut self,
-        structure: &Structure,
-        own: &ContactModes,
-        (diameter, count): (usize, usize),
-        place: usize,
-    ) {
+    fn add_pair(&mut self, structure: &Structure, own: &ContactModes, (diameter, count): (usize, usize), place: usize) {
         let m = self.closure.sectors;
         let share = SQRT_2 / (m as f64).sqrt();
         let real = |x: f64| T::of(x.into());
@@ -240,43 +222,6 @@ impl<T: Number> ModalRing<T> {
                 }
             }
         }
-    }
-
-    /// The equations while the contacts of a list slip.
-    ///
-    /// # Errors
-    /// `Unsupported` where nothing but these contacts holds a motion; `OutOfMemory`.
-    pub fn slipping(&self, list: Vec<usize>) -> Result<Slipping<T>> {
-        let (order, count) = (self.order(), list.len());
-        check_memory::<T>(count * (2 * count + 2 * order) + order * order, CONTEXT)?;
-        let own = DMatrix::from_fn(count, count, |i, j| {
-            let g = -self.residual[(list[i], list[j])];
-            if i == j {
-                g + T::of((1.0 / self.stiffness[list[i]]).into())
-            } else {
-                g
-            }
-        });
-        let Some(factor) = Cholesky::new(own) else {
-            return fail!(
-                Unsupported,
-                "nothing but slipping contacts holds a motion of the structure"
-            );
-        };
-        let selected = DMatrix::from_fn(count, order, |i, j| self.rows[(list[i], j)]);
-        let inverse = factor.inverse();
-        let rows = &inverse * &selected;
-        let mut stiffness = DMatrix::zeros(order, order);
-        for (i, &square) in self.square.iter().enumerate() {
-            stiffness[(i, i)] = T::of(square.into());
-        }
-        stiffness.gemm(T::of((-1.0).into()), &selected.adjoint(), &rows, T::one());
-        Ok(Slipping {
-            list,
-            inverse,
-            rows,
-            stiffness,
-        })
     }
 
     /// The contact whose motion contact `e` has a lapse later, and how often the ring is passed on the way to it.

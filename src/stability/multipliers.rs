@@ -87,7 +87,13 @@ pub(crate) fn multipliers_of(
         moving: kept.len() - 2 * n,
     };
     let map = without(map, directions);
-    classified(map, &counts, (lapses, turn), block.closure().has_conjugate, system.interrupt)
+    classified(
+        map,
+        &counts,
+        (lapses, turn),
+        block.closure().has_conjugate,
+        system.interrupt,
+    )
 }
 
 /// Numbers of multipliers that are known beforehand, and of sliders that move.

@@ -11,8 +11,9 @@
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Scalar;
-use crate::stability::modal_ring::{ModalRing, Slipping};
-use crate::stability::slider_motion::Path;
+use crate::stability::modal_ring::ModalRing;
+use crate::stability::slider_motion::{Change, Path};
+use crate::stability::slipping::Slipping;
 use crate::time_integration::Number;
 use nalgebra::DMatrix;
 
@@ -36,8 +37,10 @@ pub(crate) struct SliderMap<'r, T: Number> {
     number: Vec<usize>,
     x: DMatrix<T>,
     v: DMatrix<T>,
-    /// Forces of moving sliders.
+    /// Forces of moving sliders at rest; those that slip have none of their own.
     p: DMatrix<T>,
+    /// Whether a moving slider slips.
+    slips: Vec<bool>,
     /// State of each column.
     carried: Vec<usize>,
 }
@@ -72,6 +75,7 @@ impl<'r, T: Number> SliderMap<'r, T> {
             x: DMatrix::zeros(order, columns),
             v: DMatrix::zeros(order, columns),
             p: DMatrix::zeros(moving.len(), columns),
+            slips: try_vec(moving.len(), false, CONTEXT)?,
             moving,
             number,
             carried,
@@ -92,64 +96,84 @@ impl<'r, T: Number> SliderMap<'r, T> {
     }
 
     fn through(&mut self, path: &Path, interrupt: &Interrupt<'_>) -> Result<()> {
-        let mut list: Vec<usize> = try_copy(&path.first, CONTEXT)?;
-        let mut slipping = self.ring.slipping(try_copy(&list, CONTEXT)?)?;
-        let mut current = true;
-        let mut waiting = 0.0;
-        for change in &path.changes {
-            waiting += change.after;
-            // Changes at one time are one.
-            if change.after > 0.0 || !change.slips {
-                if !current {
-                    slipping = self.ring.slipping(try_copy(&list, CONTEXT)?)?;
-                }
-                self.carry(&slipping, core::mem::replace(&mut waiting, 0.0), interrupt)?;
+        let mut slipping = Slipping::new(self.ring, try_copy(&path.first, CONTEXT)?)?;
+        for &e in &path.first {
+            self.slips[self.number[e]] = true;
+        }
+        // Change −δt of the time at which the last stretch has reached its limit.
+        let mut late: Option<DMatrix<T>> = None;
+        for (i, change) in path.changes.iter().enumerate() {
+            if change.after > 0.0 {
+                self.carry(&slipping, change.after, interrupt)?;
+                late = None;
             }
-            match (list.binary_search(&change.contact), change.slips) {
-                (Err(at), true) => {
-                    list.insert(at, change.contact);
-                    let number = self.number[change.contact];
-                    self.p.row_mut(number).fill(T::NONE);
+            let number = self.number[change.contact];
+            if change.slips {
+                if change.speed != 0.0 && stops_others(&path.changes[i + 1..]) {
+                    late = Some(self.stretch(&slipping, change.contact)? * T::of((1.0 / change.speed).into()));
                 }
-                (Ok(at), false) => {
-                    self.follow(&slipping, &[at]);
-                    list.remove(at);
+                self.p.row_mut(number).fill(T::NONE);
+            } else if let Some(at) = slipping.place(change.contact) {
+                self.follow(&slipping, &[at])?;
+                if let Some(late) = late.as_ref().filter(|_| change.speed != 0.0) {
+                    // The slider stops while it moves, at the time of another change.
+                    let rate = change.speed * self.ring.stiffness[change.contact];
+                    let mut row = self.p.row_mut(number);
+                    row -= late * T::of(rate.into());
                 }
-                _ => {}
             }
-            current = false;
+            slipping.change(self.ring, change.contact, change.slips)?;
+            self.slips[number] = change.slips;
         }
-        if !current {
-            slipping = self.ring.slipping(list)?;
-        }
-        self.carry(&slipping, waiting + path.rest, interrupt)?;
-        let mut all = Vec::new();
-        for at in 0..slipping.list.len() {
-            try_push(&mut all, at, CONTEXT)?;
-        }
-        self.follow(&slipping, &all);
-        Ok(())
+        self.carry(&slipping, path.rest, interrupt)?;
+        self.follow(&slipping, &all_of(&slipping.list)?)
     }
 
     /// G_LS p_S
-    fn through_others(&self, slipping: &Slipping<T>) -> DMatrix<T> {
-        let (list, moving) = (&slipping.list, &self.moving);
-        let coupling = DMatrix::from_fn(list.len(), moving.len(), |i, j| self.ring.residual[(list[i], moving[j])]);
-        coupling * &self.p
+    fn through_others(&self, slipping: &Slipping<T>) -> Result<DMatrix<T>> {
+        let list = &slipping.list;
+        let mut at_rest = Vec::new();
+        for i in (0..self.moving.len()).filter(|&i| !self.slips[i]) {
+            try_push(&mut at_rest, i, CONTEXT)?;
+        }
+        let coupling = DMatrix::from_fn(list.len(), at_rest.len(), |i, j| {
+            self.ring.residual[(list[i], self.moving[at_rest[j]])]
+        });
+        Ok(coupling * self.p.select_rows(&at_rest))
     }
 
     /// Forces of slipping sliders, given by their places in the list, from coordinates and the sliders at rest.
-    fn follow(&mut self, slipping: &Slipping<T>, places: &[usize]) {
+    fn forces(&self, slipping: &Slipping<T>, places: &[usize]) -> Result<DMatrix<T>> {
+        let coupled = self.through_others(slipping)?;
+        Ok(slipping.rows.select_rows(places) * &self.x + slipping.inverse.select_rows(places) * coupled)
+    }
+
+    /// Sets these forces.
+    fn follow(&mut self, slipping: &Slipping<T>, places: &[usize]) -> Result<()> {
         if places.is_empty() {
-            return;
+            return Ok(());
         }
-        let coupled = self.through_others(slipping);
-        let select = |a: &DMatrix<T>| DMatrix::from_fn(places.len(), a.ncols(), |i, j| a[(places[i], j)]);
-        let forces = select(&slipping.rows) * &self.x + select(&slipping.inverse) * coupled;
+        let forces = self.forces(slipping, places)?;
         for (i, &at) in places.iter().enumerate() {
             let number = self.number[slipping.list[at]];
             self.p.row_mut(number).copy_from(&forces.row(i));
         }
+        Ok(())
+    }
+
+    /// δ(r − w) of a contact at rest.
+    fn stretch(&self, slipping: &Slipping<T>, contact: usize) -> Result<DMatrix<T>> {
+        let ring = self.ring;
+        let list = &slipping.list;
+        let mut stretch = ring.rows.rows(contact, 1) * &self.x;
+        let coupling = DMatrix::from_fn(1, self.moving.len(), |_, j| ring.residual[(contact, self.moving[j])]);
+        // Forces of the list are zero as long as they slip.
+        stretch += coupling * &self.p;
+        let coupling = DMatrix::from_fn(1, list.len(), |_, j| ring.residual[(contact, list[j])]);
+        stretch += coupling * self.forces(slipping, &all_of(list)?)?;
+        let own = T::of((-1.0 / ring.stiffness[contact]).into());
+        stretch += self.p.rows(self.number[contact], 1) * own;
+        Ok(stretch)
     }
 
     /// Carries all columns over a time in which no contact changes.
@@ -162,9 +186,16 @@ impl<'r, T: Number> SliderMap<'r, T> {
         let rows = DMatrix::from_fn(self.moving.len(), order, |i, j| ring.rows[(self.moving[i], j)]);
         interrupt.check_before((2 * self.p.len() * (order + slipping.list.len())) as u64)?;
         let mut load = rows.ad_mul(&self.p);
-        load += slipping.rows.ad_mul(&self.through_others(slipping));
+        load += slipping.rows.ad_mul(&self.through_others(slipping)?);
         let fastest = (0..order)
-            .map(|j| slipping.stiffness.column(j).iter().map(|z| Scalar::size(*z)).sum::<f64>())
+            .map(|j| {
+                slipping
+                    .stiffness
+                    .column(j)
+                    .iter()
+                    .map(|z| Scalar::size(*z))
+                    .sum::<f64>()
+            })
             .fold(0.0_f64, f64::max)
             .sqrt();
         let parts = (fastest * time / SLIDER_MAP_STEP).ceil().max(1.0);
@@ -185,7 +216,11 @@ impl<'r, T: Number> SliderMap<'r, T> {
         let mut small = 0;
         for k in 0..SLIDER_MAP_MOST_TERMS {
             interrupt.check_before((2 * self.x.len() * self.x.nrows()) as u64)?;
-            let mut new = if k == 0 { load.clone() } else { DMatrix::zeros(load.nrows(), load.ncols()) };
+            let mut new = if k == 0 {
+                load.clone()
+            } else {
+                DMatrix::zeros(load.nrows(), load.ncols())
+            };
             new.gemm(real(-1.0), &slipping.stiffness, &this, T::one());
             let rate = -((k + 1) as f64) / h;
             match &self.ring.own_damping {
@@ -245,6 +280,21 @@ impl<'r, T: Number> SliderMap<'r, T> {
         }
         map
     }
+}
+
+/// All places of a list.
+fn all_of(list: &[usize]) -> Result<Vec<usize>> {
+    let mut all = Vec::new();
+    for at in 0..list.len() {
+        try_push(&mut all, at, CONTEXT)?;
+    }
+    Ok(all)
+}
+
+/// Whether one of the changes at the same time stops a slider that moves.
+fn stops_others(next: &[Change]) -> bool {
+    let same = next.iter().take_while(|change| change.after == 0.0);
+    same.into_iter().any(|change| !change.slips && change.speed != 0.0)
 }
 
 /// Largest entry.

@@ -6,7 +6,8 @@
 use crate::contact::time_piece::Grazing;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::stability::modal_ring::{ModalRing, Sliders, Slipping};
+use crate::stability::modal_ring::{ModalRing, Sliders};
+use crate::stability::slipping::Slipping;
 use crate::time_integration::{DEGREE, first_fall};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -31,6 +32,9 @@ const SLIDER_MOTION_MOST_STEPS: usize = 2_000_000;
 
 /// Speed of a slider that begins to move, relative to its play times ω, below which the event is touched rather than passed.
 const SLIDER_MOTION_GRAZING: f64 = 3e-6;
+
+/// Rounding of a slider's place at the begin of a lapse, relative to the motion.
+const SLIDER_MOTION_BEGIN: f64 = 1e-14;
 
 /// Relative size below which the begin of a margin is rounding.
 const SLIDER_MOTION_ROUNDING: f64 = 1e-12;
@@ -58,6 +62,9 @@ pub(crate) struct Change {
     pub contact: usize,
     /// Whether it slips from now on.
     pub slips: bool,
+    /// Rate x′ with which a stretch reaches its limit; and that of a slider which another change has turned around, so that it
+    /// stops while it moves. 0 where the time of the change does not matter.
+    pub speed: f64,
 }
 
 /// The changes of a lapse, from which perturbations are carried.
@@ -165,7 +172,11 @@ impl<'a> SliderMotion<'a> {
                 }
             }
             path.rest += passed;
-            at_once = if passed > 1e-15 * self.lapse { 0 } else { at_once + changing.len() };
+            at_once = if passed > 1e-15 * self.lapse {
+                0
+            } else {
+                at_once + changing.len()
+            };
             if at_once > SLIDER_MOTION_AT_ONCE * (1 + self.ring.all()) {
                 return fail!(NoConvergence, "contacts change without end at time {t} of the period");
             }
@@ -194,7 +205,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         let mut lapse = Self {
             motion,
             sign: try_vec(all, 0.0, CONTEXT)?,
-            slipping: ring.slipping(Vec::new())?,
+            slipping: Slipping::new(ring, Vec::new())?,
             held: [none(), none(), none()],
             q: DMatrix::zeros(order, SLIDER_MOTION_TERMS + 1),
             p: DMatrix::zeros(0, SLIDER_MOTION_TERMS + 1),
@@ -210,8 +221,10 @@ impl<'m, 'a> Lapse<'m, 'a> {
             lapse.relative_at_begin(state);
             let mut more = false;
             for e in 0..all {
-                let stretch = lapse.r[(e, 0)] - state.w[e];
-                if lapse.sign[e] == 0.0 && stretch.abs() >= motion.play[e] {
+                let (r, w) = (lapse.r[(e, 0)], state.w[e]);
+                let rounding = SLIDER_MOTION_BEGIN * (r.abs() + w.abs() + motion.play[e]);
+                let stretch = r - w;
+                if lapse.sign[e] == 0.0 && stretch.abs() >= motion.play[e] - rounding {
                     lapse.sign[e] = stretch.signum();
                     more = true;
                 }
@@ -232,7 +245,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
                 try_push(&mut list, e, CONTEXT)?;
             }
         }
-        self.slipping = self.motion.ring.slipping(list)?;
+        self.slipping = Slipping::new(self.motion.ring, list)?;
         self.p = DMatrix::zeros(self.slipping.list.len(), SLIDER_MOTION_TERMS + 1);
         Ok(())
     }
@@ -240,7 +253,13 @@ impl<'m, 'a> Lapse<'m, 'a> {
     /// Forces of the sliders at rest.
     fn hold(&mut self, state: &SliderState) {
         let ring = self.motion.ring;
-        let at_rest = |e: usize| if self.sign[e] == 0.0 { ring.stiffness[e] * state.w[e] } else { 0.0 };
+        let at_rest = |e: usize| {
+            if self.sign[e] == 0.0 {
+                ring.stiffness[e] * state.w[e]
+            } else {
+                0.0
+            }
+        };
         let held = DVector::from_fn(ring.all(), |e, _| at_rest(e));
         let relative = &ring.residual * &held;
         let list = &self.slipping.list;
@@ -387,7 +406,11 @@ impl<'m, 'a> Lapse<'m, 'a> {
                         *m = -side * self.r[(e, k)];
                     }
                     margin[0] = self.motion.play[e] - side * stretch;
-                    let zeros = if margin[0] <= 0.5 * self.motion.play[e] { self.zeros[e] } else { 0 };
+                    let zeros = if margin[0] <= 0.5 * self.motion.play[e] {
+                        self.zeros[e]
+                    } else {
+                        0
+                    };
                     if let Some(theta) = first_fall(margin, zeros) {
                         first = Some(first.map_or(theta, |before| before.min(theta)));
                     }
@@ -444,28 +467,38 @@ impl<'m, 'a> Lapse<'m, 'a> {
         for &e in changing {
             let slips = self.sign[e] == 0.0;
             let rate = self.rate(e, theta);
+            let mut speed = 0.0;
             if slips {
-                let (ahead, behind) = (self.motion.play[e], self.stretch(e, theta, state));
-                self.sign[e] = behind.signum();
+                self.sign[e] = self.stretch(e, theta, state).signum();
                 path.moved[e] = true;
-                if (rate * self.sign[e]).abs() <= SLIDER_MOTION_GRAZING * self.motion.omega * ahead {
+                if theta > 0.0 {
+                    speed = rate;
+                }
+                if (rate * self.sign[e]).abs() <= SLIDER_MOTION_GRAZING * self.motion.omega * self.motion.play[e] {
                     path.grazing.get_or_insert((e, Grazing::SlipLimit));
                 }
             } else {
                 state.w[e] = self.place(e, theta);
                 // Its speed is zero, unless another contact has turned it around.
-                let speed: f64 = self.r.row(e).iter().skip(1).map(|r| r.abs()).sum::<f64>() / self.length;
-                self.zeros[e] = if rate.abs() <= SLIDER_MOTION_ROUNDING.sqrt() * speed { 2 } else { 1 };
+                let size: f64 = self.r.row(e).iter().skip(1).map(|r| r.abs()).sum::<f64>() / self.length;
+                let is_turned = rate.abs() > SLIDER_MOTION_ROUNDING.sqrt() * size;
+                self.zeros[e] = if is_turned { 1 } else { 2 };
+                if is_turned && theta == 0.0 {
+                    speed = rate;
+                }
                 self.sign[e] = 0.0;
             }
             let change = Change {
                 after: core::mem::take(&mut path.rest),
                 contact: e,
                 slips,
+                speed,
             };
             try_push(&mut path.changes, change, CONTEXT)?;
+            self.slipping.change(self.motion.ring, e, slips)?;
         }
-        self.release()
+        self.p = DMatrix::zeros(self.slipping.list.len(), SLIDER_MOTION_TERMS + 1);
+        Ok(())
     }
 
     /// x′ of a contact at θ.

@@ -114,7 +114,11 @@ fn trial(motion: &SliderMotion<'_>, structure: &Structure, state: SliderState) -
     let size = (unit(path.largest.0), unit(path.largest.1 / motion.omega));
     let mut residual = 0.0_f64;
     for (i, change) in change.iter().enumerate() {
-        let size = if (order..2 * order).contains(&i) { size.1 } else { size.0 };
+        let size = if (order..2 * order).contains(&i) {
+            size.1
+        } else {
+            size.0
+        };
         residual = residual.max(change.abs() / size);
     }
     Ok(Trial {

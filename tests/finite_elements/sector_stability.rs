@@ -31,7 +31,11 @@ fn cost() {
     };
     let modes = std::env::var("MODES").ok().map(|x| x.parse().unwrap());
     let options = FloquetOptions {
-        waves: if std::env::var("WHEEL").is_ok() { Waves::Wheel } else { Waves::Wave },
+        waves: if std::env::var("WHEEL").is_ok() {
+            Waves::Wheel
+        } else {
+            Waves::Wave
+        },
         modes,
         ..FloquetOptions::default()
     };
