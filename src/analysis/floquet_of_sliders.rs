@@ -7,14 +7,15 @@ use crate::analysis::perturbed_motion::{Found, Motion, ODD};
 use crate::contact::law::{LawInTime, TimePart};
 use crate::contact::time_piece::Mode;
 use crate::contact::{Contact, Role};
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::triangle::Entry;
 use crate::model::Model;
-use crate::model::contact_modes::ContactModes;
+use crate::model::contact_modes::{ContactModes, ForceOfWave};
 use crate::model::on_modes::forces_of_harmonics;
 use crate::model::structure::Structure;
 use crate::options::FloquetOptions;
-use crate::results::Floquet;
+use crate::results::{Floquet, Multiplier};
 use crate::stability::{
     Closure, Counts, ModalRing, Orbit, RingForce, SliderMap, SliderMotion, SliderState, Sliders, classified, closures,
     orbit, scale_of_sliders,
@@ -99,9 +100,14 @@ impl SliderModes {
             for (harmonic, force) in &forces {
                 let (of, backward) = structure.wave_of(*harmonic);
                 if of == diameter {
-                    let mut force = crate::error::try_copy(force, CONTEXT)?;
+                    let mut force = try_copy(force, CONTEXT)?;
                     conjugate(&mut force, backward);
-                    try_push(&mut own, (*harmonic, backward, force), CONTEXT)?;
+                    let force = ForceOfWave {
+                        harmonic: *harmonic,
+                        backward,
+                        values: force,
+                    };
+                    try_push(&mut own, force, CONTEXT)?;
                 }
             }
             let seen = ContactModes::new(model, diameter, (&contacts, &own), modes, interrupt)?;
@@ -185,7 +191,7 @@ pub(super) fn perturbed_sliders(
             let ring = ModalRing::<Complex64>::new(structure, *closure, block, &seen.sliders, interrupt)?;
             multipliers(structure, &ring, &orbit, (lapses, &in_time), interrupt)?
         };
-        crate::error::try_extend(&mut all, &found, CONTEXT)?;
+        try_extend(&mut all, &found, CONTEXT)?;
     }
     let grazing = orbit.path.grazing.map(|(e, event)| (e / ring.closure.sectors, event));
     let mut stability = Floquet::of(all, grazing);
@@ -208,7 +214,7 @@ fn multipliers<T: Number>(
     orbit: &Orbit,
     (lapses, motion): (usize, &SliderMotion<'_>),
     interrupt: &Interrupt<'_>,
-) -> Result<Vec<crate::results::Multiplier>> {
+) -> Result<Vec<Multiplier>> {
     let closure: &Closure = &ring.closure;
     let map = SliderMap::new(ring, &orbit.path, &orbit.moves, interrupt)?;
     let factor = |turns: usize| T::of(closure.factor(structure, turns));
@@ -221,7 +227,7 @@ fn multipliers<T: Number>(
         trivial: 0,
         moving: map.moving.len(),
     };
-    let matrix = matrix.map(|z| z.complex());
+    let matrix = matrix.map(Entry::complex);
     classified(matrix, &counts, (lapses, turn), closure.has_conjugate, interrupt)
 }
 
@@ -328,7 +334,7 @@ fn state_of_motion(
         let Some(own) = &seen.modes[diameter] else {
             return fail!(Internal, "no modes of nodal diameter {diameter}");
         };
-        let mut x = crate::error::try_copy(x, CONTEXT)?;
+        let mut x = try_copy(x, CONTEXT)?;
         conjugate(&mut x, backward);
         let amplitudes = on_ring(ring, (diameter, backward), &own.coordinates(&x, ring.modes)?)?;
         for (i, z) in amplitudes.iter().enumerate() {

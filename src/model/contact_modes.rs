@@ -25,8 +25,15 @@ const CONTEXT: &str = "the modes of the contacts";
 /// Norm of a shape without what shapes before it have in common with it, below which it is no new one.
 const CONTACT_MODES_DEPENDENT: f64 = 1e-6;
 
-/// A force of one harmonic.
-#[derive(Clone)]
+/// A force of one harmonic on all independent degrees of freedom.
+pub(crate) struct ForceOfWave {
+    pub harmonic: usize,
+    /// Whether its wave travels against the sense of the modes: then the values are conjugate.
+    pub backward: bool,
+    pub values: Vec<Complex64>,
+}
+
+/// The same as modes and contacts see it.
 pub(crate) struct SeenForce {
     pub harmonic: usize,
     /// Whether its wave travels against the sense of the modes: then all numbers are those of the conjugate force.
@@ -56,8 +63,7 @@ pub(crate) struct ContactModes {
 }
 
 impl ContactModes {
-    /// The `modes` lowest modes of a nodal diameter 0 ..= N/2, for the given contacts of one direction each, and for the
-    /// forces (harmonic, whether its wave travels backward, amplitudes).
+    /// The `modes` lowest modes of a nodal diameter 0 ..= N/2, for contacts of one direction each, and for forces.
     ///
     /// # Errors
     /// `Unsupported` where no stiffness resists some motion of the stuck structure; those of the eigensolvers;
@@ -65,7 +71,7 @@ impl ContactModes {
     pub fn new(
         model: &Model,
         diameter: usize,
-        (contacts, forces): (&[&Contact], &[(usize, bool, Vec<Complex64>)]),
+        (contacts, forces): (&[&Contact], &[ForceOfWave]),
         modes: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
@@ -130,21 +136,20 @@ impl ContactModes {
             }
         }
         let mut seen = Vec::new();
-        for (harmonic, backward, force) in forces {
+        for force in forces {
             let mut modal = Vec::new();
             for k in 0..kept {
-                try_push(&mut modal, inner(shape(k), force), CONTEXT)?;
+                try_push(&mut modal, inner(shape(k), &force.values), CONTEXT)?;
             }
-            x.copy_from_slice(force);
+            x.copy_from_slice(&force.values);
             inverse.solve(&mut x, interrupt)?;
             let mut at_rest = Vec::new();
             for motion in &motions {
                 try_push(&mut at_rest, along(motion, &x), CONTEXT)?;
             }
-            let (harmonic, backward) = (*harmonic, *backward);
             let force = SeenForce {
-                harmonic,
-                backward,
+                harmonic: force.harmonic,
+                backward: force.backward,
                 modal,
                 at_rest,
             };

@@ -6,7 +6,8 @@
 //! the zeros of sliders, and finds the eigenvalues that remain; `operations` counts what all this costs.
 //!
 //! Sectors with many contacts of friction have their modes and sliders as states instead: `modal_ring` has the equations of a
-//! block, `slipping` those of its slipping contacts, `slider_motion` integrates its motion, `slider_orbit` shoots, and `slider_map` carries perturbations.
+//! block, `slipping` those of its slipping contacts, `slider_motion` its motion, which `slider_lapse` integrates; `slider_orbit`
+//! shoots, and `slider_map` carries perturbations.
 
 mod closure;
 mod known_directions;
@@ -15,6 +16,7 @@ mod multipliers;
 mod operations;
 mod perturbations;
 mod ring;
+mod slider_lapse;
 mod slider_map;
 mod slider_motion;
 mod slider_orbit;

@@ -94,9 +94,9 @@ fn trial(motion: &SliderMotion<'_>, structure: &Structure, state: SliderState) -
     let path = motion.run(&mut image)?;
     let (order, all) = (ring.order(), ring.all());
     let mut moves = try_vec(all, false, CONTEXT)?;
-    for e in 0..all {
+    for (e, moves) in moves.iter_mut().enumerate() {
         let family = e / ring.closure.sectors * ring.closure.sectors;
-        moves[e] = (family..family + ring.closure.sectors).any(|e| path.moved[e]);
+        *moves = (family..family + ring.closure.sectors).any(|e| path.moved[e]);
     }
     let scale = scale_of_sliders(motion);
     let (q, v) = (&ring.turn * &image.q, &ring.turn * &image.v);
