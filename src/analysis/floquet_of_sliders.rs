@@ -125,9 +125,9 @@ impl SliderModes {
         self.modes.iter().flatten().map(ContactModes::modes).min().unwrap_or(0)
     }
 
-    /// Whether it has so many modes, or all that there are.
+    /// Whether it has this number of modes, or all that there are, and they are fewer.
     pub fn suffices(&self, modes: usize) -> bool {
-        self.modes() >= modes || self.modes() < self.requested
+        self.requested == modes || (self.modes() < self.requested && self.modes() <= modes)
     }
 
     /// Largest number of modes of a diameter below an angular frequency.

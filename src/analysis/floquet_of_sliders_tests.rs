@@ -106,8 +106,8 @@ fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, V
         Waves::Wave => model.structure().sectors() / model.structure().repeating_sectors(),
         Waves::Wheel => 1,
     };
-    let seen = SliderModes::new(model, step, N, &none).unwrap();
     let on = |&count: &usize| {
+        let seen = SliderModes::new(model, step, count, &none).unwrap();
         let found = perturbed_sliders(model, (&seen, count), &motion, &options, &none).unwrap();
         println!(
             "{count} modes: radius {:.9}, {:.1e} off, moved {:.1e} ({:.1e} on all)",

@@ -18,6 +18,8 @@ use crate::time_integration::{refuse_massless, refuse_structural_damping};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+const CONTEXT: &str = "the models on modes";
+
 /// Operations up to which the whole structure is carried, a few minutes of one core.
 const ON_ALL: f64 = 1e11;
 
@@ -47,7 +49,7 @@ pub(super) struct KeptModes {
     /// Modes at which the last two numbers agreed.
     last: Option<usize>,
     /// Modes as contacts see them.
-    sliders: Option<SliderModes>,
+    sliders: Vec<SliderModes>,
     way: Option<Way>,
 }
 
@@ -114,19 +116,20 @@ impl KeptModes {
         let at = known.unwrap_or(self.small.len());
         if known.is_none() {
             let small = OnModes::new(model, &shapes, modes, interrupt)?;
-            try_push(&mut self.small, (modes, small), "the models on modes")?;
+            try_push(&mut self.small, (modes, small), CONTEXT)?;
         }
         Ok(&self.small[at].1)
     }
 
-    /// At least a number of modes as contacts see them, or all that there are.
+    /// A number of modes as contacts see them, or all that there are.
     fn seen(&mut self, model: &Model, modes: usize, waves: Waves, interrupt: &Interrupt<'_>) -> Result<&SliderModes> {
-        let kept = self.sliders.take().filter(|seen| seen.suffices(modes));
-        let seen = match kept {
-            Some(seen) => seen,
-            None => SliderModes::new(model, step_of_waves(model, waves), modes, interrupt)?,
-        };
-        Ok(self.sliders.insert(seen))
+        let known = self.sliders.iter().position(|seen| seen.suffices(modes));
+        let at = known.unwrap_or(self.sliders.len());
+        if known.is_none() {
+            let seen = SliderModes::new(model, step_of_waves(model, waves), modes, interrupt)?;
+            try_push(&mut self.sliders, seen, CONTEXT)?;
+        }
+        Ok(&self.sliders[at])
     }
 }
 
@@ -157,7 +160,7 @@ pub(super) fn floquet_of(
     refuse(at_speed, motion.omega, interrupt)?;
     if matches!(model.speed(), Speed::PerOmega(_)) {
         // The modes change with the frequency.
-        (kept.shapes, kept.small, kept.sliders) = (None, Vec::new(), None);
+        (kept.shapes, kept.small, kept.sliders) = (None, Vec::new(), Vec::new());
     }
     let mut modes = match (options.modes, kept.last) {
         (Some(modes), _) => modes.div_ceil(2),

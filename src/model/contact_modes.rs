@@ -1,6 +1,10 @@
 //! Modes of the stuck structure of one nodal diameter as contacts and forces see them: the relative motions of the contacts
 //! in each mode, and the static flexibility of all contacts together.
 //!
+//! Modes of the stuck structure alone know nothing of the vibrations that slipping contacts set free: where most of them slip, those of
+//! a structure without contacts are as near. Half of the kept modes come from each, combined so that they diagonalise mass and
+//! stiffness.
+//!
 //! A structure with sticking contacts under forces p of the contacts has the relative motions
 //! r = Σ ψ ψᴴ p / (ωₖ² − ω²) over all modes, with ψ = R φ. Those above the kept ones answer like springs:
 //! r ≈ Σ_kept + (R K⁻¹ Rᴴ − Σ_kept ψ ψᴴ / ωₖ²) p, as in mode acceleration; what that leaves out falls with
@@ -17,13 +21,16 @@ use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::structure::MatrixKind;
 use crate::model::wave::Wave;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SymmetricEigen};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the contacts";
 
 /// Norm of a shape without what shapes before it have in common with it, below which it is no new one.
 const CONTACT_MODES_DEPENDENT: f64 = 1e-6;
+
+/// Iterations of the eigensolver, far above what converging cases need.
+const CONTACT_MODES_ITERATIONS: usize = 100_000;
 
 /// A force of one harmonic on all independent degrees of freedom.
 pub(crate) struct ForceOfWave {
@@ -63,7 +70,7 @@ pub(crate) struct ContactModes {
 }
 
 impl ContactModes {
-    /// The `modes` lowest modes of a nodal diameter 0 ..= N/2, for contacts of one direction each, and for forces.
+    /// A number of modes of a nodal diameter 0 ..= N/2, for contacts of one direction each, and for forces.
     ///
     /// # Errors
     /// `Unsupported` where no stiffness resists some motion of the stuck structure; those of the eigensolvers;
@@ -86,13 +93,16 @@ impl ContactModes {
                 "nothing holds the structure with sticking contacts in nodal diameter {diameter}"
             );
         }
-        let found = pencil.lowest(modes.min(n), interrupt)?;
+        let mut released = model.pencil(wave, ContactState::Free)?;
+        released.leave_out_gyroscopic();
         let is_real = pencil.stiffness.is_real() && pencil.mass.is_real();
-        let (omega, shapes) = if is_real {
-            real_shapes(&found.omega, &found.shapes, &pencil.mass)?
-        } else {
-            (found.omega, found.shapes)
-        };
+        let both = [
+            pencil.lowest(modes.min(n), interrupt)?,
+            released.lowest((modes / 2).clamp(1, n), interrupt)?,
+        ];
+        let [stuck, free] = both.map(|found| found.shapes);
+        let shapes = joined(&stuck, &free, (modes.min(n), is_real), pencil.weight())?;
+        let (omega, shapes) = ritz(&shapes, &pencil.stiffness, is_real, interrupt)?;
         let mut motions = Vec::new();
         for contact in contacts {
             let row = structure.row(&structure.contact_motion(contact, 0), wave);
@@ -198,19 +208,34 @@ impl ContactModes {
     }
 }
 
-/// Real shapes, orthonormal with the mass, of modes of a real structure, which an eigensolver may have turned by any phase
-/// and mixed where frequencies are equal.
-fn real_shapes(omega: &[f64], shapes: &[Complex64], mass: &Csc) -> Result<(Vec<f64>, Vec<Complex64>)> {
+/// At most `count` shapes, orthonormal with the mass: half of them from modes with sticking contacts, half from modes without
+/// contacts, and further ones of the former for those that are not new. Real ones are taken of a real structure, whose modes an
+/// eigensolver may have turned by any phase and mixed where frequencies are equal.
+fn joined(
+    stuck: &[Complex64],
+    free: &[Complex64],
+    (count, is_real): (usize, bool),
+    mass: &Csc,
+) -> Result<Vec<Complex64>> {
     let n = mass.rows;
-    let (mut frequencies, mut found) = (Vec::new(), Vec::new());
-    for (&omega, shape) in omega.iter().zip(shapes.chunks_exact(n)) {
-        for part in [|z: Complex64| z.re, |z: Complex64| z.im] {
-            if frequencies.len() == shapes.len() / n {
-                break;
+    let (first, further) = stuck.split_at((count.div_ceil(2) * n).min(stuck.len()));
+    let all = [first, free, further]
+        .into_iter()
+        .flat_map(|shapes| shapes.chunks_exact(n));
+    let parts: &[fn(Complex64) -> Complex64] = if is_real {
+        &[|z| z.re.into(), |z| z.im.into()]
+    } else {
+        &[|z| z]
+    };
+    let mut found = Vec::new();
+    for shape in all {
+        for part in parts {
+            if found.len() == count * n {
+                return Ok(found);
             }
             let mut x = try_copy(shape, CONTEXT)?;
             for z in &mut x {
-                *z = part(*z).into();
+                *z = part(*z);
             }
             for _ in 0..2 {
                 let image = mass.times(&x, CONTEXT)?;
@@ -225,8 +250,54 @@ fn real_shapes(omega: &[f64], shapes: &[Complex64], mass: &Csc) -> Result<(Vec<f
             for z in x {
                 try_push(&mut found, z / norm, CONTEXT)?;
             }
-            try_push(&mut frequencies, omega, CONTEXT)?;
         }
     }
-    Ok((frequencies, found))
+    Ok(found)
+}
+
+/// Frequencies and shapes within the span of given shapes that diagonalise the stiffness, ascending (Rayleigh and Ritz). The
+/// shapes are orthonormal with the mass, and so are the results.
+fn ritz(
+    shapes: &[Complex64],
+    stiffness: &Csc,
+    is_real: bool,
+    interrupt: &Interrupt<'_>,
+) -> Result<(Vec<f64>, Vec<Complex64>)> {
+    let n = stiffness.rows;
+    let count = shapes.len() / n;
+    check_memory::<Complex64>(4 * count * count + n * count, CONTEXT)?;
+    let shape = |k: usize| &shapes[k * n..(k + 1) * n];
+    let mut projected = DMatrix::zeros(count, count);
+    for j in 0..count {
+        interrupt.check_before(((count + 1) * n) as u64)?;
+        let image = stiffness.times(shape(j), CONTEXT)?;
+        for i in 0..count {
+            projected[(i, j)] = inner(shape(i), &image);
+        }
+    }
+    let vectors = if is_real {
+        SymmetricEigen::try_new(projected.map(|z| z.re), f64::EPSILON, CONTACT_MODES_ITERATIONS)
+            .map(|found| (found.eigenvalues, found.eigenvectors.map(Complex64::from)))
+    } else {
+        SymmetricEigen::try_new(projected, f64::EPSILON, CONTACT_MODES_ITERATIONS)
+            .map(|found| (found.eigenvalues, found.eigenvectors))
+    };
+    let Some((values, vectors)) = vectors else {
+        return fail!(NoConvergence, "the modes of the stuck structure were not found");
+    };
+    let mut order = Vec::new();
+    for k in 0..count {
+        try_push(&mut order, k, CONTEXT)?;
+    }
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let mut omega = Vec::new();
+    let mut found = try_vec(n * count, Complex64::ZERO, CONTEXT)?;
+    for (to, &k) in found.chunks_exact_mut(n.max(1)).zip(&order) {
+        interrupt.check_before((count * n) as u64)?;
+        try_push(&mut omega, values[k].max(0.0).sqrt(), CONTEXT)?;
+        for j in 0..count {
+            remove(to, shape(j), -vectors[(j, k)]);
+        }
+    }
+    Ok((omega, found))
 }

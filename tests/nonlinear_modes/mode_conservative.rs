@@ -214,7 +214,8 @@ fn the_curve_above_the_tongue_is_reached_by_a_guess() {
         upper.omega()[0]
     );
     assert!(largest < 1.9 && (amplitude(&upper, 0) - 2.0).abs() < 1e-9);
-    for point in (0..upper.points()).step_by(7) {
+    // The begin of the curve, before it turns as well.
+    for point in (0..28).step_by(4) {
         let gap = gap_after_a_period(&upper, point, upper.omega()[point]);
         assert!(gap < 1e-8, "point {point}: {gap:e}");
     }
