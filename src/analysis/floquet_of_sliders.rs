@@ -293,7 +293,7 @@ fn forces_on(structure: &Structure, ring: &ModalRing<f64>, seen: &SliderModes) -
             let modal = on_ring(ring, (diameter, force.backward), &force.modal)?;
             let mut relative = try_vec(ring.all(), Complex64::ZERO, CONTEXT)?;
             for c in 0..ring.contacts {
-                let mut rest = force.at_rest[c];
+                let mut rest = force.static_motion[c];
                 for k in 0..ring.modes {
                     rest -= own.rows[(c, k)] * force.modal[k] / own.omega[k].powi(2);
                 }

@@ -134,7 +134,7 @@ fn largest_gap(a: &Floquet, b: &Floquet) -> f64 {
 }
 
 fn compare(model: &Model, omega: f64, waves: Waves) {
-    let (all, found) = both(model, omega, waves, &[4, N]);
+    let (all, found) = both(model, omega, waves, &[6, N]);
     let exact = &found[1];
     assert_eq!(
         all.multipliers.len() - all.neutral,
@@ -145,7 +145,10 @@ fn compare(model: &Model, omega: f64, waves: Waves) {
     println!("radius {:.9}, multipliers {gap:.1e} off on all modes", all.radius);
     assert!(gap < 1e-8, "{gap:.1e}");
     let off = (found[0].radius - all.radius).abs();
-    assert!(off < 1e-2 * (1.0 - all.radius).abs(), "{off:.1e} off on half the modes");
+    assert!(
+        off < 1e-2 * (1.0 - all.radius).abs(),
+        "{off:.1e} off on three quarters of the modes"
+    );
 }
 
 #[test]

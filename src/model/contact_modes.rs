@@ -48,7 +48,7 @@ pub(crate) struct SeenForce {
     /// φᴴ F of each mode.
     pub modal: Vec<Complex64>,
     /// R K⁻¹ F of each contact.
-    pub at_rest: Vec<Complex64>,
+    pub static_motion: Vec<Complex64>,
 }
 
 /// Modes of one nodal diameter.
@@ -153,15 +153,15 @@ impl ContactModes {
             }
             x.copy_from_slice(&force.values);
             inverse.solve(&mut x, interrupt)?;
-            let mut at_rest = Vec::new();
+            let mut static_motion = Vec::new();
             for motion in &motions {
-                try_push(&mut at_rest, along(motion, &x), CONTEXT)?;
+                try_push(&mut static_motion, along(motion, &x), CONTEXT)?;
             }
             let force = SeenForce {
                 harmonic: force.harmonic,
                 backward: force.backward,
                 modal,
-                at_rest,
+                static_motion,
             };
             try_push(&mut seen, force, CONTEXT)?;
         }

@@ -179,14 +179,14 @@ impl<'m, 'a> Lapse<'m, 'a> {
     /// Forces of the sliders at rest.
     fn hold(&mut self, state: &SliderState) {
         let ring = self.motion.ring;
-        let at_rest = |e: usize| {
+        let resting = |e: usize| {
             if self.sign[e] == 0.0 {
                 ring.stiffness[e] * state.w[e]
             } else {
                 0.0
             }
         };
-        let held = DVector::from_fn(ring.all(), |e, _| at_rest(e));
+        let held = DVector::from_fn(ring.all(), |e, _| resting(e));
         let relative = &ring.residual * &held;
         let list = &self.slipping.list;
         let limits = DVector::from_fn(list.len(), |i, _| {

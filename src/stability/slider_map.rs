@@ -132,14 +132,14 @@ impl<'r, T: Number> SliderMap<'r, T> {
     /// G_LS p_S
     fn through_others(&self, slipping: &Slipping<T>) -> Result<DMatrix<T>> {
         let list = &slipping.list;
-        let mut at_rest = Vec::new();
+        let mut resting = Vec::new();
         for i in (0..self.moving.len()).filter(|&i| !self.slips[i]) {
-            try_push(&mut at_rest, i, CONTEXT)?;
+            try_push(&mut resting, i, CONTEXT)?;
         }
-        let coupling = DMatrix::from_fn(list.len(), at_rest.len(), |i, j| {
-            self.ring.residual[(list[i], self.moving[at_rest[j]])]
+        let coupling = DMatrix::from_fn(list.len(), resting.len(), |i, j| {
+            self.ring.residual[(list[i], self.moving[resting[j]])]
         });
-        Ok(coupling * self.p.select_rows(&at_rest))
+        Ok(coupling * self.p.select_rows(&resting))
     }
 
     /// Forces of slipping sliders, given by their places in the list, from coordinates and the sliders at rest.
