@@ -1,4 +1,5 @@
-//! Stability of a point of a small case costs a bounded number of its responses.
+//! Stability of a point of a small case against its response: about 500 times (wave) and 900 times (wheel) on a busy machine. The bound leaves
+//! room for machines that other programs use; a hundred is the aim.
 
 use crate::common::{BASE, harmonics, sweep};
 use hbvib::options::{SolverOptions, Waves};
@@ -32,5 +33,7 @@ fn stability_costs_a_bounded_number_of_responses() {
             "{points} and {again} points, {:.1} us a point, {waves:?}: {ratio:.0} times the response",
             1e6 * alone / points as f64
         );
+        assert_eq!(points, again);
+        assert!(ratio < 5000.0, "{ratio:.0}");
     }
 }
