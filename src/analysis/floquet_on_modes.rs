@@ -149,6 +149,24 @@ pub(super) fn floquet_of(
     (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
+    match on_quickest(model, motion, options, (hooks, kept), interrupt) {
+        // Nothing holds the structure with sticking contacts, or nothing but slipping ones.
+        Err(e) if e.status == Status::Unsupported && kept.way == Some(Way::Sliders) => {
+            kept.way = Some(Way::Shapes);
+            on_quickest(model, motion, options, (hooks, kept), interrupt)
+        }
+        found => found,
+    }
+}
+
+/// The same on the states that are quickest.
+fn on_quickest(
+    model: &Model,
+    motion: &Motion<'_>,
+    options: &FloquetOptions,
+    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    interrupt: &Interrupt<'_>,
+) -> Result<Found> {
     let way = match kept.way(model, motion.omega, options)? {
         Way::Sliders if motion.autonomous => Way::Shapes,
         way => way,
