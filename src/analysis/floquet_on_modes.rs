@@ -1,5 +1,6 @@
 //! Choice between the whole structure and modes of it, and the comparison of two numbers of modes.
 
+use crate::analysis::floquet_of_sliders::{SliderModes, are_sliders, perturbed_sliders};
 use crate::analysis::perturbed_motion::{FAR, Found, Motion, Subject, perturbed};
 use crate::error::{Result, Status, fail, try_push};
 use crate::hooks::{Hooks, LogLevel};
@@ -16,6 +17,8 @@ use crate::stability::{Extent, fastest_motion};
 use crate::time_integration::{refuse_massless, refuse_structural_damping};
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+const CONTEXT: &str = "the models on modes";
 
 /// Operations up to which the whole structure is carried, a few minutes of one core.
 const ON_ALL: f64 = 1e11;
@@ -45,8 +48,20 @@ pub(super) struct KeptModes {
     small: Vec<(usize, OnModes)>,
     /// Modes at which the last two numbers agreed.
     last: Option<usize>,
-    /// Whether the whole structure is carried.
-    on_all: Option<bool>,
+    /// Modes as contacts see them.
+    sliders: Vec<SliderModes>,
+    way: Option<Way>,
+}
+
+/// States of a motion and its perturbations.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// All degrees of freedom.
+    All,
+    /// Degrees of freedom of the contacts, and modes.
+    Shapes,
+    /// Modes, and sliders.
+    Sliders,
 }
 
 impl KeptModes {
@@ -55,15 +70,26 @@ impl KeptModes {
     /// # Errors
     /// `OutOfMemory`; `Argument` for a nodal diameter that was not given.
     pub fn on_all_degrees(&mut self, model: &Model, omega: f64, options: &FloquetOptions) -> Result<bool> {
-        if let Some(modes) = options.modes {
-            return Ok(modes == 0);
+        Ok(self.way(model, omega, options)? == Way::All)
+    }
+
+    fn way(&mut self, model: &Model, omega: f64, options: &FloquetOptions) -> Result<Way> {
+        if let Some(way) = self.way {
+            return Ok(way);
         }
-        if let Some(on_all) = self.on_all {
-            return Ok(on_all);
-        }
-        let on_all = is_small(&*model.at_frequency(omega)?, omega, options.waves)?;
-        self.on_all = Some(on_all);
-        Ok(on_all)
+        let way = match options.modes {
+            Some(0) => Way::All,
+            modes => {
+                let way = quickest(&*model.at_frequency(omega)?, omega, options.waves)?;
+                if way == Way::All && modes.is_some() {
+                    Way::Shapes
+                } else {
+                    way
+                }
+            }
+        };
+        self.way = Some(way);
+        Ok(way)
     }
 
     /// The model on a number of modes, or on all that there are.
@@ -76,11 +102,12 @@ impl KeptModes {
             Some(shapes) if enough => Arc::clone(shapes),
             _ => {
                 self.small.clear();
-                let step = match waves {
-                    Waves::Wave => model.structure().sectors() / model.structure().repeating_sectors(),
-                    Waves::Wheel => 1,
-                };
-                Arc::new(ShapesOfWaves::new(model, step, modes, interrupt)?)
+                Arc::new(ShapesOfWaves::new(
+                    model,
+                    step_of_waves(model, waves),
+                    modes,
+                    interrupt,
+                )?)
             }
         };
         self.shapes = Some(Arc::clone(&shapes));
@@ -89,9 +116,28 @@ impl KeptModes {
         let at = known.unwrap_or(self.small.len());
         if known.is_none() {
             let small = OnModes::new(model, &shapes, modes, interrupt)?;
-            try_push(&mut self.small, (modes, small), "the models on modes")?;
+            try_push(&mut self.small, (modes, small), CONTEXT)?;
         }
         Ok(&self.small[at].1)
+    }
+
+    /// A number of modes as contacts see them, or all that there are.
+    fn seen(&mut self, model: &Model, modes: usize, waves: Waves, interrupt: &Interrupt<'_>) -> Result<&SliderModes> {
+        let known = self.sliders.iter().position(|seen| seen.suffices(modes));
+        let at = known.unwrap_or(self.sliders.len());
+        if known.is_none() {
+            let seen = SliderModes::new(model, step_of_waves(model, waves), modes, interrupt)?;
+            try_push(&mut self.sliders, seen, CONTEXT)?;
+        }
+        Ok(&self.sliders[at])
+    }
+}
+
+/// Distance of the nodal diameters that perturbations have.
+fn step_of_waves(model: &Model, waves: Waves) -> usize {
+    match waves {
+        Waves::Wave => model.structure().sectors() / model.structure().repeating_sectors(),
+        Waves::Wheel => 1,
     }
 }
 
@@ -103,23 +149,45 @@ pub(super) fn floquet_of(
     (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
-    if kept.on_all_degrees(model, motion.omega, options)? {
+    match on_quickest(model, motion, options, (hooks, kept), interrupt) {
+        // Nothing holds the structure with sticking contacts, or nothing but slipping ones.
+        Err(e) if e.status == Status::Unsupported && kept.way == Some(Way::Sliders) => {
+            kept.way = Some(Way::Shapes);
+            on_quickest(model, motion, options, (hooks, kept), interrupt)
+        }
+        found => found,
+    }
+}
+
+/// The same on the states that are quickest.
+fn on_quickest(
+    model: &Model,
+    motion: &Motion<'_>,
+    options: &FloquetOptions,
+    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    interrupt: &Interrupt<'_>,
+) -> Result<Found> {
+    let way = match kept.way(model, motion.omega, options)? {
+        Way::Sliders if motion.autonomous => Way::Shapes,
+        way => way,
+    };
+    if way == Way::All {
         return perturbed(&Subject { model, on_modes: None }, motion, options, hooks, interrupt);
     }
     let at_speed = &*model.at_frequency(motion.omega)?;
     refuse(at_speed, motion.omega, interrupt)?;
     if matches!(model.speed(), Speed::PerOmega(_)) {
         // The modes change with the frequency.
-        (kept.shapes, kept.small) = (None, Vec::new());
+        (kept.shapes, kept.small, kept.sliders) = (None, Vec::new(), Vec::new());
     }
     let mut modes = match (options.modes, kept.last) {
         (Some(modes), _) => modes.div_ceil(2),
         (None, Some(last)) => last.div_ceil(2),
-        (None, None) => first_number(at_speed, motion.omega, kept, options.waves, interrupt)?,
+        (None, None) => first_number(at_speed, motion.omega, (way, kept), options.waves, interrupt)?,
     };
     let mut few: Option<Found> = None;
     for _ in 0..=DOUBLINGS {
-        let next = on_a_number(at_speed, motion, (options, modes), (hooks, kept), interrupt);
+        let next = on_a_number(at_speed, motion, (options, way, modes), (hooks, kept), interrupt);
         let mut many = match next {
             // A motion on too few modes may be far from the point.
             Err(e) if e.status == Status::NoConvergence && few.is_none() && options.modes.is_none() => {
@@ -159,10 +227,17 @@ pub(super) fn floquet_of(
 fn on_a_number(
     model: &Model,
     motion: &Motion<'_>,
-    (options, modes): (&FloquetOptions, usize),
+    (options, way, modes): (&FloquetOptions, Way, usize),
     (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
+    if way == Way::Sliders {
+        let seen = kept.seen(model, modes, options.waves, interrupt)?;
+        let modes = modes.min(seen.modes());
+        let found = perturbed_sliders(model, (seen, modes), motion, options, interrupt)?;
+        log_radius(hooks, &found.stability);
+        return Ok(found);
+    }
     let on_modes = kept.on(model, modes, options.waves, interrupt)?;
     let subject = Subject {
         model,
@@ -170,14 +245,16 @@ fn on_a_number(
     };
     let mut found = perturbed(&subject, motion, options, hooks, interrupt)?;
     found.stability.modes = on_modes.modes();
+    log_radius(hooks, &found.stability);
+    Ok(found)
+}
+
+fn log_radius(hooks: &mut Hooks<'_>, stability: &Floquet) {
+    let (modes, radius) = (stability.modes, stability.radius);
     hooks.log(
         LogLevel::Info,
-        &format!(
-            "on {} modes of each nodal diameter the radius is {:.6}",
-            found.stability.modes, found.stability.radius
-        ),
+        &format!("on {modes} modes of each nodal diameter the radius is {radius:.6}"),
     );
-    Ok(found)
 }
 
 /// Whether two numbers of modes have the same verdict.
@@ -211,7 +288,7 @@ fn change(few: &Floquet, many: &Floquet) -> f64 {
 fn first_number(
     model: &Model,
     omega: f64,
-    kept: &mut KeptModes,
+    (way, kept): (Way, &mut KeptModes),
     waves: Waves,
     interrupt: &Interrupt<'_>,
 ) -> Result<usize> {
@@ -225,10 +302,15 @@ fn first_number(
     let cutoff = CUTOFF * omega * highest.max(1) as f64;
     let mut modes = FLOQUET_ON_MODES_FIRST;
     loop {
-        kept.on(model, 2 * modes, waves, interrupt)?;
-        let Some(shapes) = &kept.shapes else { return Ok(modes) };
-        let below = shapes.modes_below(cutoff);
-        if below < 2 * modes || shapes.is_complete() {
+        let (below, is_complete) = if way == Way::Sliders {
+            let seen = kept.seen(model, 2 * modes, waves, interrupt)?;
+            (seen.modes_below(cutoff), seen.modes() < 2 * modes)
+        } else {
+            kept.on(model, 2 * modes, waves, interrupt)?;
+            let Some(shapes) = &kept.shapes else { return Ok(modes) };
+            (shapes.modes_below(cutoff), shapes.is_complete())
+        };
+        if below < 2 * modes || is_complete {
             return Ok(modes.max(below.min(2 * modes)));
         }
         modes *= 2;
@@ -254,8 +336,8 @@ fn refuse(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Whether the operations on the whole structure are few, or fewer than those on modes.
-fn is_small(model: &Model, omega: f64, waves: Waves) -> Result<bool> {
+/// The states on which operations are few: all, if so or if fewer than those with modes; then degrees of freedom of contacts.
+fn quickest(model: &Model, omega: f64, waves: Waves) -> Result<Way> {
     let structure = model.structure();
     let sectors = structure.repeating_sectors() as f64;
     let own = Wave::Harmonic(1);
@@ -273,7 +355,7 @@ fn is_small(model: &Model, omega: f64, waves: Waves) -> Result<bool> {
         },
     };
     if whole.operations() <= ON_ALL {
-        return Ok(true);
+        return Ok(Way::All);
     }
     let order = (degrees_of_contacts(model)?.len() + 2 * FLOQUET_ON_MODES_FIRST) as f64 * sectors;
     let least = Extent {
@@ -281,7 +363,11 @@ fn is_small(model: &Model, omega: f64, waves: Waves) -> Result<bool> {
         entries: 3.0 * order * order,
         ..whole
     };
-    Ok(order >= whole.order || whole.operations() <= least.operations())
+    if least.operations() > ON_ALL && are_sliders(model)? {
+        return Ok(Way::Sliders);
+    }
+    let whole_is_less = order >= whole.order || whole.operations() <= least.operations();
+    Ok(if whole_is_less { Way::All } else { Way::Shapes })
 }
 
 /// Blocks of the wheel with even ones and odd ones, one of each pair of conjugate ones.

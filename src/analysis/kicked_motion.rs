@@ -32,6 +32,12 @@ const KICKED_MOST_PERIODS: usize = 3_000;
 const KICKED_ITERATIONS: usize = 20_000;
 const KICKED_CHANGE: f64 = 1e-10;
 
+/// Lapses over which the growth of perturbations beside the unstable direction is measured, after as many others.
+const KICKED_GROWTH: usize = 200;
+
+/// Growth of a lapse up to which a second direction counts as stable: sliders that rest neither grow nor decay.
+const KICKED_NEUTRAL: f64 = 1e-4;
+
 /// End of a kicked motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
@@ -202,7 +208,96 @@ fn distance(a: &State, b: &State, omega: f64) -> f64 {
     (square(&a.x, &b.x, 1.0) + square(&a.v, &b.v, 1.0 / omega)).sqrt()
 }
 
-/// The left eigenvector of the largest multiplier of a motion, by powers, and this multiplier.
+/// The map of a lapse from a motion, velocities over the frequency.
+struct LapseMap<'s> {
+    sensitivity: Sensitivity<'s>,
+    omega: f64,
+    /// Number of displacements, and of all states.
+    extent: (usize, usize),
+}
+
+impl LapseMap<'_> {
+    /// Velocities times 1/ω have the unit of displacements.
+    fn unit(&self, i: usize) -> f64 {
+        let n = self.extent.0;
+        if (n..2 * n).contains(&i) { self.omega } else { 1.0 }
+    }
+
+    /// y = B x, or Bᵀ x.
+    fn apply(&self, transposed: bool, x: &[f64], y: &mut [f64]) {
+        for (j, y) in y.iter_mut().enumerate() {
+            let entry = |i: usize| {
+                let (from, to) = if transposed { (j, i) } else { (i, j) };
+                self.sensitivity.by_initial(from, to) * self.unit(from) / self.unit(to)
+            };
+            *y = x.iter().enumerate().map(|(i, x)| x * entry(i)).sum();
+        }
+    }
+
+    /// The largest multiplier with its eigenvector, by powers, and whether these converge, as they do to a real one that is alone.
+    fn largest(&self, transposed: bool, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, f64, bool)> {
+        let m = self.extent.1;
+        let mut w = try_vec(m, 1.0, CONTEXT)?;
+        let mut next = try_vec(m, 0.0, CONTEXT)?;
+        let mut multiplier = f64::NAN;
+        for _ in 0..KICKED_ITERATIONS {
+            interrupt.check_before((m * m) as u64)?;
+            self.apply(transposed, &w, &mut next);
+            multiplier = dot(&w, &next) / dot(&w, &w);
+            let size = dot(&next, &next).sqrt() * multiplier.signum();
+            if size.is_nan() || size == 0.0 {
+                break;
+            }
+            let mut change = 0.0;
+            for (w, next) in w.iter_mut().zip(&next) {
+                change = f64::max(change, (next / size - *w).abs());
+                *w = next / size;
+            }
+            if change < KICKED_CHANGE {
+                return Ok((w, multiplier, true));
+            }
+        }
+        Ok((w, multiplier, false))
+    }
+
+    /// Growth in a lapse of perturbations without the direction of a multiplier: x ← B x − μ r (w·x)/(w·r) with its left and right
+    /// eigenvectors w and r.
+    fn growth_without(&self, multiplier: f64, w: &[f64], r: &[f64], interrupt: &Interrupt<'_>) -> Result<f64> {
+        let m = self.extent.1;
+        let mut x = try_vec(m, 0.0, CONTEXT)?;
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = (1.7 * (i + 1) as f64).sin();
+        }
+        let mut next = try_vec(m, 0.0, CONTEXT)?;
+        let both = dot(w, r);
+        let mut logarithm = 0.0;
+        for lapse in 0..2 * KICKED_GROWTH {
+            interrupt.check_before((m * m) as u64)?;
+            self.apply(false, &x, &mut next);
+            let share = multiplier * dot(w, &x) / both;
+            for (next, r) in next.iter_mut().zip(r) {
+                *next -= share * r;
+            }
+            let (before, after) = (dot(&x, &x).sqrt(), dot(&next, &next).sqrt());
+            if after <= f64::MIN_POSITIVE {
+                return Ok(0.0);
+            }
+            if lapse >= KICKED_GROWTH {
+                logarithm += (after / before).ln();
+            }
+            for (x, next) in x.iter_mut().zip(&next) {
+                *x = next / after;
+            }
+        }
+        Ok((logarithm / KICKED_GROWTH as f64).exp())
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The left eigenvector of the only multiplier of a motion beyond 1, by powers, and this multiplier.
 fn left_eigenvector(system: &mut System<'_>, event_loop: &mut EventLoop, motion: &State) -> Result<(Vec<f64>, f64)> {
     let mut sensitivity = Sensitivity::new(system)?;
     let mut state = motion.try_clone()?;
@@ -211,41 +306,29 @@ fn left_eigenvector(system: &mut System<'_>, event_loop: &mut EventLoop, motion:
         ..Observers::default()
     };
     event_loop.run(system, &mut state, observers)?;
-    let (n, m) = (system.order(), state.len());
-    // Velocities times 1/ω have the unit of displacements.
-    let unit = |i: usize| if (n..2 * n).contains(&i) { system.omega } else { 1.0 };
-    let mut w = try_vec(m, 1.0, CONTEXT)?;
-    let mut next = try_vec(m, 0.0, CONTEXT)?;
-    let (mut multiplier, mut change) = (f64::NAN, f64::INFINITY);
-    for _ in 0..KICKED_ITERATIONS {
-        system.interrupt.check_before((m * m) as u64)?;
-        for (j, next) in next.iter_mut().enumerate() {
-            *next = (0..m)
-                .map(|i| w[i] * sensitivity.by_initial(j, i) * unit(j) / unit(i))
-                .sum();
-        }
-        multiplier = w.iter().zip(&next).map(|(a, b)| a * b).sum::<f64>() / w.iter().map(|a| a * a).sum::<f64>();
-        let size = next.iter().map(|x| x * x).sum::<f64>().sqrt() * multiplier.signum();
-        if size.is_nan() || size == 0.0 {
-            break;
-        }
-        change = 0.0;
-        for (w, next) in w.iter_mut().zip(&next) {
-            change = f64::max(change, (next / size - *w).abs());
-            *w = next / size;
-        }
-        if change < KICKED_CHANGE {
-            break;
-        }
-    }
-    if !(multiplier.abs() > 1.0 && change < KICKED_CHANGE) {
+    let map = LapseMap {
+        sensitivity,
+        omega: system.omega,
+        extent: (system.order(), state.len()),
+    };
+    let (mut w, multiplier, found) = map.largest(true, system.interrupt)?;
+    if !(multiplier > 1.0 && found) {
         return fail!(
             Argument,
             "saddle: the largest multiplier is {multiplier:.6}, needs a point with one unstable direction, a real multiplier beyond 1"
         );
     }
+    let (r, ..) = map.largest(false, system.interrupt)?;
+    let second = map.growth_without(multiplier, &w, &r, system.interrupt)?;
+    if second > 1.0 + KICKED_NEUTRAL {
+        return fail!(
+            Argument,
+            "saddle: beside the multiplier {multiplier:.6} another one has the modulus {second:.4}, needs a point with one unstable \
+             direction: kicks that do not return may then lead anywhere"
+        );
+    }
     for (i, w) in w.iter_mut().enumerate() {
-        *w /= unit(i);
+        *w /= map.unit(i);
     }
     Ok((w, multiplier))
 }

@@ -26,6 +26,7 @@ mod detached_curves;
 mod evaluation_need;
 pub mod fit;
 pub mod floquet;
+mod floquet_of_sliders;
 mod floquet_on_modes;
 mod followed;
 mod forced_curve;

@@ -19,7 +19,7 @@ const CONTEXT: &str = "the motion in time";
 pub(super) const FAR: f64 = 0.2;
 
 /// Largest difference of opposite sectors, relative to the motion, of a motion that is odd.
-const ODD: f64 = 1e-9;
+pub(super) const ODD: f64 = 1e-9;
 
 /// A periodic motion by its harmonics 0 … H in the caller's unit and numbering.
 pub(super) struct Motion<'a> {

@@ -3,6 +3,7 @@
 pub mod aero;
 mod blocks;
 mod complex_stiffness;
+pub(crate) mod contact_modes;
 pub mod contents;
 pub mod cyclic;
 pub mod damped_mode;

@@ -142,7 +142,10 @@ fn is_own_mirror(structure: &Structure, diameter: usize) -> bool {
 }
 
 /// Amplitudes of the forces on the independent degrees of freedom, harmonic by harmonic.
-fn forces_of_harmonics(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn forces_of_harmonics(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
     let mut found: Vec<(usize, Vec<Complex64>)> = Vec::new();
     for f in model.excitation().forces() {
         if found.iter().any(|(harmonic, _)| *harmonic == f.harmonic) {
@@ -310,7 +313,7 @@ impl Structure {
     }
 
     /// The nodal diameter of a harmonic; `true` if it travels against the sense in which sector s + 1 lags.
-    fn wave_of(&self, harmonic: usize) -> (usize, bool) {
+    pub(crate) fn wave_of(&self, harmonic: usize) -> (usize, bool) {
         let turns = i128::from(harmonic as u64) * i128::from(self.engine_order());
         self.fold(turns.rem_euclid(self.sectors() as i128) as i64)
     }

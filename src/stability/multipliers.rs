@@ -6,6 +6,7 @@
 //! multipliers are exact zeros, which an eigensolver would find as roots of round-off.
 
 use crate::error::{Error, Result, Status, check_memory, try_push};
+use crate::interrupt::Interrupt;
 use crate::model::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
@@ -75,28 +76,60 @@ pub(crate) fn multipliers_of(
         try_push(&mut directions, rate, CONTEXT)?;
         trivial = 1;
     }
-    let moving = kept.len() - 2 * n;
-    let map = without(map, directions);
-    let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
-        let (rest, zeros) = without_zeros(map.map(|z| z.re), system)?;
-        (real_eigenvalues(&rest)?, zeros)
-    } else {
-        let (rest, zeros) = without_zeros(map, system)?;
-        (eigenvalues(rest)?, zeros)
-    };
-    let mut found = Vec::new();
-    let mut add = |count: usize, value: Complex64, class| {
-        (0..count).try_for_each(|_| try_push(&mut found, Multiplier { value, class }, CONTEXT))
-    };
-    add(stuck.len(), Complex64::ONE, MultiplierClass::NeutralStuck)?;
-    add(rigid, Complex64::ONE, MultiplierClass::NeutralRigid)?;
-    add(trivial, Complex64::ONE, MultiplierClass::Trivial)?;
-    add(zeros.min(moving), Complex64::ZERO, MultiplierClass::Memory)?;
-    add(zeros.saturating_sub(moving), Complex64::ZERO, MultiplierClass::Ordinary)?;
     // The lapses of a period turn the wheel by `follower` sectors each, which passes the ring some whole times.
     let lapses = system.sectors;
     let passed = system.follower * lapses / block.closure().sectors;
     let turn = block.closure().factor(structure, passed).conj();
+    let counts = Counts {
+        stuck: stuck.len(),
+        rigid,
+        trivial,
+        moving: kept.len() - 2 * n,
+    };
+    let map = without(map, directions);
+    classified(
+        map,
+        &counts,
+        (lapses, turn),
+        block.closure().has_conjugate,
+        system.interrupt,
+    )
+}
+
+/// Numbers of multipliers that are known beforehand, and of sliders that move.
+pub(crate) struct Counts {
+    pub stuck: usize,
+    pub rigid: usize,
+    pub trivial: usize,
+    pub moving: usize,
+}
+
+/// The multipliers of a period by their reasons, from the map of a lapse without known directions. A period has `lapses`
+/// of them, and the power of the map is to be multiplied by `turn`.
+pub(crate) fn classified(
+    map: DMatrix<Complex64>,
+    counts: &Counts,
+    (lapses, turn): (usize, Complex64),
+    has_conjugate: bool,
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<Multiplier>> {
+    let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
+        let (rest, zeros) = without_zeros(map.map(|z| z.re), interrupt)?;
+        (real_eigenvalues(&rest)?, zeros)
+    } else {
+        let (rest, zeros) = without_zeros(map, interrupt)?;
+        (eigenvalues(rest)?, zeros)
+    };
+    let moving = counts.moving;
+    let mut found = Vec::new();
+    let mut add = |count: usize, value: Complex64, class| {
+        (0..count).try_for_each(|_| try_push(&mut found, Multiplier { value, class }, CONTEXT))
+    };
+    add(counts.stuck, Complex64::ONE, MultiplierClass::NeutralStuck)?;
+    add(counts.rigid, Complex64::ONE, MultiplierClass::NeutralRigid)?;
+    add(counts.trivial, Complex64::ONE, MultiplierClass::Trivial)?;
+    add(zeros.min(moving), Complex64::ZERO, MultiplierClass::Memory)?;
+    add(zeros.saturating_sub(moving), Complex64::ZERO, MultiplierClass::Ordinary)?;
     let mut memories = moving.saturating_sub(zeros);
     for value in values {
         let value = value.powu(lapses as u32) * turn;
@@ -107,7 +140,7 @@ pub(crate) fn multipliers_of(
             add(1, value, MultiplierClass::Ordinary)?;
         }
     }
-    if block.closure().has_conjugate {
+    if has_conjugate {
         for i in 0..found.len() {
             let Multiplier { value, class } = found[i];
             let value = value.conj();
@@ -162,11 +195,11 @@ fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>)
 /// The map on its lasting range, and the number of its zero multipliers.
 fn without_zeros<T: ComplexField<RealField = f64>>(
     mut map: DMatrix<T>,
-    system: &System<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<(DMatrix<T>, usize)> {
     let mut zeros = 0;
     loop {
-        system.interrupt.check()?;
+        interrupt.check()?;
         let order = map.nrows();
         if order == 0 {
             return Ok((map, zeros));

@@ -5,7 +5,7 @@ use crate::error::{Result, try_vec};
 use crate::time_integration::event_law::{Row, along};
 
 /// Highest degree of a step's polynomials.
-pub(super) const DEGREE: usize = 26;
+pub(crate) const DEGREE: usize = 26;
 
 /// The motion x(t₀ + θh) = Σₖ Xₖ θᵏ, 0 ≤ θ ≤ 1, of n degrees of freedom.
 pub(crate) struct StepPolynomial {
@@ -91,7 +91,7 @@ const ZERO: f64 = 4.0 * f64::EPSILON;
 /// No fall is missed: in Bernstein's form a polynomial has no more roots in an interval than its coefficients change
 /// sign (Farouki 2012, doi:10.1016/j.cagd.2012.03.001). Intervals are halved from the left until they hold one root
 /// or none; two that cannot be distinguished are a touch, which does not end a piece.
-pub(super) fn first_fall(margin: &[f64], zeros: usize) -> Option<f64> {
+pub(crate) fn first_fall(margin: &[f64], zeros: usize) -> Option<f64> {
     let mut c = &margin[zeros.min(margin.len())..];
     while c.last() == Some(&0.0) {
         c = &c[..c.len() - 1];

@@ -39,3 +39,4 @@ mod fe_stops;
 mod friction_patch;
 mod large_models;
 mod large_plate;
+mod sector_stability;

@@ -9,7 +9,7 @@ use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions};
+use hbvib::options::{ModeChoice, ModeGuess, ModeOptions, SolverOptions};
 use hbvib::results::Branch;
 use num_complex::Complex64;
 
@@ -175,6 +175,48 @@ fn an_internal_resonance_is_followed_round_its_fold() {
     // The orbit is that of the differential equation all along the way.
     for point in (0..branch.points()).step_by(5) {
         let gap = gap_after_a_period(&branch, point, branch.omega()[point]);
+        assert!(gap < 1e-8, "point {point}: {gap:e}");
+    }
+}
+
+/// The curve goes on above the tongue, at amplitudes that the curve from small ones never reaches. A guess leads there: the second
+/// mass moves nearly alone at a = 100, and the first follows it by the balance of one harmonic, ¾·0.5 x³ + (2 − ω²) x = a.
+#[test]
+fn the_curve_above_the_tongue_is_reached_by_a_guess() {
+    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]);
+    model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
+    let below = ModeOptions {
+        log10_start: -2.0,
+        log10_stop: 3.0,
+        ..ModeOptions::default()
+    };
+    let lower = nonlinear_mode(&model, &harmonics(15), &below, &mut Hooks::default()).unwrap();
+    let amplitude = |branch: &Branch, point: usize| branch.mode_at(point).unwrap().log10_amplitude;
+    let largest = (0..lower.points())
+        .map(|p| amplitude(&lower, p))
+        .fold(f64::NEG_INFINITY, f64::max);
+    let mut motion = vec![Complex64::new(0.0, 0.0); 2 * 2];
+    (motion[2], motion[3]) = (6.0.into(), 100.0.into());
+    let above = ModeOptions {
+        log10_start: 2.0,
+        log10_stop: 3.0,
+        guess: Some(ModeGuess {
+            omega: 1.39,
+            motion: &motion,
+            damping_ratio: 0.0,
+        }),
+        ..ModeOptions::default()
+    };
+    let upper = nonlinear_mode(&model, &harmonics(63), &above, &mut Hooks::default()).unwrap();
+    println!(
+        "10^{largest:.3} below, 10^{:.3} above at {:.6}",
+        amplitude(&upper, 0),
+        upper.omega()[0]
+    );
+    assert!(largest < 1.9 && (amplitude(&upper, 0) - 2.0).abs() < 1e-9);
+    // The begin of the curve, before it turns as well.
+    for point in (0..28).step_by(4) {
+        let gap = gap_after_a_period(&upper, point, upper.omega()[point]);
         assert!(gap < 1e-8, "point {point}: {gap:e}");
     }
 }

@@ -4,7 +4,11 @@
 use crate::common::{harmonics, one_mass};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::options::ForcedOptions;
-use hbvib::{Branch, Hooks, Kick, Model, Polynomial, SolverOptions, Status, forced_response, smallest_kick};
+use hbvib::{
+    Branch, Hooks, Kick, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Status, forced_response,
+    smallest_kick,
+};
+use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// x″ = −g(x, v) + F cos(ωt + φ)
@@ -165,4 +169,45 @@ fn points_that_are_no_pair_are_refused() {
     refused(at[0].point, at[1].point, 0, 0, "phases = 0");
     refused(at[0].point, 0, 0, 8, "request it with `at`");
     refused(at[1].point, at[1].point, 0, 8, "one motion");
+}
+
+/// Two oscillators without connection, both in their unstable motion: two directions in which perturbations grow.
+#[test]
+fn a_saddle_with_two_unstable_directions_is_refused() {
+    let mut model = Model::new(2).unwrap();
+    let unit = [1.0, 0.0, 0.0, 1.0];
+    let damping = [0.05, 0.0, 0.0, 0.05];
+    for (kind, values) in [
+        (MatrixKind::Mass, &unit),
+        (MatrixKind::Stiffness, &unit),
+        (MatrixKind::Damping, &damping),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(2, values)).unwrap();
+    }
+    for (dof, force) in [(0, 0.015), (1, 0.01866)] {
+        let damper = Polynomial::scalar(&[], &[0.0, 0.0, -0.05, 0.0, 0.012]).unwrap();
+        model
+            .add_contact(&Contact::between(dof, None, ContactKind::Polynomial(damper)))
+            .unwrap();
+        model.add_force(dof, 1, force.into()).unwrap();
+    }
+    let at = |amplitudes: [f64; 2]| {
+        // At the resonance the motion lags by a quarter of the period.
+        let mut guess = vec![Complex64::new(0.0, 0.0); 4];
+        for (z, a) in guess[2..].iter_mut().zip(amplitudes) {
+            *z = Complex64::new(0.0, -a);
+        }
+        let range = ForcedOptions {
+            omega_start: 1.0,
+            omega_stop: 1.0,
+            guess: Some(&guess),
+            ..ForcedOptions::default()
+        };
+        forced_response(&model, &harmonics(5), &range, &mut Hooks::default()).unwrap()
+    };
+    let (lower, one, two) = (at([0.325, 0.43]), at([1.166, 0.43]), at([1.166, 1.05]));
+    let kick = |saddle: &Branch| smallest_kick(&model, (&lower, 0), (saddle, 0), (0, 8), &mut Hooks::default());
+    assert!(kick(&one).unwrap().multiplier > 1.1);
+    let e = kick(&two).unwrap_err();
+    assert!(e.message().contains("another one has the modulus"), "{}", e.message());
 }

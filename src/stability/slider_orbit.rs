@@ -1,0 +1,183 @@
+//! The periodic motion of a block on modes, by Newton's method over a lapse: shooting.
+
+use crate::error::{Result, Status, try_vec};
+use crate::interrupt::Interrupt;
+use crate::model::structure::Structure;
+use crate::stability::slider_map::SliderMap;
+use crate::stability::slider_motion::{Path, SliderMotion, SliderState};
+use nalgebra::{DMatrix, DVector};
+
+const CONTEXT: &str = "shooting on modes";
+
+/// Newton's iterations.
+const SLIDER_ORBIT_MOST_ITERATIONS: usize = 30;
+
+/// Smallest share of a Newton step that is tried.
+const SLIDER_ORBIT_SHORTEST: f64 = 1.0 / 64.0;
+
+/// A periodic motion.
+pub(crate) struct Orbit {
+    pub state: SliderState,
+    pub path: Path,
+    /// Contacts that slip in some sector.
+    pub moves: Vec<bool>,
+    /// Largest change over a lapse, relative to the motion.
+    pub residual: f64,
+}
+
+/// A lapse from a state.
+struct Trial {
+    state: SliderState,
+    path: Path,
+    moves: Vec<bool>,
+    /// Change over the lapse, velocities over ω, places of sliders in units of coordinates.
+    change: DVector<f64>,
+    residual: f64,
+}
+
+/// The periodic motion next to a state; `None`: Newton's method did not converge. With `iterate` false the state is taken as it is.
+///
+/// # Errors
+/// Those of [`SliderMotion::run`], `StoppedByCaller`.
+pub(crate) fn orbit(
+    motion: &SliderMotion<'_>,
+    structure: &Structure,
+    start: SliderState,
+    (tolerance, iterate): (f64, bool),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Orbit>> {
+    let mut current = trial(motion, structure, start)?;
+    if iterate {
+        for _ in 0..SLIDER_ORBIT_MOST_ITERATIONS {
+            if current.residual <= tolerance {
+                break;
+            }
+            let Some(step) = newton(motion, structure, &current, interrupt)? else {
+                return Ok(None);
+            };
+            let mut share = 1.0;
+            let next = loop {
+                match trial(motion, structure, moved(motion, &current, &step, share)) {
+                    Ok(next) if next.residual < current.residual => break Some(next),
+                    Err(e) if !matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence) => return Err(e),
+                    _ => {}
+                }
+                share *= 0.5;
+                if share < SLIDER_ORBIT_SHORTEST {
+                    break None;
+                }
+            };
+            let Some(next) = next else { return Ok(None) };
+            current = next;
+        }
+        if current.residual > tolerance {
+            return Ok(None);
+        }
+    }
+    Ok(Some(Orbit {
+        state: current.state,
+        path: current.path,
+        moves: current.moves,
+        residual: current.residual,
+    }))
+}
+
+/// Factor that makes places of sliders coordinates.
+pub(crate) fn scale_of_sliders(motion: &SliderMotion<'_>) -> f64 {
+    let largest = motion.ring.rows.amax();
+    if largest > 0.0 { 1.0 / largest } else { 1.0 }
+}
+
+fn trial(motion: &SliderMotion<'_>, structure: &Structure, state: SliderState) -> Result<Trial> {
+    let ring = motion.ring;
+    let mut image = state.clone();
+    let path = motion.run(&mut image)?;
+    let (order, all) = (ring.order(), ring.all());
+    let mut moves = try_vec(all, false, CONTEXT)?;
+    for (e, moves) in moves.iter_mut().enumerate() {
+        let family = e / ring.closure.sectors * ring.closure.sectors;
+        *moves = (family..family + ring.closure.sectors).any(|e| path.moved[e]);
+    }
+    let scale = scale_of_sliders(motion);
+    let (q, v) = (&ring.turn * &image.q, &ring.turn * &image.v);
+    let mut change = DVector::zeros(2 * order + all);
+    for i in 0..order {
+        change[i] = q[i] - state.q[i];
+        change[order + i] = (v[i] - state.v[i]) / motion.omega;
+    }
+    for e in (0..all).filter(|&e| moves[e]) {
+        let (to, turns) = ring.shifted(e);
+        let factor = ring.closure.factor(structure, turns).re;
+        change[2 * order + e] = scale * (factor * image.w[to] - state.w[e]);
+    }
+    let unit = |x: f64| if x > 0.0 { x } else { 1.0 };
+    let size = (unit(path.largest.0), unit(path.largest.1 / motion.omega));
+    let mut residual = 0.0_f64;
+    for (i, change) in change.iter().enumerate() {
+        let size = if (order..2 * order).contains(&i) {
+            size.1
+        } else {
+            size.0
+        };
+        residual = residual.max(change.abs() / size);
+    }
+    Ok(Trial {
+        state,
+        path,
+        moves,
+        change,
+        residual,
+    })
+}
+
+/// The correction of coordinates, velocities over ω and places of moving sliders in units of coordinates.
+fn newton(
+    motion: &SliderMotion<'_>,
+    structure: &Structure,
+    trial: &Trial,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<DVector<f64>>> {
+    let ring = motion.ring;
+    let map = SliderMap::new(ring, &trial.path, &trial.moves, interrupt)?;
+    let factor = |turns: usize| ring.closure.factor(structure, turns).re;
+    let mut matrix: DMatrix<f64> = map.matrix(motion.omega, scale_of_sliders(motion), factor);
+    let order = ring.order();
+    let mut right = DVector::zeros(map.states());
+    for i in 0..2 * order {
+        right[i] = -trial.change[i];
+    }
+    for (i, &e) in map.moving.iter().enumerate() {
+        right[2 * order + i] = -trial.change[2 * order + e];
+    }
+    for i in 0..map.states() {
+        matrix[(i, i)] -= 1.0;
+    }
+    interrupt.check_before((map.states().pow(3) / 3) as u64)?;
+    let Some(step) = matrix.lu().solve(&right) else {
+        return Ok(None);
+    };
+    if !step.iter().all(|x| x.is_finite()) {
+        return Ok(None);
+    }
+    let mut all = DVector::zeros(2 * order + ring.all());
+    all.rows_mut(0, 2 * order).copy_from(&step.rows(0, 2 * order));
+    for (i, &e) in map.moving.iter().enumerate() {
+        all[2 * order + e] = step[2 * order + i];
+    }
+    Ok(Some(all))
+}
+
+fn moved(motion: &SliderMotion<'_>, from: &Trial, step: &DVector<f64>, share: f64) -> SliderState {
+    let (order, scale) = (motion.ring.order(), scale_of_sliders(motion));
+    let mut state = from.state.clone();
+    for (i, x) in state.q.iter_mut().enumerate() {
+        *x += share * step[i];
+    }
+    for (i, v) in state.v.iter_mut().enumerate() {
+        *v += share * step[order + i] * motion.omega;
+    }
+    for (e, w) in state.w.iter_mut().enumerate() {
+        *w += share * step[2 * order + e] / scale;
+    }
+    state
+}

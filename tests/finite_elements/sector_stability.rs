@@ -1,0 +1,66 @@
+//! Stability of the finite-element sector with its 60 contacts, on modes and sliders.
+
+use crate::sector::{Sector, Size};
+use hbvib::Floquet;
+use hbvib::analysis::floquet;
+use hbvib::hooks::Hooks;
+use hbvib::options::{FloquetOptions, SolverOptions, Waves};
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+/// The sector at 530 Hz, where all contacts slip.
+fn stability(size: Size, force: f64, waves: Waves) -> Floquet {
+    let folder = crate::common::programs::root().join("examples/data/fe");
+    let model = Sector::read(&folder, size).unwrap().forced(force).unwrap();
+    let solver = SolverOptions {
+        harmonics: 9,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    };
+    let branch = crate::common::solve_at(&model, &solver, 530.0 * TAU);
+    let begin = Instant::now();
+    let options = FloquetOptions {
+        waves,
+        ..FloquetOptions::default()
+    };
+    let found = floquet(&model, &branch, 0, &options, &mut Hooks::default()).unwrap();
+    println!(
+        "{} {waves:?}: {:.6} on {} modes, {:.1e} told, point moved by {:.1e}, {:.1?}",
+        size.name(),
+        found.radius,
+        found.modes,
+        found.modes_change,
+        found.orbit_change,
+        begin.elapsed()
+    );
+    found
+}
+
+#[test]
+fn the_reduced_sector_with_all_contacts_has_a_verdict() {
+    let found = stability(Size::Reduced, 2.0, Waves::Wave);
+    assert_eq!((found.unstable, found.neutral), (0, 0));
+    // tests/peers/sector_in_time.py: 0.993794 to 0.993800.
+    assert!((found.radius - 0.993797).abs() < 2e-5, "{}", found.radius);
+}
+
+/// Ten times the force: the ring hardly follows the rim.
+#[test]
+fn a_sector_that_slips_throughout_has_a_verdict() {
+    let found = stability(Size::Reduced, 20.0, Waves::Wave);
+    assert_eq!(found.unstable, 0);
+    assert!(found.orbit_change < 0.2);
+}
+
+#[test]
+#[ignore = "half a minute long, most of it the response; tests/deep.sh runs it"]
+fn the_full_sector_and_the_wheel_have_a_verdict() {
+    let reduced = stability(Size::Reduced, 2.0, Waves::Wave);
+    let full = stability(Size::Full, 2.0, Waves::Wave);
+    assert_eq!(full.unstable, 0);
+    assert!((full.radius - reduced.radius).abs() < 1e-6);
+    // The ring, which slips everywhere, hardly decays where it turns as a whole.
+    let wheel = stability(Size::Reduced, 2.0, Waves::Wheel);
+    assert_eq!(wheel.unstable, 0);
+    assert!(wheel.radius > 0.9999 && wheel.radius < 1.0);
+}
