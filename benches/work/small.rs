@@ -4,8 +4,8 @@ use crate::calibration::Unit;
 use crate::model::{B2, Parameters};
 use crate::{Row, Work};
 use hbvib::{
-    Branch, Error, ForcedOptions, Hooks, ModeChoice, ModeOptions, Result, SolverOptions, Status, forced_response,
-    nonlinear_mode,
+    Branch, Error, ForcedOptions, Hooks, ModeChoice, ModeOptions, Result, SolverOptions, Status, Waves,
+    forced_response, nonlinear_mode,
 };
 use std::f64::consts::TAU;
 
@@ -45,6 +45,24 @@ pub const ROWS: &[Row] = &[
         unit: Unit::Lu11,
         stored: 94_100.0,
         run: tolerance,
+    },
+    Row {
+        name: "ring damper, 5 N, H 9, 206 to 211 Hz",
+        unit: Unit::Lu11,
+        stored: 4_740.0,
+        run: || with_stability(None),
+    },
+    Row {
+        name: "the same with the stability of the wave",
+        unit: Unit::Lu11,
+        stored: 811_000.0,
+        run: || with_stability(Some(Waves::Wave)),
+    },
+    Row {
+        name: "the same with the stability of the wheel",
+        unit: Unit::Lu11,
+        stored: 1_440_000.0,
+        run: || with_stability(Some(Waves::Wheel)),
     },
 ];
 
@@ -95,6 +113,24 @@ fn backbone() -> Result<Work> {
     };
     let model = ring_damper(Parameters::default())?;
     let branch = nonlinear_mode(&model, &solver, &options, &mut Hooks::default())?;
+    Ok(Work::whole(&branch))
+}
+
+fn with_stability(stability: Option<Waves>) -> Result<Work> {
+    let solver = SolverOptions {
+        harmonics: 9,
+        tolerance: 0.0,
+        response_dof: Some(B2),
+        stability,
+        ..SolverOptions::default()
+    };
+    let range = ForcedOptions {
+        omega_start: 206.0 * TAU,
+        omega_stop: 211.0 * TAU,
+        ..ForcedOptions::default()
+    };
+    let model = ring_damper(Parameters::default())?;
+    let branch = forced_response(&model, &solver, &range, &mut Hooks::default())?;
     Ok(Work::whole(&branch))
 }
 

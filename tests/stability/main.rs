@@ -8,7 +8,6 @@ mod along_branch;
 mod bifurcations;
 mod branch_switching;
 mod chains_without_detached;
-mod cost_of_a_point;
 mod detached_curves;
 mod floquet_classes;
 mod floquet_references;
