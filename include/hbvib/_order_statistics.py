@@ -101,9 +101,9 @@ def screened(predicted: Values, find: Callable[[Numbers], Values], p: float, alp
         many = min(_AT_ONCE, left, int(np.count_nonzero(worst)))
         wanted = np.argsort(-worst, kind="stable")[:many]
     more, less = _most_of(float(rises.sum()), allowed), _most_of(float(falls.sum()), allowed)
-    value = float(np.quantile(np.where(failed, middle, values), p))
-    return Screened(value, at_rank(np.sort(at_least), low - less), at_rank(np.sort(at_most), high + more), known, pilot,
-                    float(rises.sum() + falls.sum()))
+    lower, upper = at_rank(np.sort(at_least), low - less), at_rank(np.sort(at_most), high + more)
+    value = float(np.clip(np.quantile(np.where(failed, middle, values), p), lower, upper))
+    return Screened(value, lower, upper, known, pilot, float(rises.sum() + falls.sum()))
 
 
 Tail = Callable[[float], "Values"]

@@ -13,7 +13,7 @@ from ._order_statistics import screened
 from ._structs import _with_options
 from ._types import SolverOptions
 from ._wheel_results import Quantile
-from ._wheel_studies import Blade, _blade, _WheelStudies
+from ._wheel_studies import Blade, _blade, _patterns, _WheelStudies
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -133,7 +133,7 @@ class _WheelQuantiles(_WheelStudies):
         (True, True)
         """
         sector = cast("Model", self)
-        given = _array("patterns", patterns, np.float64, (None, sector.sectors))
+        given = _patterns(patterns, sector.sectors, direction)
         _check(probability, confidence, len(given), (first, most), corrected)
         wheel, parameters, transform = self._directions(kind, dofs, direction)
         watched, mistuning = _blade(blade), (kind, dofs, direction)

@@ -130,8 +130,10 @@ class WheelStudy:
         return len(self.largest)
 
     def __repr__(self) -> str:
-        largest = f", amplification up to {np.nanmax(self.amplification):.4g}" if len(self) else ""
-        return f"<hbvib.WheelStudy: {len(self)} wheels{largest}>"
+        known = np.isfinite(self.largest)
+        largest = f", amplification up to {self.amplification[known].max():.4g}" if known.any() else ""
+        missing = "" if known.all() else f", {np.count_nonzero(~known)} without result"
+        return f"<hbvib.WheelStudy: {len(self)} wheels{largest}{missing}>"
 
     @property
     def amplification(self) -> FloatArray:
@@ -156,7 +158,8 @@ class WheelStudy:
 
     def quantile(self, probability: float, confidence: float = 0.95) -> Quantile:
         """The amplification that a wheel does not exceed with a probability, and an interval from the order of the wheels,
-        whatever their distribution: the number of wheels below a quantile is binomial.
+        whatever their distribution: the number of wheels below a quantile is binomial. A wheel without result may lie anywhere, so
+        that it widens the interval; the value is that of the others.
 
         >>> import hbvib
         >>> import numpy as np
@@ -171,8 +174,10 @@ class WheelStudy:
         n = len(values)
         if n == 0:
             raise ValueError("no wheel has a result")
-        low, high = ends(n, probability, (1 - confidence) / 2)
-        return Quantile(float(np.quantile(values, probability)), at_rank(values, low), at_rank(values, high))
+        low, high = ends(len(self), probability, (1 - confidence) / 2)
+        lower, upper = at_rank(values, low - (len(self) - n)), at_rank(values, high)
+        # Beyond the last of few wheels the quantile is not among them.
+        return Quantile(float(np.clip(np.quantile(values, probability), lower, upper)), lower, upper)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the cumulative distribution of the amplification, and its Weibull distribution, with matplotlib. Returns the axes.
@@ -200,7 +205,7 @@ class WheelStudy:
 
     def weibull(self) -> WheelWeibull:
         """The Weibull distribution of maxima of the greatest likelihood for the amplification (Castanier & Pierre 2006,
-        doi:10.2514/1.16345). The bound is sought up to a hundred times the span of the values above the largest of them.
+        doi:10.2514/1.16345) of the wheels with a result. The bound is sought up to a hundred times the span of the values above the largest of them.
 
         >>> import hbvib
         >>> import numpy as np

@@ -41,6 +41,20 @@ _NUMBERS_AT_ONCE = 2_000_000
 Blade = Union[int, Response]
 
 
+def _patterns(patterns: ArrayLike, sectors: int, direction: Any) -> FloatArray:
+    """Patterns of wheels as `mistune` takes them; ArgumentError that names the first that it does not."""
+    given = _array("patterns", patterns, np.float64, (None, sectors))
+    needs = "a finite number"
+    bad = ~np.isfinite(given)
+    if direction is None and not bad.any():
+        needs = "at least -1: a share, not a per cent"
+        bad = given < -1
+    if bad.any():
+        wheel, s = np.argwhere(bad)[0]
+        raise ArgumentError(f"patterns[{wheel}, {s}] = {given[wheel, s]}, needs {needs}", Status.E_ARGUMENT, 3)
+    return cast("FloatArray", given)
+
+
 class _WheelStudies(_HasUnits):
     """Methods of Model for studies of mistuned wheels."""
 
@@ -89,7 +103,7 @@ class _WheelStudies(_HasUnits):
                     **solver: Unpack[SolverOptions]) -> WheelStudy:
         """The largest blade of each of many wheels of this sector.
 
-        omega      (start, stop) of each response.
+        omega      (start, stop) of each response: peaks outside are not seen.
         patterns   wheels x sectors: delta of each sector of each wheel, as `mistune` takes it.
         kind       "stiffness", "frequency", "mass" or "damping", of `dofs` or by `direction`, as in `mistune`.
         blade      what is watched of each sector: a degree of freedom of the sector, or a Response.
@@ -109,7 +123,7 @@ class _WheelStudies(_HasUnits):
         (True, True)
         """
         sector = cast("Model", self)
-        given = _array("patterns", patterns, np.float64, (None, sector.sectors))
+        given = _patterns(patterns, sector.sectors, direction)
         wheel, parameters, transform = self._directions(kind, dofs, direction)
         largest, of, at, status = self._largest_blades(
             wheel, parameters, transform(given), omega, _blade(blade), threads=threads, progress=progress, phase=phase, cancel=cancel,
@@ -144,6 +158,8 @@ class _WheelStudies(_HasUnits):
         sector = cast("Model", self)
         if not (isinstance(box, (int, float, np.number)) and np.isfinite(box) and box > 0):
             raise ValueError(f"box = {box!r}, needs a number above 0")
+        if direction is None and box > 1:
+            raise ValueError(f"box = {box!r}, needs at most 1: a share, not a per cent")
         if starts < 1:
             raise ValueError(f"starts = {starts}, needs at least 1")
         wheel, parameters, transform = self._directions(kind, dofs, direction)

@@ -163,7 +163,7 @@ pub(super) fn complex_at<'a>(
     if condensed.has_exchanges() {
         return fail!(
             Unsupported,
-            "a contact is near-rigid, and its motion at this point is that of a rigid one; derivatives need a branch of fixed \
+            "a contact is rigid or near-rigid, and its motion at this point is that of a rigid one; derivatives need a finite kt and a branch of fixed \
              harmonics, tolerance = 0"
         );
     }

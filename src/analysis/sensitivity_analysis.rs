@@ -82,8 +82,8 @@ pub fn sensitivity_with(
     if branch.condensed_at(point).has_exchanges() {
         return fail!(
             Unsupported,
-            "a contact is near-rigid, and its motion at this point is that of a rigid one; derivatives need a branch of fixed \
-             harmonics, tolerance = 0"
+            "a contact is rigid or near-rigid, and its motion at this point is that of a rigid one; derivatives need a finite kt and a branch of \
+             fixed harmonics, tolerance = 0"
         );
     }
     for (i, parameter) in parameters.iter().enumerate() {

@@ -460,7 +460,7 @@ impl<'a> WornStates<'a> {
         if condensed.has_exchanges() {
             return fail!(
                 Unsupported,
-                "a contact is near-rigid, and its motion is that of a rigid one; a life needs fixed harmonics, tolerance = 0"
+                "a contact is rigid or near-rigid, and its motion is that of a rigid one; a life needs a finite kt and fixed harmonics, tolerance = 0"
             );
         }
         let samples = branch.samples_at(point);

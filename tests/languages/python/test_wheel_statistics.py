@@ -139,4 +139,23 @@ check("more points tell more", (two.sd < exact.sd * (1 + 1e-6)).all() and abs(tw
 raises("shapes", ValueError, lambda: sector.identify_pattern(modes.omega, tips[:, :5], **known))
 raises("a stop is told", hbvib.Stopped, lambda: sector.identify_pattern(modes.omega, tips, phase=lambda *_: False, **known))
 
-finish(45)
+# A per cent taken for a share, and wheels without a result, are told.
+small = hbvib.Model.cyclic(1, sectors=5, engine_order=1, mass=1, stiffness=3, coupling=dict(stiffness=-0.1), damping=0.05)
+small.add_force(0, 0.1)
+study = dict(kind="mass", dofs=[0], harmonics=1)
+per_cent = np.array([[0.01, 0, 0, 0, 0], [0, 0, -2.0, 0, 0]])
+raises("per cent", hbvib.ArgumentError, lambda: small.wheel_study((1.3, 2.1), per_cent, **study), words="patterns[1, 2] = -2.0, needs at least -1")
+raises("NaN", hbvib.ArgumentError, lambda: small.wheel_study((1.3, 2.1), np.full((1, 5), np.nan), **study), words="patterns[0, 0] = nan")
+many = np.zeros((60, 5))
+many[7, 3] = -1.5
+raises("per cent of many", hbvib.ArgumentError, lambda: small.wheel_quantile((1.3, 2.1), 0.9, many, **study), words="patterns[7, 3]")
+raises("box", ValueError, lambda: small.worst_pattern((1.3, 2.1), 2.0, **study), words="not a per cent")
+raises("levels", ValueError, lambda: small.intentional_pattern((1.3, 2.1), (-0.95, 0.1), 0.1, longest=2, **study), words="not per cent")
+values = np.r_[np.linspace(1, 2, 100), np.full(100, np.nan)]
+half = hbvib.WheelStudy(values, np.zeros(200), np.ones(200), np.zeros(200), 1.0, np.ones(200))
+check("wheels without result may lie anywhere", half.quantile(0.5).lower == -np.inf and half.quantile(0.5).upper == np.inf)
+check("and are told", "100 without result" in repr(half), repr(half))
+few = hbvib.WheelStudy(np.linspace(1, 2, 60), np.zeros(60), np.ones(60), np.zeros(60), 1.0, np.ones(60))
+check("a value lies in its interval", few.quantile(0.9999).lower <= few.quantile(0.9999).value, few.quantile(0.9999))
+
+finish(53)
