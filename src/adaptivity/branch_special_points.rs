@@ -52,29 +52,6 @@ impl BranchTracer<'_> {
         }
     }
 
-    /// Solves at the requested parameter values on the arc from `a` (included) to `b` (included if it is the last
-    /// point of the branch), which has no fold inside.
-    fn find_requested(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        a: PointAt<'_>,
-        b: PointAt<'_>,
-        last: bool,
-    ) -> Result<()> {
-        let (at, interrupt) = (self.course.at, self.interrupt);
-        for (i, &p) in at.iter().enumerate() {
-            let (pa, pb) = (a.0.parameter(), b.0.parameter());
-            let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
-            let inside = inside || (last && p.to_bits() == pb.to_bits());
-            if inside {
-                self.find(analysis, SpecialKind::At(i), a, b, |locator, problem, a, b| {
-                    locator.at_parameter(problem, a, b, p, interrupt)
-                })?;
-            }
-        }
-        Ok(())
-    }
-
     /// Searches between two neighbours and records the point that is found, with the harmonics that it requires.
     pub(super) fn find(
         &mut self,

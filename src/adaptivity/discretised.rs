@@ -82,6 +82,11 @@ pub(crate) trait Discretised {
         0..0
     }
 
+    /// Whether a solution at any parameter may be sought as the first one is: a mode would be another one.
+    fn may_start_anywhere(&self) -> bool {
+        false
+    }
+
     /// Whether peaks of the amplitude that the problem observes are sought.
     fn observes_peaks(&self) -> bool {
         true

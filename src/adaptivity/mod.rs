@@ -22,6 +22,7 @@ pub(crate) mod estimate_spacing;
 pub(crate) mod harmonic_levels;
 pub(crate) mod inner_ends;
 mod linear_stretch;
+mod requested_points;
 pub(crate) mod resolutions;
 pub(crate) mod resonance_bands;
 pub(crate) mod resonance_grid;

@@ -434,6 +434,10 @@ impl Discretised for ForcedDiscretised<'_> {
         self.read_response(response, at)
     }
 
+    fn may_start_anywhere(&self) -> bool {
+        true
+    }
+
     fn observes_peaks(&self) -> bool {
         self.responses.list.is_empty() || self.responses.is_observed()
     }

@@ -2,7 +2,7 @@
 //! motions that they stand for.
 
 use crate::condense::Condensed;
-use crate::condense::exchange::Exchange;
+use crate::condense::exchange::{CREEP, Exchange};
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::relative_coordinates::AssembledDirection;
 use crate::condense::sweep::Sweep;
@@ -20,6 +20,10 @@ const CONTEXT: &str = "the near-rigid contacts";
 /// all. On 45 random chains with kt/k from 300 to 1e8 and slip the geometric mean of the errors with 15 to 255 harmonics is the
 /// same within 15 % for 160 and 500, up to a fifth more for 60, and up to a third more for 20.
 const NOMINAL: f64 = 160.0;
+
+/// Exchanged motion by a force, over that of α, up to which the sides of a contact do not move against each other in a harmonic, as those of
+/// blades that move alike: any force that sticks would do there, and a creep of its place takes the least one.
+const UNMOVED: f64 = 1e-9;
 
 /// Selects the coordinates whose motions are exchanged: those of one near-rigid slider alone, which have no reference stiffness
 /// then.
@@ -121,31 +125,40 @@ impl Condensed {
 
     /// Sets α of all exchanges, from the middle of a sweep, and the frequencies at which their sticks ring.
     pub(super) fn set_exchanges(&mut self, sweep: Sweep, interrupt: &Interrupt<'_>) -> Result<()> {
-        let first = self.set.numbers().iter().position(|&h| h > 0);
-        let Some(i) = first.filter(|_| self.has_exchanges()) else {
+        if !self.has_exchanges() {
             return Ok(());
-        };
-        let number = self.set.numbers()[i] as f64;
-        let omega = NOMINAL * (sweep.start * sweep.stop).sqrt();
-        let flexibility = without_reference(self, (i, omega / number), interrupt)?;
-        let n = self.coordinates();
-        for c in 0..n {
-            let Some(mut exchange) = self.exchanges[c] else {
-                continue;
-            };
-            let at_nominal = flexibility[c * n + c].norm();
-            exchange.stiffness = (E * NOMINAL * at_nominal).recip();
-            self.stiffness[c] = exchange.stiffness;
-            if exchange.compliance == 0.0 {
-                // A rigid stick does not ring.
-                self.exchanges[c] = Some(exchange);
+        }
+        let (n, omega) = (self.coordinates(), NOMINAL * (sweep.start * sweep.stop).sqrt());
+        let mut is_set = try_vec(n, false, CONTEXT)?;
+        for i in 0..self.set.numbers().len() {
+            let number = self.set.numbers()[i] as f64;
+            let left = |c: &usize| self.exchanges[*c].is_some() && !is_set[*c];
+            if number == 0.0 || !(0..n).any(|c| left(&c)) {
                 continue;
             }
-            // The mass −1/(Gω²) at the nominal harmonic, then at the ring of that mass.
-            let near = omega * (at_nominal / exchange.compliance).sqrt();
-            let there = without_reference(self, (i, near / number), interrupt)?;
-            exchange.ring = near * (there[c * n + c].norm() / exchange.compliance).sqrt();
-            self.exchanges[c] = Some(exchange);
+            let flexibility = without_reference(self, (i, omega / number), interrupt)?;
+            for c in 0..n {
+                let at_nominal = flexibility[c * n + c].norm();
+                // Sides may move alike in a harmonic; where they do in all, α stays as it is.
+                let Some(mut exchange) = self.exchanges[c].filter(|_| !is_set[c] && at_nominal > 0.0) else {
+                    continue;
+                };
+                exchange.stiffness = (E * NOMINAL * at_nominal).recip();
+                // A rigid stick does not ring.
+                if exchange.compliance > 0.0 {
+                    // The mass −1/(Gω²) at the nominal harmonic, then at the ring of that mass.
+                    let near = omega * (at_nominal / exchange.compliance).sqrt();
+                    let there = without_reference(self, (i, near / number), interrupt)?;
+                    exchange.ring = near * (there[c * n + c].norm() / exchange.compliance).sqrt();
+                }
+                self.exchanges[c] = Some(exchange);
+                is_set[c] = true;
+            }
+        }
+        for (stiffness, exchange) in self.stiffness.iter_mut().zip(&self.exchanges) {
+            if let Some(exchange) = exchange {
+                *stiffness = exchange.stiffness;
+            }
         }
         Ok(())
     }
@@ -162,7 +175,12 @@ impl Condensed {
                     *entry *= s;
                 }
             }
-            table.value[c * outputs + c] += s * exchange.compliance - exchange.stiffness.recip();
+            let own = &mut table.value[c * outputs + c];
+            let (motion, range) = (own.norm(), exchange.stiffness.recip());
+            *own += s * exchange.compliance - range;
+            if motion <= UNMOVED * range {
+                *own += CREEP * range;
+            }
         }
     }
 

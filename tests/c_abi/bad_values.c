@@ -179,7 +179,8 @@ static void contacts(hbvib_model *model)
         hbvib_status wanted = i == 0 ? HBVIB_E_ARGUMENT : HBVIB_E_NOT_FINITE;
         c = ring_contact();
         c.kt = bad[i];
-        REFUSED("43", hbvib_model_add_contact(model, &c, &id), wanted, 2, "kt");
+        if (i != 2)                                 /* an infinite kt is rigid, a negative one is out of range */
+            REFUSED("43", hbvib_model_add_contact(model, &c, &id), i == 3 ? HBVIB_E_ARGUMENT : wanted, 2, "kt");
         c = ring_contact();
         c.mu = bad[i];
         REFUSED("44", hbvib_model_add_contact(model, &c, &id), wanted, 2, "mu");

@@ -167,7 +167,7 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             ),
             (
                 Contact {
-                    kt: f64::INFINITY,
+                    kt: f64::NAN,
                     ..contact.clone()
                 },
                 Status::NotFinite,
