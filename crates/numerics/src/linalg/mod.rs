@@ -8,6 +8,7 @@ pub mod compensated_sum;
 pub mod complex_columns;
 pub mod complex_products;
 pub mod definite;
+pub mod dense;
 pub mod eigen;
 pub mod factor;
 pub mod general_eigen;
