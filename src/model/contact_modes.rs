@@ -14,7 +14,7 @@ use crate::contact::Contact;
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::definite::resists_all_motion;
-use crate::linalg::dense::{filled, zeros};
+use crate::linalg::fallible_matrix::{filled, zeros};
 use crate::linalg::hermitian;
 use crate::linalg::shifted_inverse::Inverse;
 use crate::linalg::sparse::Csc;

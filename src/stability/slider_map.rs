@@ -10,7 +10,7 @@
 
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::dense::{add_product, adjoint, filled, product, zeros};
+use crate::linalg::fallible_matrix::{add_product, adjoint, filled, product, zeros};
 use crate::linalg::lu::Scalar;
 use crate::stability::modal_ring::ModalRing;
 use crate::stability::slider_motion::{Change, Path};

@@ -2,7 +2,7 @@
 
 use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::dense::zero_vector;
+use crate::linalg::fallible_matrix::zero_vector;
 use crate::linalg::lu::Lu;
 use crate::model::structure::Structure;
 use crate::stability::slider_map::SliderMap;

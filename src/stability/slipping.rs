@@ -9,7 +9,7 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::dense::{add_product, adjoint, filled, invert_definite, product, zero_vector, zeros};
+use crate::linalg::fallible_matrix::{add_product, adjoint, filled, invert_definite, product, zero_vector, zeros};
 use crate::linalg::lu::Scalar;
 use crate::stability::modal_ring::ModalRing;
 use crate::time_integration::Number;

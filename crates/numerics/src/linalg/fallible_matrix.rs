@@ -9,10 +9,10 @@ use crate::linalg::lu::Scalar;
 use nalgebra::{DMatrix, DVector};
 
 /// Operations between two checks of the interrupt, some milliseconds.
-const DENSE_AT_ONCE: usize = 10_000_000;
+const FALLIBLE_MATRIX_AT_ONCE: usize = 10_000_000;
 
 /// Least columns of a part of a product: with fewer the left factor would be brought into order for each of them.
-const DENSE_LEAST_COLUMNS: usize = 8;
+const FALLIBLE_MATRIX_LEAST_COLUMNS: usize = 8;
 
 /// A matrix of zeros.
 ///
@@ -82,7 +82,7 @@ pub fn add_product<T: Scalar>(
     if of_column == 0 {
         return Ok(());
     }
-    let together = (DENSE_AT_ONCE / of_column).max(DENSE_LEAST_COLUMNS);
+    let together = (FALLIBLE_MATRIX_AT_ONCE / of_column).max(FALLIBLE_MATRIX_LEAST_COLUMNS);
     for first in (0..b.ncols()).step_by(together) {
         let count = together.min(b.ncols() - first);
         interrupt.check_before((of_column * count) as u64)?;
