@@ -155,9 +155,10 @@ fn stays_within(model: &Model) {
         }
         assert_eq!(LIVE.get(), before, "memory was not freed");
     }
-    println!("{refused} of {PLACES} refused, {} bytes", most - before);
     assert!(refused > PLACES * 3 / 4, "{refused}");
     assert_eq!(within(most, multipliers).0.unwrap().radius, all.radius);
+    // Text that is held back by the harness is memory of this thread too.
+    println!("{refused} of {PLACES} refused, {} bytes", most - before);
 }
 
 #[test]
