@@ -9,7 +9,7 @@ use crate::contact::time_piece::Mode;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::triangle::Entry;
+use crate::linalg::fallible_matrix::{filled, zero_vector};
 use crate::model::Model;
 use crate::model::contact_modes::{ContactModes, ForceOfWave};
 use crate::model::on_modes::forces_of_harmonics;
@@ -162,13 +162,13 @@ pub(super) fn perturbed_sliders(
     };
     let ring = ModalRing::<f64>::new(structure, *own, (&seen.modes, modes), &seen.sliders, interrupt)?;
     let lapses = structure.repeating_sectors();
-    let forces = forces_on(structure, &ring, seen)?;
+    let forces = forces_on(structure, &ring, seen, interrupt)?;
     let in_time = SliderMotion::new(&ring, &seen.sliders, (motion.omega, lapses), forces, interrupt)?;
     let start = state_of_motion(structure, &ring, seen, (motion.omega, &harmonics), interrupt)?;
     let found = orbit(
         &in_time,
         structure,
-        start.clone(),
+        start.try_clone()?,
         (options.tolerance, options.refine),
         interrupt,
     )?;
@@ -218,7 +218,7 @@ fn multipliers<T: Number>(
     let closure: &Closure = &ring.closure;
     let map = SliderMap::new(ring, &orbit.path, &orbit.moves, interrupt)?;
     let factor = |turns: usize| T::of(closure.factor(structure, turns));
-    let matrix = map.matrix(motion.omega, scale_of_sliders(motion), factor);
+    let matrix = map.matrix((motion.omega, scale_of_sliders(motion)), factor, interrupt)?;
     let passed = structure.sectors_per_part() * lapses / closure.sectors;
     let turn = closure.factor(structure, passed).conj();
     let counts = Counts {
@@ -227,7 +227,7 @@ fn multipliers<T: Number>(
         trivial: 0,
         moving: map.moving.len(),
     };
-    let matrix = matrix.map(Entry::complex);
+    let matrix = filled(map.states(), map.states(), CONTEXT, |i, j| matrix[(i, j)].complex())?;
     classified(matrix, &counts, (lapses, turn), closure.has_conjugate, interrupt)
 }
 
@@ -284,12 +284,18 @@ fn on_ring(ring: &ModalRing<f64>, (diameter, backward): (usize, bool), modal: &[
 }
 
 /// The forces of the model on coordinates, and on relative motions that the modes leave out.
-fn forces_on(structure: &Structure, ring: &ModalRing<f64>, seen: &SliderModes) -> Result<Vec<RingForce>> {
+fn forces_on(
+    structure: &Structure,
+    ring: &ModalRing<f64>,
+    seen: &SliderModes,
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<RingForce>> {
     let m = ring.closure.sectors;
     let mut found = Vec::new();
     for (diameter, own) in seen.modes.iter().enumerate() {
         let Some(own) = own else { continue };
         for force in &own.forces {
+            interrupt.check_before((ring.contacts * (ring.modes + m)) as u64)?;
             let modal = on_ring(ring, (diameter, force.backward), &force.modal)?;
             let mut relative = try_vec(ring.all(), Complex64::ZERO, CONTEXT)?;
             for c in 0..ring.contacts {
@@ -324,9 +330,9 @@ fn state_of_motion(
     let order = ring.order();
     let m = ring.closure.sectors;
     let mut state = SliderState {
-        q: DVector::zeros(order),
-        v: DVector::zeros(order),
-        w: DVector::zeros(ring.all()),
+        q: zero_vector(order, CONTEXT)?,
+        v: zero_vector(order, CONTEXT)?,
+        w: zero_vector(ring.all(), CONTEXT)?,
     };
     let mut relative = Vec::new();
     for (h, x) in harmonics.iter().enumerate() {
@@ -334,6 +340,7 @@ fn state_of_motion(
         let Some(own) = &seen.modes[diameter] else {
             return fail!(Internal, "no modes of nodal diameter {diameter}");
         };
+        interrupt.check_before(((ring.modes + ring.contacts) * x.len()) as u64)?;
         let mut x = try_copy(x, CONTEXT)?;
         conjugate(&mut x, backward);
         let amplitudes = on_ring(ring, (diameter, backward), &own.coordinates(&x, ring.modes)?)?;
@@ -346,9 +353,9 @@ fn state_of_motion(
         try_push(&mut relative, r, CONTEXT)?;
     }
     let times = SLIDERS_POINTS_PER_WAVE * harmonics.len();
+    let mut motion = try_vec(times, 0.0, CONTEXT)?;
     for c in 0..ring.contacts {
         for s in 0..m {
-            interrupt.check_before((4 * times * harmonics.len()) as u64)?;
             let at = |time: usize| -> f64 {
                 let of = |(h, r): (usize, &Vec<Complex64>)| {
                     let turn = Complex64::cis(TAU * ((h * time) % times) as f64 / times as f64);
@@ -361,8 +368,8 @@ fn state_of_motion(
                 };
                 relative.iter().enumerate().map(of).sum()
             };
-            let mut motion = try_vec(times, 0.0, CONTEXT)?;
             for (time, x) in motion.iter_mut().enumerate() {
+                interrupt.check_before((40 * harmonics.len()) as u64)?;
                 *x = at(time);
             }
             let (mut place, play) = (seen.sliders.start[c], seen.sliders.play[c]);
@@ -377,7 +384,8 @@ fn state_of_motion(
 
 /// Distance of the motions of two states, relative to the first.
 fn distance(a: &SliderState, b: &SliderState, omega: f64) -> f64 {
-    let gap = (&a.q - &b.q).norm_squared() + (&a.v - &b.v).norm_squared() / omega.powi(2);
+    let apart = |a: &DVector<f64>, b: &DVector<f64>| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum() };
+    let gap = apart(&a.q, &b.q) + apart(&a.v, &b.v) / omega.powi(2);
     let size = a.q.norm_squared() + a.v.norm_squared() / omega.powi(2);
     if gap == 0.0 { 0.0 } else { (gap / size).sqrt() }
 }

@@ -198,7 +198,7 @@ fn the_map_of_coupled_sliders_is_the_difference_of_neighbouring_motions() {
     let structure = model.structure();
     let closure = closures(structure, Waves::Wave, false).unwrap()[0];
     let ring = ModalRing::<f64>::new(structure, closure, (&seen.modes, 2), &seen.sliders, &none).unwrap();
-    let forces = forces_on(structure, &ring, &seen).unwrap();
+    let forces = forces_on(structure, &ring, &seen, &none).unwrap();
     let motion = SliderMotion::new(&ring, &seen.sliders, (2.0, 1), forces, &none).unwrap();
     let mut stopped = 0;
     for start in 0..40 {
@@ -208,7 +208,7 @@ fn the_map_of_coupled_sliders_is_the_difference_of_neighbouring_motions() {
             v: DVector::from_fn(2, |i, _| 2.0 * at(i + 2)),
             w: DVector::from_fn(ring.all(), |i, _| 0.1 * at(i + 4)),
         };
-        let mut image = state.clone();
+        let mut image = state.try_clone().unwrap();
         let path = motion.run(&mut image).unwrap();
         stopped += path
             .changes
@@ -216,11 +216,11 @@ fn the_map_of_coupled_sliders_is_the_difference_of_neighbouring_motions() {
             .filter(|change| !change.slips && change.speed != 0.0)
             .count();
         let map = SliderMap::new(&ring, &path, &path.moved, &none).unwrap();
-        let matrix = map.matrix(1.0, 1.0, |_| 1.0);
+        let matrix = map.matrix((1.0, 1.0), |_| 1.0, &none).unwrap();
         const STEP: f64 = 1e-6;
         for column in 0..map.states() {
             let moved = |sign: f64| {
-                let mut state = state.clone();
+                let mut state = state.try_clone().unwrap();
                 let step = sign * STEP;
                 match column {
                     0 | 1 => state.q[column] += step,

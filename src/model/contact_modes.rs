@@ -14,6 +14,8 @@ use crate::contact::Contact;
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::definite::resists_all_motion;
+use crate::linalg::fallible_matrix::{filled, zeros};
+use crate::linalg::hermitian;
 use crate::linalg::shifted_inverse::Inverse;
 use crate::linalg::sparse::Csc;
 use crate::linalg::{inner, remove};
@@ -31,6 +33,9 @@ const CONTACT_MODES_DEPENDENT: f64 = 1e-6;
 
 /// Iterations of the eigensolver, far above what converging cases need.
 const CONTACT_MODES_ITERATIONS: usize = 100_000;
+
+/// Shapes up to which the eigensolver of nalgebra is so quick that nobody needs to interrupt it.
+const CONTACT_MODES_SMALL: usize = 100;
 
 /// A force of one harmonic on all independent degrees of freedom.
 pub(crate) struct ForceOfWave {
@@ -101,10 +106,11 @@ impl ContactModes {
             released.lowest((modes / 2).clamp(1, n), interrupt)?,
         ];
         let [stuck, free] = both.map(|found| found.shapes);
-        let shapes = joined(&stuck, &free, (modes.min(n), is_real), pencil.weight())?;
+        let shapes = joined(&stuck, &free, (modes.min(n), is_real), pencil.weight(), interrupt)?;
         let (omega, shapes) = ritz(&shapes, &pencil.stiffness, is_real, interrupt)?;
         let mut motions = Vec::new();
         for contact in contacts {
+            interrupt.check()?;
             let row = structure.row(&structure.contact_motion(contact, 0), wave);
             let mut terms = Vec::new();
             for &term in row.iter().flatten() {
@@ -113,14 +119,13 @@ impl ContactModes {
             try_push(&mut motions, terms, CONTEXT)?;
         }
         let (count, kept) = (contacts.len(), omega.len());
-        check_memory::<Complex64>(count * (count + kept) + n + kept * (kept + n), CONTEXT)?;
         let along = |motion: &[(usize, Complex64)], x: &[Complex64]| -> Complex64 {
             motion.iter().map(|&(dof, a)| a * x[dof]).sum()
         };
         let shape = |k: usize| &shapes[k * n..(k + 1) * n];
-        let rows = DMatrix::from_fn(count, kept, |c, k| along(&motions[c], shape(k)));
+        let rows = filled(count, kept, CONTEXT, |c, k| along(&motions[c], shape(k)))?;
         let matrix = structure.diameter_matrix(MatrixKind::Damping, diameter as i64)?;
-        let mut damping = DMatrix::zeros(kept, kept);
+        let mut damping = zeros(kept, kept, CONTEXT)?;
         let mut images = Vec::new();
         for k in 0..kept {
             interrupt.check_before(((kept + 1) * n) as u64)?;
@@ -133,7 +138,7 @@ impl ContactModes {
             }
         }
         let mut inverse = Inverse::new(&pencil.stiffness, (0.0, &pencil.mass), interrupt)?;
-        let mut flexibility = DMatrix::zeros(count, count);
+        let mut flexibility = zeros(count, count, CONTEXT)?;
         let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
         for c in 0..count {
             x.fill(Complex64::ZERO);
@@ -149,6 +154,7 @@ impl ContactModes {
         for force in forces {
             let mut modal = Vec::new();
             for k in 0..kept {
+                interrupt.check_before(n as u64)?;
                 try_push(&mut modal, inner(shape(k), &force.values), CONTEXT)?;
             }
             x.copy_from_slice(&force.values);
@@ -216,6 +222,7 @@ fn joined(
     free: &[Complex64],
     (count, is_real): (usize, bool),
     mass: &Csc,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Complex64>> {
     let n = mass.rows;
     let (first, further) = stuck.split_at((count.div_ceil(2) * n).min(stuck.len()));
@@ -233,6 +240,7 @@ fn joined(
             if found.len() == count * n {
                 return Ok(found);
             }
+            interrupt.check_before((4 * (found.len() + n)) as u64)?;
             let mut x = try_copy(shape, CONTEXT)?;
             for z in &mut x {
                 *z = part(*z);
@@ -265,9 +273,8 @@ fn ritz(
 ) -> Result<(Vec<f64>, Vec<Complex64>)> {
     let n = stiffness.rows;
     let count = shapes.len() / n;
-    check_memory::<Complex64>(4 * count * count + n * count, CONTEXT)?;
     let shape = |k: usize| &shapes[k * n..(k + 1) * n];
-    let mut projected = DMatrix::zeros(count, count);
+    let mut projected = zeros(count, count, CONTEXT)?;
     for j in 0..count {
         interrupt.check_before(((count + 1) * n) as u64)?;
         let image = stiffness.times(shape(j), CONTEXT)?;
@@ -275,16 +282,7 @@ fn ritz(
             projected[(i, j)] = inner(shape(i), &image);
         }
     }
-    let vectors = if is_real {
-        SymmetricEigen::try_new(projected.map(|z| z.re), f64::EPSILON, CONTACT_MODES_ITERATIONS)
-            .map(|found| (found.eigenvalues, found.eigenvectors.map(Complex64::from)))
-    } else {
-        SymmetricEigen::try_new(projected, f64::EPSILON, CONTACT_MODES_ITERATIONS)
-            .map(|found| (found.eigenvalues, found.eigenvectors))
-    };
-    let Some((values, vectors)) = vectors else {
-        return fail!(NoConvergence, "the modes of the stuck structure were not found");
-    };
+    let (values, vectors) = eigenpairs(projected, is_real, interrupt)?;
     let mut order = Vec::new();
     for k in 0..count {
         try_push(&mut order, k, CONTEXT)?;
@@ -300,4 +298,61 @@ fn ritz(
         }
     }
     Ok((omega, found))
+}
+
+/// Eigenvalues and orthonormal vectors of a Hermitian matrix, in any order; vectors of a real one are real.
+fn eigenpairs(
+    mut matrix: DMatrix<Complex64>,
+    is_real: bool,
+    interrupt: &Interrupt<'_>,
+) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
+    let count = matrix.nrows();
+    if count > CONTACT_MODES_SMALL {
+        let (values, mut vectors) = hermitian::eigen(matrix.as_mut_slice(), count, interrupt)?;
+        if is_real {
+            // Reflections of real columns are real to the last bit: no phase is cut off.
+            for z in &mut vectors {
+                z.im = 0.0;
+            }
+        }
+        return Ok((values, DMatrix::from_vec(count, count, vectors)));
+    }
+    interrupt.check_before((10 * count.pow(3)) as u64)?;
+    check_memory::<Complex64>(4 * count * count, CONTEXT)?;
+    let found = if is_real {
+        SymmetricEigen::try_new(matrix.map(|z| z.re), f64::EPSILON, CONTACT_MODES_ITERATIONS)
+            .map(|found| (found.eigenvalues, found.eigenvectors.map(Complex64::from)))
+    } else {
+        SymmetricEigen::try_new(matrix, f64::EPSILON, CONTACT_MODES_ITERATIONS)
+            .map(|found| (found.eigenvalues, found.eigenvectors))
+    };
+    let Some((values, vectors)) = found else {
+        return fail!(NoConvergence, "the modes of the stuck structure were not found");
+    };
+    Ok((try_copy(values.as_slice(), CONTEXT)?, vectors))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cut-off imaginary part would be a phase that is lost.
+    #[test]
+    fn vectors_of_a_large_real_matrix_are_real() {
+        let n = CONTACT_MODES_SMALL + 20;
+        let entry = |i: usize, j: usize| {
+            let own = if i == j { 3.0 * (i + 1) as f64 } else { 0.0 };
+            Complex64::from(own + (((i * j) % 17 + i + j) as f64 * 0.7).sin())
+        };
+        let mut matrix = DMatrix::from_fn(n, n, entry);
+        let (_, vectors) = hermitian::eigen(matrix.as_mut_slice(), n, &Interrupt::none()).unwrap();
+        assert!(vectors.iter().all(|z| z.im == 0.0));
+        let (values, vectors) = eigenpairs(DMatrix::from_fn(n, n, entry), true, &Interrupt::none()).unwrap();
+        let matrix = DMatrix::from_fn(n, n, entry);
+        for (k, value) in values.iter().enumerate() {
+            let column = vectors.column(k);
+            let rest = &matrix * column - column * Complex64::from(*value);
+            assert!(rest.norm() < 1e-11, "{k}: {}", rest.norm());
+        }
+    }
 }

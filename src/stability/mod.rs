@@ -6,8 +6,8 @@
 //! the zeros of sliders, and finds the eigenvalues that remain; `operations` counts what all this costs.
 //!
 //! Sectors with many contacts of friction have their modes and sliders as states instead: `modal_ring` has the equations of a
-//! block, `slipping` those of its slipping contacts, `slider_motion` its motion, which `slider_lapse` integrates; `slider_orbit`
-//! shoots, and `slider_map` carries perturbations.
+//! block, `slipping` those of its slipping contacts, `slider_motion` its motion, which `slider_lapse` integrates by the steps of
+//! `slider_step`; `slider_orbit` shoots, and `slider_map` carries perturbations.
 
 mod closure;
 mod known_directions;
@@ -20,6 +20,7 @@ mod slider_lapse;
 mod slider_map;
 mod slider_motion;
 mod slider_orbit;
+mod slider_step;
 mod slipping;
 
 pub(crate) use closure::{Closure, closures};

@@ -12,8 +12,9 @@
 //!
 //! No degree of freedom of a contact is a state: a block has the modes of its diameters and the sliders that move.
 
-use crate::error::{Result, check_memory, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::fallible_matrix::{add_product, adjoint, filled, zeros};
 use crate::model::contact_modes::ContactModes;
 use crate::model::structure::Structure;
 use crate::stability::closure::Closure;
@@ -84,18 +85,17 @@ impl<T: Number> ModalRing<T> {
     ) -> Result<Self> {
         let (sectors, contacts) = (closure.sectors, sliders.stiffness.len());
         let (order, all) = (count * sectors, contacts * sectors);
-        check_memory::<T>(4 * order * order + 2 * all * (all + order), CONTEXT)?;
         let mut ring = Self {
             closure,
             contacts,
             waves: Vec::new(),
             modes: count,
             square: try_vec(order, 0.0, CONTEXT)?,
-            damping: DMatrix::zeros(order, order),
+            damping: zeros(order, order, CONTEXT)?,
             own_damping: None,
-            rows: DMatrix::zeros(all, order),
-            residual: DMatrix::zeros(all, all),
-            turn: DMatrix::zeros(order, order),
+            rows: zeros(all, order, CONTEXT)?,
+            residual: zeros(all, all, CONTEXT)?,
+            turn: zeros(order, order, CONTEXT)?,
             stiffness: try_vec(all, 0.0, CONTEXT)?,
             follower: structure.sectors_per_part(),
         };
@@ -105,13 +105,14 @@ impl<T: Number> ModalRing<T> {
         let apart = structure.sectors() / sectors;
         let mut place = 0;
         for number in 0..sectors {
-            interrupt.check_before((all * all + all * order) as u64)?;
+            interrupt.check()?;
             let diameter = number * apart + closure.index;
             let (stored, backward) = structure.fold(diameter as i64);
             let Some(own) = &modes[stored] else {
                 return fail!(Internal, "no modes of nodal diameter {stored}");
             };
-            ring.add_residual(structure, own, (diameter, backward, count));
+            ring.add_residual(structure, own, (diameter, backward, count), interrupt)?;
+            interrupt.check_before((2 * (all + count) * count) as u64)?;
             let is_pair = !T::IS_COMPLEX && !(2 * stored).is_multiple_of(structure.sectors());
             if !is_pair || !backward {
                 let wave = RingWave {
@@ -152,14 +153,21 @@ impl<T: Number> ModalRing<T> {
     }
 
     /// Adds 1/m (R K⁻¹ Rᴴ − Σ ψψᴴ/ω²) e^{−2πi(s − s′)δ/N}.
-    fn add_residual(&mut self, structure: &Structure, own: &ContactModes, wave: (usize, bool, usize)) {
+    fn add_residual(
+        &mut self,
+        structure: &Structure,
+        own: &ContactModes,
+        wave: (usize, bool, usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (diameter, backward, count) = wave;
         let m = self.closure.sectors;
-        let own = left_out(own, count);
+        let own = left_out(own, count, interrupt)?;
         for offset in 0..2 * m - 1 {
             let offset = offset as i64 - (m as i64 - 1);
             let turn = structure.wave_phase(diameter as i64, offset) / m as f64;
             for j in 0..self.contacts {
+                interrupt.check_before((self.contacts * m) as u64)?;
                 for i in 0..self.contacts {
                     let g = if backward { own[(i, j)].conj() } else { own[(i, j)] };
                     let value = T::of(turn * g);
@@ -172,6 +180,7 @@ impl<T: Number> ModalRing<T> {
                 }
             }
         }
+        Ok(())
     }
 
     /// Coordinates of one wave.
@@ -233,10 +242,11 @@ impl<T: Number> ModalRing<T> {
 }
 
 /// R K⁻¹ Rᴴ − Σ ψψᴴ/ω² of one sector.
-fn left_out(own: &ContactModes, count: usize) -> DMatrix<Complex64> {
-    let mut scaled = own.rows.columns(0, count).into_owned();
-    for (mut column, omega) in scaled.column_iter_mut().zip(&own.omega) {
-        column /= Complex64::from(omega.powi(2));
-    }
-    &own.flexibility - scaled * own.rows.columns(0, count).adjoint()
+fn left_out(own: &ContactModes, count: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
+    let contacts = own.rows.nrows();
+    let scaled = filled(contacts, count, CONTEXT, |c, k| own.rows[(c, k)] / own.omega[k].powi(2))?;
+    let kept = adjoint(&filled(contacts, count, CONTEXT, |c, k| own.rows[(c, k)])?, CONTEXT)?;
+    let mut left = filled(contacts, contacts, CONTEXT, |i, j| own.flexibility[(i, j)])?;
+    add_product(&mut left, -Complex64::ONE, (&scaled, &kept), interrupt)?;
+    Ok(left)
 }

@@ -113,6 +113,8 @@ pub(crate) fn classified(
     has_conjugate: bool,
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Multiplier>> {
+    // Factors and copies of the map.
+    check_memory::<Complex64>(map.len().saturating_mul(MULTIPLIERS_COPIES), CONTEXT)?;
     let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
         let (rest, zeros) = without_zeros(map.map(|z| z.re), interrupt)?;
         (real_eigenvalues(&rest)?, zeros)

@@ -8,8 +8,9 @@
 //! slider that comes to rest keeps the place that it has then, and one that begins to slip forgets its own.
 //! Sliders that never slip are springs, and no part of the map.
 
-use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::fallible_matrix::{add_product, adjoint, filled, product, zeros};
 use crate::linalg::lu::Scalar;
 use crate::stability::modal_ring::ModalRing;
 use crate::stability::slider_motion::{Change, Path};
@@ -45,11 +46,22 @@ pub(crate) struct SliderMap<'r, T: Number> {
     carried: Vec<usize>,
 }
 
+/// Memory of a lapse, as large as the coordinates of all columns.
+struct Series<T: Number> {
+    /// R_movingᴴ
+    rows: DMatrix<T>,
+    load: DMatrix<T>,
+    /// Three terms one after the other.
+    this: DMatrix<T>,
+    next: DMatrix<T>,
+    new: DMatrix<T>,
+}
+
 impl<'r, T: Number> SliderMap<'r, T> {
     /// The map of a lapse; `moves` tells whether a contact slips in some sector.
     ///
     /// # Errors
-    /// `NoConvergence` for perturbations that grow beyond all bounds; as [`ModalRing::slipping`].
+    /// `NoConvergence` for perturbations that grow beyond all bounds; as [`Slipping::new`].
     pub fn new(ring: &'r ModalRing<T>, path: &Path, moves: &[bool], interrupt: &Interrupt<'_>) -> Result<Self> {
         let mut moving = Vec::new();
         let mut number = try_vec(ring.all(), usize::MAX, CONTEXT)?;
@@ -69,12 +81,11 @@ impl<'r, T: Number> SliderMap<'r, T> {
             }
         }
         let columns = carried.len();
-        check_memory::<T>(columns.saturating_mul(6 * order + 3 * moving.len()), CONTEXT)?;
         let mut map = Self {
             ring,
-            x: DMatrix::zeros(order, columns),
-            v: DMatrix::zeros(order, columns),
-            p: DMatrix::zeros(moving.len(), columns),
+            x: zeros(order, columns, CONTEXT)?,
+            v: zeros(order, columns, CONTEXT)?,
+            p: zeros(moving.len(), columns, CONTEXT)?,
             slips: try_vec(moving.len(), false, CONTEXT)?,
             moving,
             number,
@@ -91,12 +102,21 @@ impl<'r, T: Number> SliderMap<'r, T> {
                 map.p[(state - 2 * order, column)] = T::of(ring.stiffness[e].into());
             }
         }
-        map.through(path, interrupt)?;
+        let mut memory = Series {
+            rows: filled(order, map.moving.len(), CONTEXT, |j, i| {
+                ring.rows[(map.moving[i], j)].conjugated()
+            })?,
+            load: zeros(order, columns, CONTEXT)?,
+            this: zeros(order, columns, CONTEXT)?,
+            next: zeros(order, columns, CONTEXT)?,
+            new: zeros(order, columns, CONTEXT)?,
+        };
+        map.through(path, &mut memory, interrupt)?;
         Ok(map)
     }
 
-    fn through(&mut self, path: &Path, interrupt: &Interrupt<'_>) -> Result<()> {
-        let mut slipping = Slipping::new(self.ring, try_copy(&path.first, CONTEXT)?)?;
+    fn through(&mut self, path: &Path, memory: &mut Series<T>, interrupt: &Interrupt<'_>) -> Result<()> {
+        let mut slipping = Slipping::new(self.ring, try_copy(&path.first, CONTEXT)?, interrupt)?;
         for &e in &path.first {
             self.slips[self.number[e]] = true;
         }
@@ -104,56 +124,62 @@ impl<'r, T: Number> SliderMap<'r, T> {
         let mut late: Option<DMatrix<T>> = None;
         for (i, change) in path.changes.iter().enumerate() {
             if change.after > 0.0 {
-                self.carry(&slipping, change.after, interrupt)?;
+                self.carry(&slipping, change.after, memory, interrupt)?;
                 late = None;
             }
             let number = self.number[change.contact];
             if change.slips {
                 if change.speed != 0.0 && stops_others(&path.changes[i + 1..]) {
-                    late = Some(self.stretch(&slipping, change.contact)? * T::of((1.0 / change.speed).into()));
+                    let mut stretch = self.stretch(&slipping, change.contact, interrupt)?;
+                    stretch *= T::of((1.0 / change.speed).into());
+                    late = Some(stretch);
                 }
                 self.p.row_mut(number).fill(T::NONE);
             } else if let Some(at) = slipping.place(change.contact) {
-                self.follow(&slipping, &[at])?;
+                self.follow(&slipping, &[at], interrupt)?;
                 if let Some(late) = late.as_ref().filter(|_| change.speed != 0.0) {
                     // The slider stops while it moves, at the time of another change.
                     let rate = change.speed * self.ring.stiffness[change.contact];
-                    let mut row = self.p.row_mut(number);
-                    row -= late * T::of(rate.into());
+                    for (p, late) in self.p.row_mut(number).iter_mut().zip(late.iter()) {
+                        *p -= late.scaled(rate);
+                    }
                 }
             }
-            slipping.change(self.ring, change.contact, change.slips)?;
+            slipping.change(self.ring, change.contact, change.slips, interrupt)?;
             self.slips[number] = change.slips;
         }
-        self.carry(&slipping, path.rest, interrupt)?;
-        self.follow(&slipping, &all_of(&slipping.list)?)
+        self.carry(&slipping, path.rest, memory, interrupt)?;
+        self.follow(&slipping, &all_of(&slipping.list)?, interrupt)
     }
 
     /// G_LS p_S
-    fn through_others(&self, slipping: &Slipping<T>) -> Result<DMatrix<T>> {
+    fn through_others(&self, slipping: &Slipping<T>, interrupt: &Interrupt<'_>) -> Result<DMatrix<T>> {
         let list = &slipping.list;
         let mut resting = Vec::new();
         for i in (0..self.moving.len()).filter(|&i| !self.slips[i]) {
             try_push(&mut resting, i, CONTEXT)?;
         }
-        let coupling = DMatrix::from_fn(list.len(), resting.len(), |i, j| {
+        let coupling = filled(list.len(), resting.len(), CONTEXT, |i, j| {
             self.ring.residual[(list[i], self.moving[resting[j]])]
-        });
-        Ok(coupling * self.p.select_rows(&resting))
+        })?;
+        product(&coupling, &selected(&self.p, &resting)?, CONTEXT, interrupt)
     }
 
     /// Forces of slipping sliders, given by their places in the list, from coordinates and the sliders at rest.
-    fn forces(&self, slipping: &Slipping<T>, places: &[usize]) -> Result<DMatrix<T>> {
-        let coupled = self.through_others(slipping)?;
-        Ok(slipping.rows.select_rows(places) * &self.x + slipping.inverse.select_rows(places) * coupled)
+    fn forces(&self, slipping: &Slipping<T>, places: &[usize], interrupt: &Interrupt<'_>) -> Result<DMatrix<T>> {
+        let coupled = self.through_others(slipping, interrupt)?;
+        let mut forces = product(&selected(&slipping.rows, places)?, &self.x, CONTEXT, interrupt)?;
+        let inverse = selected(&slipping.inverse, places)?;
+        add_product(&mut forces, T::one(), (&inverse, &coupled), interrupt)?;
+        Ok(forces)
     }
 
     /// Sets these forces.
-    fn follow(&mut self, slipping: &Slipping<T>, places: &[usize]) -> Result<()> {
+    fn follow(&mut self, slipping: &Slipping<T>, places: &[usize], interrupt: &Interrupt<'_>) -> Result<()> {
         if places.is_empty() {
             return Ok(());
         }
-        let forces = self.forces(slipping, places)?;
+        let forces = self.forces(slipping, places, interrupt)?;
         for (i, &at) in places.iter().enumerate() {
             let number = self.number[slipping.list[at]];
             self.p.row_mut(number).copy_from(&forces.row(i));
@@ -162,32 +188,44 @@ impl<'r, T: Number> SliderMap<'r, T> {
     }
 
     /// δ(r − w) of a contact at rest.
-    fn stretch(&self, slipping: &Slipping<T>, contact: usize) -> Result<DMatrix<T>> {
+    fn stretch(&self, slipping: &Slipping<T>, contact: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<T>> {
         let ring = self.ring;
         let list = &slipping.list;
-        let mut stretch = ring.rows.rows(contact, 1) * &self.x;
-        let coupling = DMatrix::from_fn(1, self.moving.len(), |_, j| ring.residual[(contact, self.moving[j])]);
+        let mut stretch = product(&selected(&ring.rows, &[contact])?, &self.x, CONTEXT, interrupt)?;
+        let coupling = filled(1, self.moving.len(), CONTEXT, |_, j| {
+            ring.residual[(contact, self.moving[j])]
+        })?;
         // Forces of the list are zero as long as they slip.
-        stretch += coupling * &self.p;
-        let coupling = DMatrix::from_fn(1, list.len(), |_, j| ring.residual[(contact, list[j])]);
-        stretch += coupling * self.forces(slipping, &all_of(list)?)?;
-        let own = T::of((-1.0 / ring.stiffness[contact]).into());
-        stretch += self.p.rows(self.number[contact], 1) * own;
+        add_product(&mut stretch, T::one(), (&coupling, &self.p), interrupt)?;
+        let coupling = filled(1, list.len(), CONTEXT, |_, j| ring.residual[(contact, list[j])])?;
+        let forces = self.forces(slipping, &all_of(list)?, interrupt)?;
+        add_product(&mut stretch, T::one(), (&coupling, &forces), interrupt)?;
+        let own = self.p.row(self.number[contact]);
+        for (stretch, p) in stretch.iter_mut().zip(own.iter()) {
+            *stretch -= p.scaled(1.0 / ring.stiffness[contact]);
+        }
         Ok(stretch)
     }
 
     /// Carries all columns over a time in which no contact changes.
-    fn carry(&mut self, slipping: &Slipping<T>, time: f64, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn carry(
+        &mut self,
+        slipping: &Slipping<T>,
+        time: f64,
+        memory: &mut Series<T>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         if time <= 0.0 {
             return Ok(());
         }
-        let ring = self.ring;
-        let order = ring.order();
-        let rows = DMatrix::from_fn(self.moving.len(), order, |i, j| ring.rows[(self.moving[i], j)]);
-        interrupt.check_before((2 * self.p.len() * (order + slipping.list.len())) as u64)?;
-        let mut load = rows.ad_mul(&self.p);
-        load += slipping.rows.ad_mul(&self.through_others(slipping)?);
-        let fastest = (0..order)
+        memory.load.fill(T::NONE);
+        add_product(&mut memory.load, T::one(), (&memory.rows, &self.p), interrupt)?;
+        let (rows, coupled) = (
+            adjoint(&slipping.rows, CONTEXT)?,
+            self.through_others(slipping, interrupt)?,
+        );
+        add_product(&mut memory.load, T::one(), (&rows, &coupled), interrupt)?;
+        let fastest = (0..self.ring.order())
             .map(|j| {
                 slipping
                     .stiffness
@@ -201,27 +239,37 @@ impl<'r, T: Number> SliderMap<'r, T> {
         let parts = (fastest * time / SLIDER_MAP_STEP).ceil().max(1.0);
         let h = time / parts;
         for _ in 0..parts as usize {
-            self.series(slipping, &load, h, interrupt)?;
+            self.series(slipping, memory, h, interrupt)?;
         }
         Ok(())
     }
 
     /// Sums the series over a time h.
-    fn series(&mut self, slipping: &Slipping<T>, load: &DMatrix<T>, h: f64, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn series(
+        &mut self,
+        slipping: &Slipping<T>,
+        memory: &mut Series<T>,
+        h: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let real = |x: f64| T::of(x.into());
-        let mut this = self.x.clone();
-        let mut next = &self.v * real(h);
-        self.x += &next;
-        let mut largest = size(&this).max(size(&next));
+        let Series {
+            load, this, next, new, ..
+        } = memory;
+        this.copy_from(&self.x);
+        next.copy_from(&self.v);
+        *next *= real(h);
+        self.x += &*next;
+        let mut largest = size(this).max(size(next));
         let mut small = 0;
         for k in 0..SLIDER_MAP_MOST_TERMS {
-            interrupt.check_before((2 * self.x.len() * self.x.nrows()) as u64)?;
-            let mut new = if k == 0 {
-                load.clone()
+            interrupt.check_before(self.x.len() as u64)?;
+            if k == 0 {
+                new.copy_from(load);
             } else {
-                DMatrix::zeros(load.nrows(), load.ncols())
-            };
-            new.gemm(real(-1.0), &slipping.stiffness, &this, T::one());
+                new.fill(T::NONE);
+            }
+            add_product(new, real(-1.0), (&slipping.stiffness, &*this), interrupt)?;
             let rate = -((k + 1) as f64) / h;
             match &self.ring.own_damping {
                 Some(own) => {
@@ -231,13 +279,13 @@ impl<'r, T: Number> SliderMap<'r, T> {
                         }
                     }
                 }
-                None => new.gemm(real(rate), &self.ring.damping, &next, T::one()),
+                None => add_product(new, real(rate), (&self.ring.damping, &*next), interrupt)?,
             }
-            new *= real(h * h / ((k + 1) * (k + 2)) as f64);
-            self.x += &new;
+            *new *= real(h * h / ((k + 1) * (k + 2)) as f64);
+            self.x += &*new;
             let speed = real((k + 2) as f64 / h);
-            self.v.zip_apply(&new, |v, new| *v += new * speed);
-            let term = size(&new) * (k + 2) as f64;
+            self.v.zip_apply(&*new, |v, new| *v += new * speed);
+            let term = size(new) * (k + 2) as f64;
             if !term.is_finite() {
                 return fail!(NoConvergence, "perturbations grow beyond all bounds");
             }
@@ -246,7 +294,8 @@ impl<'r, T: Number> SliderMap<'r, T> {
             if small == 2 {
                 return Ok(());
             }
-            this = core::mem::replace(&mut next, new);
+            core::mem::swap(this, next);
+            core::mem::swap(next, new);
         }
         fail!(NoConvergence, "the series of perturbations does not end")
     }
@@ -258,11 +307,21 @@ impl<'r, T: Number> SliderMap<'r, T> {
 
     /// The map from the states at the begin to those at the end, in which every sector takes the place of the one that it
     /// follows. Velocities are divided by `omega`, and places of sliders multiplied by `scale`; `factor` is that of a turn of the ring.
-    pub fn matrix(&self, omega: f64, scale: f64, factor: impl Fn(usize) -> T) -> DMatrix<T> {
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn matrix(
+        &self,
+        (omega, scale): (f64, f64),
+        factor: impl Fn(usize) -> T,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<DMatrix<T>> {
         let order = self.ring.order();
-        let mut map = DMatrix::zeros(self.states(), self.states());
-        let (x, v) = (&self.ring.turn * &self.x, &self.ring.turn * &self.v);
+        let mut map = zeros(self.states(), self.states(), CONTEXT)?;
+        let x = product(&self.ring.turn, &self.x, CONTEXT, interrupt)?;
+        let v = product(&self.ring.turn, &self.v, CONTEXT, interrupt)?;
         for (column, &state) in self.carried.iter().enumerate() {
+            interrupt.check_before(self.states() as u64)?;
             let unit = match state {
                 s if s < order => 1.0,
                 s if s < 2 * order => omega,
@@ -278,8 +337,13 @@ impl<'r, T: Number> SliderMap<'r, T> {
                 map[(2 * order + i, state)] = value.scaled(unit * scale / self.ring.stiffness[e]);
             }
         }
-        map
+        Ok(map)
     }
+}
+
+/// Rows of a matrix.
+fn selected<T: Number>(a: &DMatrix<T>, rows: &[usize]) -> Result<DMatrix<T>> {
+    filled(rows.len(), a.ncols(), CONTEXT, |i, j| a[(rows[i], j)])
 }
 
 /// All places of a list.

@@ -3,6 +3,7 @@
 use crate::contact::time_piece::Grazing;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::fallible_matrix::copy_of_vector;
 use crate::stability::modal_ring::{ModalRing, Sliders};
 use nalgebra::DVector;
 use num_complex::Complex64;
@@ -18,11 +19,24 @@ pub(crate) struct RingForce {
 }
 
 /// Coordinates, velocities and the places of all sliders.
-#[derive(Clone, Debug)]
 pub(crate) struct SliderState {
     pub q: DVector<f64>,
     pub v: DVector<f64>,
     pub w: DVector<f64>,
+}
+
+impl SliderState {
+    /// A copy.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            q: copy_of_vector(&self.q, CONTEXT)?,
+            v: copy_of_vector(&self.v, CONTEXT)?,
+            w: copy_of_vector(&self.w, CONTEXT)?,
+        })
+    }
 }
 
 /// A change of one contact.

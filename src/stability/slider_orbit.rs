@@ -2,10 +2,12 @@
 
 use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::fallible_matrix::zero_vector;
+use crate::linalg::lu::Lu;
 use crate::model::structure::Structure;
 use crate::stability::slider_map::SliderMap;
 use crate::stability::slider_motion::{Path, SliderMotion, SliderState};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 const CONTEXT: &str = "shooting on modes";
 
@@ -57,7 +59,7 @@ pub(crate) fn orbit(
             };
             let mut share = 1.0;
             let next = loop {
-                match trial(motion, structure, moved(motion, &current, &step, share)) {
+                match trial(motion, structure, moved(motion, &current, &step, share)?) {
                     Ok(next) if next.residual < current.residual => break Some(next),
                     Err(e) if !matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence) => return Err(e),
                     _ => {}
@@ -90,7 +92,7 @@ pub(crate) fn scale_of_sliders(motion: &SliderMotion<'_>) -> f64 {
 
 fn trial(motion: &SliderMotion<'_>, structure: &Structure, state: SliderState) -> Result<Trial> {
     let ring = motion.ring;
-    let mut image = state.clone();
+    let mut image = state.try_clone()?;
     let path = motion.run(&mut image)?;
     let (order, all) = (ring.order(), ring.all());
     let mut moves = try_vec(all, false, CONTEXT)?;
@@ -99,11 +101,12 @@ fn trial(motion: &SliderMotion<'_>, structure: &Structure, state: SliderState) -
         *moves = (family..family + ring.closure.sectors).any(|e| path.moved[e]);
     }
     let scale = scale_of_sliders(motion);
-    let (q, v) = (&ring.turn * &image.q, &ring.turn * &image.v);
-    let mut change = DVector::zeros(2 * order + all);
-    for i in 0..order {
-        change[i] = q[i] - state.q[i];
-        change[order + i] = (v[i] - state.v[i]) / motion.omega;
+    motion.interrupt.check_before((4 * order * order) as u64)?;
+    let mut change = zero_vector(2 * order + all, CONTEXT)?;
+    for (first, unit, image, from) in [(0, 1.0, &image.q, &state.q), (order, motion.omega, &image.v, &state.v)] {
+        let mut change = change.rows_mut(first, order);
+        change.gemv(1.0 / unit, &ring.turn, image, 0.0);
+        change.axpy(-1.0 / unit, from, 1.0);
     }
     for e in (0..all).filter(|&e| moves[e]) {
         let (to, turns) = ring.shifted(e);
@@ -140,26 +143,32 @@ fn newton(
     let ring = motion.ring;
     let map = SliderMap::new(ring, &trial.path, &trial.moves, interrupt)?;
     let factor = |turns: usize| ring.closure.factor(structure, turns).re;
-    let mut matrix: DMatrix<f64> = map.matrix(motion.omega, scale_of_sliders(motion), factor);
+    let states = map.states();
+    let mut factors = Lu::<f64>::new(states, 1)?;
+    {
+        let matrix = map.matrix((motion.omega, scale_of_sliders(motion)), factor, interrupt)?;
+        factors.matrix().copy_from_slice(matrix.as_slice());
+    }
+    for i in 0..states {
+        factors.matrix()[i * states + i] -= 1.0;
+    }
     let order = ring.order();
-    let mut right = DVector::zeros(map.states());
+    let mut step = zero_vector(states, CONTEXT)?;
     for i in 0..2 * order {
-        right[i] = -trial.change[i];
+        step[i] = -trial.change[i];
     }
     for (i, &e) in map.moving.iter().enumerate() {
-        right[2 * order + i] = -trial.change[2 * order + e];
+        step[2 * order + i] = -trial.change[2 * order + e];
     }
-    for i in 0..map.states() {
-        matrix[(i, i)] -= 1.0;
+    match factors.factor(interrupt) {
+        Err(e) if e.status == Status::Singular => return Ok(None),
+        factored => factored?,
     }
-    interrupt.check_before((map.states().pow(3) / 3) as u64)?;
-    let Some(step) = matrix.lu().solve(&right) else {
-        return Ok(None);
-    };
+    factors.solve(step.as_mut_slice());
     if !step.iter().all(|x| x.is_finite()) {
         return Ok(None);
     }
-    let mut all = DVector::zeros(2 * order + ring.all());
+    let mut all = zero_vector(2 * order + ring.all(), CONTEXT)?;
     all.rows_mut(0, 2 * order).copy_from(&step.rows(0, 2 * order));
     for (i, &e) in map.moving.iter().enumerate() {
         all[2 * order + e] = step[2 * order + i];
@@ -167,9 +176,9 @@ fn newton(
     Ok(Some(all))
 }
 
-fn moved(motion: &SliderMotion<'_>, from: &Trial, step: &DVector<f64>, share: f64) -> SliderState {
+fn moved(motion: &SliderMotion<'_>, from: &Trial, step: &DVector<f64>, share: f64) -> Result<SliderState> {
     let (order, scale) = (motion.ring.order(), scale_of_sliders(motion));
-    let mut state = from.state.clone();
+    let mut state = from.state.try_clone()?;
     for (i, x) in state.q.iter_mut().enumerate() {
         *x += share * step[i];
     }
@@ -179,5 +188,5 @@ fn moved(motion: &SliderMotion<'_>, from: &Trial, step: &DVector<f64>, share: f6
     for (e, w) in state.w.iter_mut().enumerate() {
         *w += share * step[2 * order + e] / scale;
     }
-    state
+    Ok(state)
 }

@@ -7,11 +7,13 @@
 //!
 //! and the other way round. After some changes E is factorised anew, which ends the growth of rounding.
 
-use crate::error::{Result, check_memory, fail, try_push};
+use crate::error::{Result, fail, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::fallible_matrix::{add_product, adjoint, filled, invert_definite, product, zero_vector, zeros};
 use crate::linalg::lu::Scalar;
 use crate::stability::modal_ring::ModalRing;
 use crate::time_integration::Number;
-use nalgebra::{Cholesky, DMatrix, RowDVector};
+use nalgebra::{DMatrix, DVector};
 
 const CONTEXT: &str = "the slipping contacts";
 
@@ -48,25 +50,24 @@ impl<T: Number> Slipping<T> {
     /// The equations while the contacts of a list slip.
     ///
     /// # Errors
-    /// `Unsupported` where nothing but these contacts holds a motion; `OutOfMemory`.
-    pub fn new(ring: &ModalRing<T>, list: Vec<usize>) -> Result<Self> {
+    /// `Unsupported` where nothing but these contacts holds a motion; `OutOfMemory`; `StoppedByCaller`.
+    pub fn new(ring: &ModalRing<T>, list: Vec<usize>, interrupt: &Interrupt<'_>) -> Result<Self> {
         let (order, count) = (ring.order(), list.len());
-        check_memory::<T>(count * (2 * count + 2 * order) + order * order, CONTEXT)?;
-        let own = DMatrix::from_fn(count, count, |i, j| entry(ring, list[i], list[j]));
-        let Some(factor) = Cholesky::new(own) else {
+        let mut inverse = filled(count, count, CONTEXT, |i, j| entry(ring, list[i], list[j]))?;
+        if !invert_definite(&mut inverse, CONTEXT, interrupt)? {
             return fail!(
                 Unsupported,
                 "nothing but slipping contacts holds a motion of the structure"
             );
-        };
-        let selected = DMatrix::from_fn(count, order, |i, j| ring.rows[(list[i], j)]);
-        let inverse = factor.inverse();
-        let rows = &inverse * &selected;
-        let mut stiffness = DMatrix::zeros(order, order);
+        }
+        let selected = filled(count, order, CONTEXT, |i, j| ring.rows[(list[i], j)])?;
+        let rows = product(&inverse, &selected, CONTEXT, interrupt)?;
+        let mut stiffness = zeros(order, order, CONTEXT)?;
         for (i, &square) in ring.square.iter().enumerate() {
             stiffness[(i, i)] = T::of(square.into());
         }
-        stiffness.gemm(T::of((-1.0).into()), &selected.adjoint(), &rows, T::one());
+        let selected = adjoint(&selected, CONTEXT)?;
+        add_product(&mut stiffness, T::of((-1.0).into()), (&selected, &rows), interrupt)?;
         Ok(Self {
             list,
             inverse,
@@ -85,54 +86,67 @@ impl<T: Number> Slipping<T> {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn change(&mut self, ring: &ModalRing<T>, contact: usize, slips: bool) -> Result<()> {
+    pub fn change(
+        &mut self,
+        ring: &ModalRing<T>,
+        contact: usize,
+        slips: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (count, order) = (self.list.len(), ring.order());
+        interrupt.check_before((2 * (count + order) * (count + order)) as u64)?;
         let done = match (self.place(contact), slips) {
             (None, true) => self.add(ring, contact)?,
-            (Some(at), false) => self.remove(at),
+            (Some(at), false) => self.remove(at)?,
             _ => return Ok(()),
         };
         self.changes += 1;
         if !done || self.changes > SLIPPING_MOST_CHANGES {
-            *self = Self::new(ring, core::mem::take(&mut self.list))?;
+            *self = Self::new(ring, core::mem::take(&mut self.list), interrupt)?;
         }
         Ok(())
     }
 
     /// `false`: only the list has changed.
     fn add(&mut self, ring: &ModalRing<T>, contact: usize) -> Result<bool> {
-        let count = self.list.len();
-        let b = DMatrix::from_fn(count, 1, |i, _| entry(ring, self.list[i], contact));
+        let (count, order) = (self.list.len(), ring.order());
+        let mut b = zero_vector::<T>(count, CONTEXT)?;
+        for (b, &e) in b.iter_mut().zip(&self.list) {
+            *b = entry(ring, e, contact);
+        }
+        let mut u = zero_vector::<T>(count, CONTEXT)?;
+        u.gemv(T::one(), &self.inverse, &b, T::NONE);
         let own = entry(ring, contact, contact);
         try_push(&mut self.list, contact, CONTEXT)?;
-        let u = &self.inverse * &b;
         let pivot = own.complex().re - b.dotc(&u).complex().re;
         if pivot <= SLIPPING_LEAST_PIVOT * Scalar::size(own) {
             return Ok(false);
         }
-        check_memory::<T>((count + 1) * (count + 1 + ring.order()), CONTEXT)?;
-        let real = |x: f64| T::of(x.into());
-        let mut rho: RowDVector<T> = ring.rows.row(contact).into_owned();
-        rho -= b.adjoint().row(0) * &self.rows;
-        let share = real(1.0 / pivot);
-        self.inverse.gerc(share, &u.column(0), &u.column(0), T::one());
-        let mut inverse = core::mem::take(&mut self.inverse).resize(count + 1, count + 1, T::NONE);
-        for i in 0..count {
-            inverse[(i, count)] = -u[(i, 0)] * share;
-            inverse[(count, i)] = inverse[(i, count)].conjugated();
+        let share = T::of((1.0 / pivot).into());
+        let mut rho = zero_vector::<T>(order, CONTEXT)?;
+        for (j, rho) in rho.iter_mut().enumerate() {
+            *rho = ring.rows[(contact, j)] - b.dotc(&self.rows.column(j));
         }
-        inverse[(count, count)] = share;
-        self.inverse = inverse;
-        let scaled = &rho * share;
-        self.rows -= &u * &scaled;
-        let mut rows = core::mem::take(&mut self.rows).resize(count + 1, ring.order(), T::NONE);
-        rows.row_mut(count).copy_from(&scaled);
-        self.rows = rows;
-        self.stiffness -= rho.adjoint() * scaled;
+        self.inverse.gerc(share, &u, &u, T::one());
+        self.inverse = filled(count + 1, count + 1, CONTEXT, |i, j| match (i == count, j == count) {
+            (false, false) => self.inverse[(i, j)],
+            (false, true) => -u[i] * share,
+            (true, false) => (-u[j] * share).conjugated(),
+            (true, true) => share,
+        })?;
+        self.rows.ger(-share, &u, &rho, T::one());
+        self.rows = filled(count + 1, order, CONTEXT, |i, j| {
+            if i < count { self.rows[(i, j)] } else { rho[j] * share }
+        })?;
+        conjugate(&mut rho);
+        self.stiffness.gerc(-share, &rho, &rho, T::one());
         Ok(true)
     }
 
-    fn remove(&mut self, at: usize) -> bool {
+    /// `false`: only the list has changed.
+    fn remove(&mut self, at: usize) -> Result<bool> {
         self.list.remove(at);
+        let (count, order) = (self.list.len(), self.stiffness.nrows());
         let pivot = self.inverse[(at, at)].complex().re;
         let whole = self
             .inverse
@@ -140,18 +154,30 @@ impl<T: Number> Slipping<T> {
             .iter()
             .fold(0.0_f64, |m, z| m.max(Scalar::size(*z)));
         if pivot <= SLIPPING_LEAST_PIVOT * whole {
-            return false;
+            return Ok(false);
         }
         let share = T::of((1.0 / pivot).into());
-        let column = self.inverse.column(at).remove_row(at);
-        let own: RowDVector<T> = self.rows.row(at).into_owned();
-        self.stiffness += own.adjoint() * (&own * share);
-        let rows = core::mem::take(&mut self.rows).remove_row(at);
-        self.rows = rows - &column * (&own * share);
-        let inverse = core::mem::take(&mut self.inverse);
-        let mut inverse = inverse.remove_row(at).remove_column(at);
-        inverse.gerc(-share, &column, &column, T::one());
-        self.inverse = inverse;
-        true
+        let other = |i: usize| if i < at { i } else { i + 1 };
+        let mut column = zero_vector::<T>(count, CONTEXT)?;
+        for (i, value) in column.iter_mut().enumerate() {
+            *value = self.inverse[(other(i), at)];
+        }
+        let mut own = zero_vector::<T>(order, CONTEXT)?;
+        for (j, value) in own.iter_mut().enumerate() {
+            *value = self.rows[(at, j)];
+        }
+        self.rows = filled(count, order, CONTEXT, |i, j| self.rows[(other(i), j)])?;
+        self.rows.ger(-share, &column, &own, T::one());
+        self.inverse = filled(count, count, CONTEXT, |i, j| self.inverse[(other(i), other(j))])?;
+        self.inverse.gerc(-share, &column, &column, T::one());
+        conjugate(&mut own);
+        self.stiffness.gerc(share, &own, &own, T::one());
+        Ok(true)
+    }
+}
+
+fn conjugate<T: Number>(x: &mut DVector<T>) {
+    for z in x.iter_mut() {
+        *z = z.conjugated();
     }
 }

@@ -177,6 +177,33 @@ static hbvib_status stable(const hbvib_model *model, uint64_t *sum)
     return of_branch(status, branch, hbvib_model_dofs(model), sum);
 }
 
+/* The multipliers of a wheel on modes and sliders. */
+static hbvib_status on_sliders(const hbvib_model *model, uint64_t *sum)
+{
+    static double multipliers[2 * 128];
+    int64_t classes[128];
+    hbvib_solver_options s = options(0);
+    hbvib_forced_options o = range(model);
+    hbvib_floquet_options f;
+    hbvib_floquet_info info;
+    hbvib_branch *branch = NULL;
+    hbvib_status status = HBVIB_OK;
+    memset(&f, 0, sizeof f);
+    memset(&info, 0, sizeof info);
+    STEP(hbvib_floquet_options_init(&f, sizeof f));
+    STEP(hbvib_floquet_info_init(&info, sizeof info));
+    s.harmonics = 9;
+    o.omega_stop = o.omega_start;
+    f.waves = HBVIB_WAVES_WHEEL;
+    f.modes = 8;
+    STEP(hbvib_forced_response(model, &s, &o, NULL, &branch));
+    STEP(hbvib_floquet(model, branch, 0, &f, NULL, multipliers, 128, classes, 128, &info));
+    /* Eight modes: there are only seven beside the degrees of freedom of the contacts, and those are none of the states. */
+    if (status >= 0 && (info.modes != 8 || info.count > 128)) status = HBVIB_E_INTERNAL;
+    if (status >= 0) digest(sum, multipliers, (size_t)info.count * 2 * sizeof(double));
+    return of_branch(status, branch, hbvib_model_dofs(model), sum);
+}
+
 /* Negative damping that a contact limits. */
 static hbvib_status self_excited(hbvib_model **model)
 {
@@ -274,6 +301,7 @@ static const analysis DESIGNS_AND_STABILITY[] = {
     {"stability of a wheel", small_ring, stable},
     {"stability, cubic", cubic, stable},
     {"stability, unilateral", unilateral, stable},
+    {"stability, modes and sliders", stiff_wheel, on_sliders},
     {"limit cycles", self_excited, cycles},
     {"damped modes of a wheel", faces, damped},
     {"pattern of a wheel", small_ring, pattern},

@@ -10,6 +10,7 @@ pub mod complex_products;
 pub mod definite;
 pub mod eigen;
 pub mod factor;
+pub mod fallible_matrix;
 pub mod general_eigen;
 pub mod gmres;
 mod graph;
