@@ -18,4 +18,5 @@ mod passed_resonances;
 mod random_chains;
 mod random_points;
 mod random_problems;
+mod requested_frequencies;
 mod saved_models;
