@@ -6,8 +6,9 @@ use crate::condense::memory_limit::within;
 use crate::condense::wave_matrices::{Assembled, WaveMatrices};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
+use crate::linalg::cholesky::entries_by_degrees;
 use crate::linalg::inertia::eigenvalues_below;
-use crate::linalg::sparse::Columns;
+use crate::linalg::sparse::{Columns, Csc};
 
 /// Columns of a basis for each natural frequency up to the highest, for each input, and besides: 2.0 to 2.4 of the first on chains of 1,500
 /// and 3,000 masses and grids of 1,444 and 2,916 with 1 to 30 contacts.
@@ -19,6 +20,9 @@ const BESIDES: usize = 10;
 /// the same models.
 const OF_COLUMNS: f64 = 2.5;
 const OF_ENTRIES: f64 = 6.0;
+
+/// Work of all modes over n³, in the same.
+const OF_ALL_MODES: f64 = 0.2;
 
 /// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency.
 const ALONG_RANGE: f64 = 600.0;
@@ -50,8 +54,23 @@ pub(super) fn is_worth_its_columns(
     if columns > most {
         return Ok(false);
     }
-    let entries = below.entries as f64;
-    let of_one = OF_ENTRIES * entries + entries * entries / stiffness.columns() as f64;
+    let of_one = of_factors(below.entries, stiffness.columns());
     let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
     Ok(OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one)
+}
+
+/// Work of complex LU factors of order n whose triangle has so many entries.
+fn of_factors(entries: usize, n: usize) -> f64 {
+    let entries = entries as f64;
+    OF_ENTRIES * entries + entries * entries / n as f64
+}
+
+/// Whether all modes of a matrix with this pattern take less time than the factors of so many harmonics along a range.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<bool> {
+    let n = pattern.cols;
+    let of_factors = of_factors(entries_by_degrees(pattern)?, n);
+    Ok(OF_ALL_MODES * (n as f64).powi(3) <= ALONG_RANGE * harmonics as f64 * of_factors)
 }

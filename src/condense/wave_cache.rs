@@ -1,5 +1,6 @@
 //! Computes the modes of waves, each once; see [`crate::condense::wave_modes`].
 
+use crate::condense::basis_outlook::are_all_modes_quicker;
 use crate::condense::harmonic_block::Values;
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::quadratic_poles;
@@ -25,6 +26,9 @@ pub(super) const ALL_UP_TO: usize = 600;
 /// The same of a structure on a basis, whose matrices are full, so that a factorisation at each frequency costs n³ as its modes do: a sweep
 /// over a sector with 61 contacts in a plane has 736 to 920 coordinates.
 const ALL_OF_BASIS_UP_TO: usize = 1_200;
+
+/// The same where they take less time than the factors of a sweep, as of grids without a basis, by times of grids of 608 to 2,000. Their matrices are full: 64 MB each.
+const ALL_BESIDE_DEAR_FACTORS_UP_TO: usize = 2_000;
 
 const CONTEXT: &str = "the modes of the structure";
 
@@ -274,7 +278,9 @@ fn modes_of(
     } else {
         ALL_UP_TO
     };
-    if n > most || has_other_terms(model) {
+    let is_quick = || are_all_modes_quicker(&reference, condensed.blocks().len());
+    let may = n <= most || (block.view.is_none() && n <= ALL_BESIDE_DEAR_FACTORS_UP_TO && is_quick()?);
+    if !may || has_other_terms(model) {
         return Ok(None);
     }
     let Some(springs) = springs(model, condensed, block)? else {

@@ -499,3 +499,36 @@ fn a_chain_with_many_resonances_is_left_to_factors() {
         }
     }
 }
+
+/// Beyond 600 degrees of freedom a plate whose range, with nine harmonics, holds too many resonances for a basis is a sum over all modes
+/// along a sweep: at its points it responds as by the factors of single frequencies.
+#[test]
+fn a_plate_with_many_resonances_responds_as_by_factors() {
+    let (model, solver) = (plate(25, 3), options(Flexibility::Automatic, 9));
+    let at = [0.163, 0.19];
+    let range = ForcedOptions {
+        omega_start: 0.15,
+        omega_stop: 0.2,
+        at: &at,
+        ..ForcedOptions::default()
+    };
+    let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
+    assert_eq!(branch.status(), Status::Ok);
+    let reduction = branch.reduction();
+    assert!(
+        reduction.basis == 0 && reduction.flexibility_way == hbvib::condense::FlexibilityWay::Modes,
+        "{:?}",
+        reduction.flexibility_way
+    );
+    let mut points = vec![0, branch.points() - 1];
+    points.extend((0..at.len()).map(|i| branch.at(i)[0].point));
+    for at in points {
+        let omega = branch.omega_at(at).unwrap();
+        let (found, alone) = (branch.response_at(at).unwrap()[0], point(&model, &solver, omega));
+        let alone = alone.response_at(0).unwrap()[0];
+        assert!(
+            (found - alone).norm() < 1e-9 * alone.norm(),
+            "{omega}: {found} for {alone}"
+        );
+    }
+}
