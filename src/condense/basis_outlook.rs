@@ -22,7 +22,7 @@ const OF_COLUMNS: f64 = 2.5;
 const OF_ENTRIES: f64 = 6.0;
 
 /// Work of all modes over n³, in the same.
-const OF_ALL_MODES: f64 = 0.2;
+const WORK_OF_ALL_MODES: f64 = 0.2;
 
 /// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency.
 const ALONG_RANGE: f64 = 600.0;
@@ -72,5 +72,5 @@ fn of_factors(entries: usize, n: usize) -> f64 {
 pub(super) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<bool> {
     let n = pattern.cols;
     let of_factors = of_factors(entries_by_degrees(pattern)?, n);
-    Ok(OF_ALL_MODES * (n as f64).powi(3) <= ALONG_RANGE * harmonics as f64 * of_factors)
+    Ok(WORK_OF_ALL_MODES * (n as f64).powi(3) <= ALONG_RANGE * harmonics as f64 * of_factors)
 }
