@@ -107,6 +107,8 @@ class _Intentional(_WheelStudies):
         given = _array("levels", levels, np.float64, (2,))
         if not (np.isfinite(box) and box > 0):
             raise ValueError(f"box = {box!r}, needs a number above 0")
+        if not np.isfinite(given).all():
+            raise ValueError(f"levels = {given}, need finite numbers")
         if direction is None and np.min(levels) - box < -1:
             raise ValueError(f"levels down to {np.min(levels)} less box = {box}, need at least -1: shares, not per cent")
         counts = [_whole(value, name=name) for name, value in (("longest", longest), ("tries", tries), ("starts", starts))]

@@ -13,7 +13,7 @@ from ._branch import Branch
 from ._c import LogLevel, Status
 from ._calls import _call, _Guard, _hooks
 from ._convert import _array, _range
-from ._errors import ArgumentError, Stopped, _sentence
+from ._errors import ArgumentError, Stopped, UnsupportedError, _sentence
 from ._responses import Response, structures
 from ._sensitivity import Parameter
 from ._structs import _new, _with_options
@@ -213,6 +213,8 @@ class _WheelStudies(_HasUnits):
         tuned, gradient, _ = self._peak_of_blade(wheel, parameters, watched, omega, solver)
         if not np.isfinite(gradient).all():
             gradient, _ = self._by_differences(np.zeros(sectors), mistuning, watched, omega, solver)
+            # By the parameter instead of delta.
+            gradient = gradient * 2e-6 / float(transform(1e-6) - transform(-1e-6))
         # Blade s of a pattern is blade 0 of the pattern that is shifted by s.
         shifted = np.stack([np.roll(gradient, s) for s in range(sectors)])
         parts = np.array_split(patterns, max(1, patterns.size // _NUMBERS_AT_ONCE))
@@ -262,7 +264,11 @@ class _WheelStudies(_HasUnits):
             raise ArgumentError("no peak of the watched blade lies within omega", Status.E_ARGUMENT, 2)
         best = int(np.argmax(peaks.amplitude))
         point = int(peaks.point[best])
-        gradient = np.array(wheel.sensitivity(branch, point, parameters, response=0)) if parameters else np.empty(0)
+        try:
+            gradient = np.array(wheel.sensitivity(branch, point, parameters, response=0)) if parameters else np.empty(0)
+        except UnsupportedError:
+            # As of rigid sliders: differences take its place.
+            gradient = np.full(len(parameters), np.nan)
         return float(peaks.amplitude[best]), gradient, float(peaks.omega[best])
 
 

@@ -158,4 +158,14 @@ check("and are told", "100 without result" in repr(half), repr(half))
 few = hbvib.WheelStudy(np.linspace(1, 2, 60), np.zeros(60), np.ones(60), np.zeros(60), 1.0, np.ones(60))
 check("a value lies in its interval", few.quantile(0.9999).lower <= few.quantile(0.9999).value, few.quantile(0.9999))
 
-finish(53)
+# Rigid sliders have no exact derivatives: differences foretell their wheels.
+rigid = hbvib.Model.cyclic(2, sectors=5, engine_order=1, mass=np.diag([1.0, 2.0]), stiffness=[[1.0, -1.0], [-1.0, 5.2]],
+                           coupling=dict(stiffness=np.diag([0, -2.0])), rayleigh=(0, 0.01))
+rigid.add_contact("jenkins", 1, kt=np.inf, mu=0.3, preload=0.1)
+rigid.add_force(0, 0.05)
+shifts = 1e-3 * np.random.default_rng(1).standard_normal((3, 5))
+foretold = rigid.wheel_study((0.7, 0.98), shifts, kind="frequency", dofs=[0], harmonics=5)
+close("rigid sliders are foretold", foretold.predicted / foretold.tuned, foretold.amplification, 5e-3)
+raises("levels", ValueError, lambda: small.intentional_pattern((1.3, 2.1), (np.nan, 0.1), 0.1, longest=2, **study), words="finite")
+
+finish(55)
