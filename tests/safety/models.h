@@ -102,38 +102,6 @@ static hbvib_status with_contact(hbvib_model **model, const hbvib_contact *c)
     return finished(status, model);
 }
 
-/* Six sectors of nine masses in a row, two of which rub, and of one on a spring so stiff that perturbations of all degrees of freedom
- * would take too many steps: stability is then computed on modes and sliders. All modes decay alike. */
-static hbvib_status stiff_wheel(hbvib_model **model)
-{
-    enum { N = 10 };
-    double mass[N * N] = {0}, stiffness[N * N] = {0}, next[N * N] = {0};
-    hbvib_matrix m = dense(N, mass), k = dense(N, stiffness), coupling = dense(N, next);
-    hbvib_contact c = law(HBVIB_JENKINS, 1, HBVIB_GROUND, HBVIB_GROUND), d = law(HBVIB_JENKINS, 0, HBVIB_GROUND, HBVIB_GROUND);
-    hbvib_status status = hbvib_cyclic_new(N, 6, model);
-    int i;
-    for (i = 0; i < N; i++) {
-        mass[i * N + i] = i < N - 1 ? 0.2 : 1e-4;
-        stiffness[i * N + i] = i < N - 1 ? 16 : 1e8;
-        if (i > 0) stiffness[i * N + i - 1] = stiffness[(i - 1) * N + i] = -8;
-    }
-    next[1 * N + 1] = -0.1;
-    c.kt = 0.3;
-    c.mu = c.preload = 0.1;
-    d.dof_b[0] = 2;
-    d.kt = 0.3;
-    d.mu = d.preload = 0.1;
-    STEP(hbvib_model_set_matrix(*model, HBVIB_MASS, &m));
-    STEP(hbvib_model_set_matrix(*model, HBVIB_STIFFNESS, &k));
-    STEP(hbvib_cyclic_set_coupling(*model, HBVIB_STIFFNESS, &coupling));
-    STEP(hbvib_model_set_rayleigh(*model, 0.1, 0));
-    STEP(hbvib_cyclic_set_wave(*model, 3));
-    STEP(hbvib_model_add_force(*model, 0, 1, 0.4, 0));
-    STEP(hbvib_model_add_contact(*model, &c, NULL));
-    STEP(hbvib_model_add_contact(*model, &d, NULL));
-    return finished(status, model);
-}
-
 static hbvib_status friction_2d(hbvib_model **model)
 {
     hbvib_contact c = law(HBVIB_FRICTION_2D, 1, HBVIB_GROUND, 2);
