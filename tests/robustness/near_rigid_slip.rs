@@ -244,3 +244,57 @@ fn a_rigid_slider_is_refused_elsewhere() {
         assert!((found / exact - 1.0).abs() < 1e-7, "{found} for {exact}");
     }
 }
+
+/// A ring of 24 blades, each with a rigid slider to the next one, under an engine order.
+fn blades(engine_order: i64, kt: f64, preload: f64) -> Model {
+    let mut model = Model::cyclic(2, 24).unwrap();
+    for (kind, matrix) in [
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.5]),
+        (MatrixKind::Stiffness, [1.0, -1.0, -1.0, 5.0]),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(2, &matrix)).unwrap();
+    }
+    model
+        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(2, &[0.0, 0.0, 0.0, -1.0]))
+        .unwrap();
+    model.set_wave(engine_order);
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    if kt > 0.0 {
+        let mut contact = Contact::jenkins(0, Some(0), kt, 0.4, preload);
+        contact.sector_offset = 1;
+        model.add_contact(&contact).unwrap();
+    }
+    model.add_force(1, 1, 0.5.into()).unwrap();
+    model
+}
+
+/// Blades that move alike in a harmonic, h EO = 0 mod 24, do not move their contact there, so that any force that sticks would do: the
+/// equation was singular.
+#[test]
+fn rigid_sliders_between_blades_that_move_alike_have_a_solution() {
+    let solver = SolverOptions {
+        response_dof: Some(1),
+        ..harmonics(9)
+    };
+    let solved = |model: &Model| {
+        let branch = sweep(model, &solver, 1.3, 2.6, &[1.7]);
+        assert_eq!(branch.status(), Status::Ok);
+        // The first harmonic that is carried is the fundamental.
+        let amplitude = |point: usize| branch.response_at(point).unwrap()[0].norm();
+        [0, branch.at(0)[0].point, branch.points() - 1].map(amplitude)
+    };
+    let equal = |found: [f64; 3], wanted: [f64; 3], name: &str| {
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert!((found / wanted - 1.0).abs() < 1e-6, "{name}: {found} for {wanted}");
+        }
+    };
+    // Under engine order 0 no contact moves, whatever its load.
+    let free = solved(&blades(0, 0.0, 0.0));
+    equal(solved(&blades(0, f64::INFINITY, 0.5)), free, "engine order 0");
+    // Under engine order 8 harmonics 3 and 9 do not move it; one that sticks for ever is a tie.
+    let tied = solved(&blades(8, 1e9, f64::INFINITY));
+    equal(solved(&blades(8, f64::INFINITY, 3e2)), tied, "stuck");
+    for preload in [0.05, 0.5, 1.2] {
+        solved(&blades(8, f64::INFINITY, preload));
+    }
+}
