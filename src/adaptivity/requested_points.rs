@@ -10,7 +10,7 @@ use crate::continuation::{PointAt, Settings};
 use crate::error::{Result, Status};
 use crate::results::SpecialKind;
 
-/// Bounds of the work for such a solution.
+/// Bounds of the work for such a solution. Kind: cap.
 const REQUESTED_MOST: Effort = Effort {
     points: 200,
     iterations: 2_000,

@@ -10,21 +10,22 @@ use crate::linalg::cholesky::entries_by_degrees;
 use crate::linalg::inertia::eigenvalues_below;
 use crate::linalg::sparse::{Columns, Csc};
 
-/// Columns of a basis for each natural frequency up to the highest, for each input, and besides: 2.0 to 2.4 of the first on chains of 1,500
-/// and 3,000 masses and grids of 1,444 and 2,916 with 1 to 30 contacts.
-const OF_RESONANCE: usize = 2;
-const OF_INPUT: usize = 5;
-const BESIDES: usize = 10;
+/// Usual columns of a basis per input, and besides.
+pub(super) const USUAL_COLUMNS: (usize, usize) = (5, 10);
 
-/// Work of a basis over the cube of its columns, and of complex LU factors over the entries of L, in that of n⁻¹ entries²: by times of
-/// the same models.
+/// Columns of a basis beyond those for each natural frequency up to the highest. Kind: tuned; 2.0 to 2.4 on chains of 1,500 and 3,000
+/// masses and grids of 1,444 and 2,916 with 1 to 30 contacts.
+const OF_RESONANCE: usize = 2;
+
+/// Work of a basis over the cube of its columns, and of complex LU factors over the entries of L, in that of n⁻¹ entries². Kind: tuned; by
+/// times of the same models.
 const OF_COLUMNS: f64 = 2.5;
 const OF_ENTRIES: f64 = 6.0;
 
-/// Work of all modes over n³, in the same.
+/// Work of all modes over n³, in the same. Kind: tuned; by times of grids of 608 to 2,000.
 const WORK_OF_ALL_MODES: f64 = 0.2;
 
-/// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency.
+/// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency. Kind: tuned; usual sweeps have 30 to 300.
 const ALONG_RANGE: f64 = 600.0;
 const AT_ONE: f64 = 5.0;
 
@@ -50,7 +51,8 @@ pub(super) fn is_worth_its_columns(
     let Some(below) = eigenvalues_below(&stiffness, (sigma, &mass), real, allow, interrupt)? else {
         return Ok(true);
     };
-    let columns = OF_RESONANCE * below.count + OF_INPUT * inputs + BESIDES;
+    let (per_input, besides) = USUAL_COLUMNS;
+    let columns = OF_RESONANCE * below.count + per_input * inputs + besides;
     if columns > most {
         return Ok(false);
     }

@@ -22,7 +22,7 @@ const CONTEXT: &str = "the near-rigid contacts";
 const NOMINAL: f64 = 160.0;
 
 /// Exchanged motion by a force, over that of α, up to which the sides of a contact do not move against each other in a harmonic, as those of
-/// blades that move alike: any force that sticks would do there, and a creep of its place takes the least one.
+/// blades that move alike: any force that sticks would do there, and a creep of its place takes the least one. Kind: rounding.
 const UNMOVED: f64 = 1e-9;
 
 /// Selects the coordinates whose motions are exchanged: those of one near-rigid slider alone, which have no reference stiffness

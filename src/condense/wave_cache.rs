@@ -27,7 +27,8 @@ pub(super) const ALL_UP_TO: usize = 600;
 /// over a sector with 61 contacts in a plane has 736 to 920 coordinates.
 const ALL_OF_BASIS_UP_TO: usize = 1_200;
 
-/// The same where they take less time than the factors of a sweep, as of grids without a basis, by times of grids of 608 to 2,000. Their matrices are full: 64 MB each.
+/// The same where they take less time than the factors of a sweep, as of grids without a basis. Kind: cap; their matrices are full, 64 MB
+/// each.
 const ALL_BESIDE_DEAR_FACTORS_UP_TO: usize = 2_000;
 
 const CONTEXT: &str = "the modes of the structure";

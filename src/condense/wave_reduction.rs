@@ -5,6 +5,7 @@
 //! through these, it does not depend on their constants.
 
 use crate::condense::HarmonicBlock;
+use crate::condense::basis_outlook::USUAL_COLUMNS;
 use crate::condense::certificate::{Certificate, certificate};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
@@ -43,9 +44,6 @@ const SHARE_OF_BASIS: usize = 3;
 const OF_MODES: f64 = 20.0;
 const OF_POLES: f64 = 200.0;
 const OF_BASIS: f64 = 480.0;
-
-/// Usual columns per input, and besides.
-const USUAL_COLUMNS: (usize, usize) = (5, 10);
 
 /// Degrees of freedom up to which a structure whose basis does not hold is treated directly.
 const DIRECT_UP_TO: usize = 20_000;

@@ -9,7 +9,8 @@ use crate::model::structure::MatrixKind;
 pub use crate::model::wave::Wave;
 use num_complex::Complex64;
 
-/// A tie over the stiffness of the structure: natural frequencies are below those of tied sides by 10⁻⁸ or so, the rounding of K as large.
+/// A tie over the stiffness of the structure: natural frequencies are below those of tied sides by 10⁻⁸ or so, the rounding of K as large. Kind:
+/// rounding.
 const TIE: f64 = 1e8;
 
 impl Model {
