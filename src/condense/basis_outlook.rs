@@ -29,14 +29,14 @@ const WORK_OF_ALL_MODES: f64 = 0.2;
 const ALONG_RANGE: f64 = 600.0;
 const AT_ONE: f64 = 5.0;
 
-/// Whether a basis for `inputs` forces, of `most` columns at most, is larger than its first blocks with gain: its columns suffice, and take
+/// Whether a basis for `inputs` forces and others `beside` them in the first block, of `most` columns at most, is larger than its first blocks with gain: its columns suffice, and take
 /// less time than the factors. `true` where the natural frequencies cannot be counted.
 ///
 /// # Errors
 /// `OutOfMemory`, `Argument` for the limit of memory; `StoppedByCaller`.
 pub(super) fn is_worth_its_columns(
     matrices: &WaveMatrices<'_>,
-    (inputs, most): (usize, usize),
+    (inputs, beside, most): (usize, usize, usize),
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
     let Some(factors) = matrices.instead_of else {
@@ -52,7 +52,7 @@ pub(super) fn is_worth_its_columns(
         return Ok(true);
     };
     let (per_input, besides) = USUAL_COLUMNS;
-    let columns = OF_RESONANCE * below.count + per_input * inputs + besides;
+    let columns = OF_RESONANCE * below.count + per_input * inputs + besides + beside;
     if columns > most {
         return Ok(false);
     }

@@ -157,14 +157,14 @@ fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) 
     // Z = (1 + iνβ + iη) A − s M + …, s = ν² − iνα + (1 + iνβ + iη) σ
     let i_eta = Complex64::new(0.0, loss_factor);
     let (mass, damping) = match pencil.damping {
-        WaveDamping::Proportional(alpha, beta) => {
+        WaveDamping::Proportional(alpha, beta) | WaveDamping::General(_, Some((alpha, beta))) => {
             let i_nu = Complex64::new(0.0, nu);
             (
                 nu * nu - i_nu * alpha + (1.0 + i_nu * beta + i_eta) * pencil.shift,
                 None,
             )
         }
-        WaveDamping::General(_) => (
+        WaveDamping::General(_, None) => (
             nu * nu + (1.0 + i_eta) * pencil.shift,
             Some(turned(Complex64::new(0.0, -nu))),
         ),
@@ -208,7 +208,7 @@ fn images(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) ->
                 0.0,
             )
         }
-        WaveDamping::General(_) => {
+        WaveDamping::General(..) => {
             let mut damped = try_vec(q.len(), Complex64::ZERO, CONTEXT)?;
             for (i, to) in damped.iter_mut().enumerate() {
                 *to = q.iter().enumerate().map(|(j, z)| view.damping(i, j) * z).sum();

@@ -2,6 +2,7 @@
 
 use crate::condense::basis_outlook::is_worth_its_columns;
 use crate::condense::certificate::Certificate;
+use crate::condense::few_directions::FewDirections;
 use crate::condense::memory_limit::within;
 use crate::condense::residual_directions::residual_directions;
 use crate::condense::wave_matrices::{Assembled, Damping, WaveMatrices};
@@ -70,9 +71,11 @@ pub(super) fn prepare(
     };
     let mut real = assembled.stiffness.is_real() && assembled.mass.is_real();
     real &= inputs.iter().flatten().all(|(_, z)| z.im == 0.0);
-    if let Damping::General(c) = &assembled.damping {
-        real &= c.is_real();
-    }
+    real &= match &assembled.damping {
+        Damping::Proportional(..) => true,
+        Damping::Few(few) => few.is_real(),
+        Damping::General(c) => c.is_real(),
+    };
     if real {
         build::<f64>(
             matrices,
@@ -111,7 +114,13 @@ fn build<T: Entry>(
     let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
         return Ok(None);
     };
-    krylov.start(&inputs, USUAL_BLOCKS, interrupt)?;
+    let beside = prepared.directions().len();
+    let mut first = Vec::new();
+    for input in prepared.directions().iter().chain(&inputs) {
+        try_push(&mut first, try_copy(input, CONTEXT)?, CONTEXT)?;
+    }
+    krylov.start(&first, USUAL_BLOCKS, interrupt)?;
+    drop(first);
     let mut wave = ReducedWave {
         key: matrices.key,
         inputs,
@@ -139,7 +148,7 @@ fn build<T: Entry>(
         krylov.give_basis(back(wave.basis));
         let mut complete = found.basis <= limit || full;
         if !complete && is_worth.is_none() {
-            let worth = is_worth_its_columns(matrices, (wave.inputs.len(), most), interrupt)?;
+            let worth = is_worth_its_columns(matrices, (wave.inputs.len(), beside, most), interrupt)?;
             is_worth = Some(worth);
             complete = !worth;
         }
@@ -198,8 +207,25 @@ fn grown<T: Entry>(
 /// The data that a basis keeps of its matrices.
 struct Prepared {
     shift: f64,
-    damping: Option<(f64, f64)>,
+    damping: OfWave,
     n: usize,
+}
+
+/// Damping without the matrix that the basis has for it.
+enum OfWave {
+    Proportional(f64, f64),
+    Few(FewDirections),
+    General,
+}
+
+impl Prepared {
+    /// Forces that the first block holds beside the inputs.
+    fn directions(&self) -> &[SparseVector] {
+        match &self.damping {
+            OfWave::Few(few) => &few.directions,
+            _ => &[],
+        }
+    }
 }
 
 /// K and M. Those that the model keeps become triangles when the factor stands, in the memory that its preparation leaves;
@@ -263,7 +289,11 @@ fn started<T: Entry>(
         }
         let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
         let operators = Operators::<T>::new([stiffness, mass], interrupt)?;
-        let block = inputs.len() * n * size_of::<T>();
+        let directions = match &damping {
+            Damping::Few(few) => few.directions.len(),
+            _ => 0,
+        };
+        let block = (inputs.len() + directions) * n * size_of::<T>();
         let beside = (USUAL_BLOCKS + 3) * block
             + 3 * a.values.len() * (size_of::<T>() + size_of::<Row>())
             + matrices.model.kept().bytes();
@@ -272,15 +302,12 @@ fn started<T: Entry>(
             shift *= RAISED;
             continue;
         };
-        let (proportional, general) = match damping {
-            Damping::Proportional(alpha, beta) => (Some((alpha, beta)), None),
-            Damping::General(c) => (None, Some(c)),
+        let (damping, general) = match damping {
+            Damping::Proportional(alpha, beta) => (OfWave::Proportional(alpha, beta), None),
+            Damping::Few(few) => (OfWave::Few(few), None),
+            Damping::General(c) => (OfWave::General, Some(c)),
         };
-        let prepared = Prepared {
-            shift,
-            damping: proportional,
-            n,
-        };
+        let prepared = Prepared { shift, damping, n };
         drop(a);
         let [stiffness, mass] = operators.triangles(interrupt)?;
         let matrices = (stiffness, shift, mass);
@@ -292,7 +319,7 @@ fn started<T: Entry>(
 /// The matrices on the basis, with the basis rotated so that the mass is diagonal.
 fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &Interrupt<'_>) -> Result<ReducedPencil> {
     let (values, rotation) = modes(krylov, interrupt)?;
-    of_rotation(krylov, prepared, (values, rotation), (0.0, 0.0))
+    of_rotation(krylov, prepared, (values, rotation), (0.0, 0.0), interrupt)
 }
 
 /// μ and the rotation of the basis that makes the mass diagonal.
@@ -314,10 +341,21 @@ fn of_rotation<T: Entry>(
     prepared: &Prepared,
     (values, rotation): (Vec<f64>, Vec<Complex64>),
     (solutions, products): (f64, f64),
+    interrupt: &Interrupt<'_>,
 ) -> Result<ReducedPencil> {
-    let damping = match prepared.damping {
-        Some((alpha, beta)) => WaveDamping::Proportional(alpha, beta),
-        None => WaveDamping::General(rotated(krylov.reduced(1), &rotation, krylov.order())?),
+    let order = krylov.order();
+    let damping = match &prepared.damping {
+        OfWave::Proportional(alpha, beta) => WaveDamping::Proportional(*alpha, *beta),
+        OfWave::General => WaveDamping::General(rotated(krylov.reduced(1), &rotation, order)?, None),
+        OfWave::Few(few) => {
+            let rest = few.on_basis(&krylov.seen_by(&few.directions)?, order, interrupt)?;
+            let mut whole = rotated(&rest, &rotation, order)?;
+            let (alpha, beta) = few.proportional;
+            for (k, mu) in values.iter().enumerate() {
+                whole[k * order + k] += alpha * mu + beta * (1.0 - prepared.shift * mu);
+            }
+            WaveDamping::General(whole, Some(few.proportional))
+        }
     };
     Ok(ReducedPencil {
         shift: prepared.shift,
@@ -380,7 +418,7 @@ fn exact_pencil<T: Entry>(
     }
     let solutions = krylov.rounding_of_solutions(&soft, interrupt)?;
     if !hermitian::cholesky(&mut l, order, interrupt)? {
-        return of_rotation(krylov, prepared, (values, rotation), (solutions, 1.0));
+        return of_rotation(krylov, prepared, (values, rotation), (solutions, 1.0), interrupt);
     }
     // L⁻¹ diag(μ) L⁻ᴴ
     let mut mass = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
@@ -401,7 +439,7 @@ fn exact_pencil<T: Entry>(
             }
         }
     }
-    of_rotation(krylov, prepared, (values, new), (solutions, left))
+    of_rotation(krylov, prepared, (values, new), (solutions, left), interrupt)
 }
 
 /// Qᴴ x for columns of coordinates.

@@ -1,7 +1,7 @@
 //! Low-rank term of a flexibility table from modes: damping of contacts and springs that the modes leave out.
 //!
 //! With T′ the table of the modes, B the relative motions of contacts and springs,
-//! Z_κ = (1 + c) K_κ − (ν² − iνα) M − Bᴴ e B and e = ck − i Im κ
+//! Z_κ = (1 + c) K_κ − (ν² − iνα) M − Bᴴ e B and e = ck − i Im κ, or e = −iν for the directions of other damping
 //!
 //! > T = T′ + T′_B e X,  X = (1 − G′ e)⁻¹ T′ᴮ,
 //!
@@ -12,7 +12,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
-use crate::condense::sum_terms::Frequency;
+use crate::condense::sum_terms::{Factors, Frequency};
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products;
@@ -29,23 +29,31 @@ pub struct Plain<'a> {
     pub rows: usize,
 }
 
-/// Stiffness of B for one harmonic: of the coordinates, then of the springs; and Im κ, 0 for springs.
+/// Stiffness of B for one harmonic: of the coordinates, then of the springs, and 0 of the directions of other damping; and Im κ.
 pub struct Coefficients {
     coordinates: usize,
     stiffness: Vec<f64>,
     imaginary: Vec<f64>,
-    /// Whether the term is not 0: with damping by stiffness, or with imaginary κ.
+    /// First row of B that is a direction of damping beside αM + βK.
+    first_damper: usize,
+    /// Whether the term is not 0: with damping by stiffness or beside αM + βK, or with imaginary κ.
     pub counts: bool,
 }
 
 impl Coefficients {
-    /// Those of the i-th carried harmonic, which stiffness damps or not.
+    /// Those of the i-th carried harmonic with its springs and number of dampers, which stiffness damps or not.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, i: usize, springs: &[(MotionRow, f64)], damped: bool) -> Result<Self> {
+    pub fn new(
+        condensed: &Condensed,
+        i: usize,
+        (springs, dampers): (&[(MotionRow, f64)], usize),
+        damped: bool,
+    ) -> Result<Self> {
         let coordinates = condensed.coordinates();
-        let mut stiffness = try_vec(coordinates + springs.len(), 0.0, CONTEXT)?;
+        let first_damper = coordinates + springs.len();
+        let mut stiffness = try_vec(first_damper + dampers, 0.0, CONTEXT)?;
         let mut imaginary = try_vec(stiffness.len(), 0.0, CONTEXT)?;
         for (c, (k, im)) in stiffness.iter_mut().zip(&mut imaginary).take(coordinates).enumerate() {
             let kappa = condensed.kappa(c, i);
@@ -56,9 +64,10 @@ impl Coefficients {
         }
         Ok(Self {
             coordinates,
-            counts: damped || imaginary.iter().any(|&im| im != 0.0),
+            counts: damped || dampers > 0 || imaginary.iter().any(|&im| im != 0.0),
             stiffness,
             imaginary,
+            first_damper,
         })
     }
 
@@ -67,14 +76,18 @@ impl Coefficients {
         self.stiffness.len()
     }
 
-    /// e of row b of B at c.
-    pub fn entry(&self, b: usize, c: Complex64) -> Complex64 {
-        c * self.stiffness[b] - Complex64::I * self.imaginary[b]
+    /// e of row b of B.
+    pub fn entry(&self, b: usize, at: Factors) -> Complex64 {
+        self.d_entry(b, at) - Complex64::I * self.imaginary[b]
     }
 
-    /// ∂e of row b of B at ∂c.
-    pub fn d_entry(&self, b: usize, d_c: Complex64) -> Complex64 {
-        d_c * self.stiffness[b]
+    /// ∂e of row b of B at the derivatives of the factors.
+    pub fn d_entry(&self, b: usize, slope: Factors) -> Complex64 {
+        if b < self.first_damper {
+            slope.c * self.stiffness[b]
+        } else {
+            -slope.i_nu
+        }
     }
 
     /// Row of B number b in T′: the response lies between contacts and springs.
@@ -199,7 +212,7 @@ impl LowRank {
     fn solve(&mut self, of: &Coefficients, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
         for q in 0..order {
-            let (e, from) = (of.entry(q, at.c), of.row_of(q) * rows);
+            let (e, from) = (of.entry(q, at.at), of.row_of(q) * rows);
             for p in 0..order {
                 let entry = -e * plain.value[from + of.row_of(p)];
                 self.lu.matrix()[q * order + p] = if p == q { entry + 1.0 } else { entry };
@@ -214,7 +227,7 @@ impl LowRank {
         self.lu.solve_columns(&mut self.inner, false, interrupt)?;
         for k in 0..=self.coordinates {
             for p in 0..order {
-                self.force[k * order + p] = of.entry(p, at.c) * self.inner[k * order + p];
+                self.force[k * order + p] = of.entry(p, at.at) * self.inner[k * order + p];
             }
         }
         Ok(())
@@ -236,7 +249,7 @@ impl LowRank {
         for ((force, x), (forces, d_forces)) in columns.zip(wide) {
             for (p, (force, x)) in force.iter().zip(x).enumerate() {
                 forces[of.row_of(p)] = *force;
-                d_forces[of.row_of(p)] = of.d_entry(p, at.d_c) * x;
+                d_forces[of.row_of(p)] = of.d_entry(p, at.slope) * x;
             }
         }
         let [by_slope, by_value] = &mut memory.products;
@@ -256,7 +269,7 @@ impl LowRank {
             for p in 0..order {
                 let x = self.inner[k * order + p];
                 let d_x = memory.inner[k * order + p];
-                memory.force[k * order + p] = of.entry(p, at.c) * d_x + of.d_entry(p, at.d_c) * x;
+                memory.force[k * order + p] = of.entry(p, at.at) * d_x + of.d_entry(p, at.slope) * x;
             }
         }
         Ok(())

@@ -8,6 +8,7 @@ pub mod contact_classes;
 pub mod dynamic_stiffness;
 pub mod exchange;
 mod exchanged_motions;
+mod few_directions;
 pub mod flexibility;
 mod flexibility_slopes;
 mod flexibility_way;

@@ -59,7 +59,7 @@ pub struct ModalRows {
     /// Motion of the next sector over that of this one: waves of real matrices may have one source and different rows.
     next: Complex64,
     coordinates: usize,
-    /// Rows of contacts, response and springs.
+    /// Rows of contacts, response, springs and dampers.
     rows: usize,
     /// Whether it has rows of springs.
     has_springs: bool,
@@ -106,7 +106,8 @@ impl ModalRows {
         let block = &condensed.blocks()[i];
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
         let springs = if has_springs { all_springs(&source) } else { &[] };
-        let rows = coordinates + 1 + springs.len();
+        let dampers = all_dampers(&source);
+        let rows = coordinates + 1 + springs.len() + dampers.len();
         let seen = |shapes: &[Complex64]| -> Result<Vec<Complex64>> {
             let mut seen = try_vec(rows * source.len(), Complex64::ZERO, CONTEXT)?;
             for (column, shape) in seen.chunks_exact_mut(rows).zip(shapes.chunks_exact(n)) {
@@ -114,7 +115,8 @@ impl ModalRows {
                     *to = row.along(shape);
                 }
                 column[coordinates] = observed.along(shape);
-                for (to, (row, _)) in column[coordinates + 1..].iter_mut().zip(springs) {
+                let beside = springs.iter().map(|(row, _)| row).chain(dampers);
+                for (to, row) in column[coordinates + 1..].iter_mut().zip(beside) {
                     *to = row.along(shape);
                 }
             }
@@ -181,6 +183,11 @@ impl ModalRows {
         } else {
             &[]
         }
+    }
+
+    /// Rows of the damping beside αM + βK.
+    pub fn dampers(&self) -> &[MotionRow] {
+        all_dampers(&self.source)
     }
 
     /// Relative motions, whose rows come first, then that of the response.
@@ -408,6 +415,14 @@ impl WithSimd for Series<'_> {
 fn all_springs(source: &Source) -> &[(MotionRow, f64)] {
     match source {
         Source::Modes(modes) => &modes.springs,
+        Source::Poles(_) => &[],
+    }
+}
+
+/// Dampers that modes leave out.
+fn all_dampers(source: &Source) -> &[MotionRow] {
+    match source {
+        Source::Modes(modes) => &modes.dampers,
         Source::Poles(_) => &[],
     }
 }

@@ -27,7 +27,7 @@ impl ModalTable {
         weights[coordinates] = Complex64::ONE;
         if of.counts {
             for (b, y) in work.of_springs.iter_mut().enumerate() {
-                *y = work.plain[of.row_of(b) * rows + coordinates] * of.entry(b, frequency.c);
+                *y = work.plain[of.row_of(b) * rows + coordinates] * of.entry(b, frequency.at);
             }
             work.low_rank.solve_row(&mut work.of_springs);
             for (b, y) in work.of_springs.iter().enumerate() {
@@ -45,7 +45,7 @@ impl ModalTable {
             weights[coordinates] = Complex64::ZERO;
             for b in 0..order {
                 let weight = &mut weights[of.row_of(b)];
-                *weight = (*weight * of.d_entry(b, frequency.d_c)).conj();
+                *weight = (*weight * of.d_entry(b, frequency.slope)).conj();
             }
             multiply_adjoint(self.rows.left(), weights, memory, moved);
         }
@@ -101,7 +101,7 @@ impl ModalTable {
         if of.counts {
             forces.fill(Complex64::ZERO);
             for b in 0..order {
-                forces[of.row_of(b)] = of.d_entry(b, frequency.d_c) * columns(work.low_rank.inner(), b);
+                forces[of.row_of(b)] = of.d_entry(b, frequency.slope) * columns(work.low_rank.inner(), b);
             }
             multiply_adjoint(self.rows.adjoint(), forces, memory, rate);
         }
@@ -122,7 +122,7 @@ impl ModalTable {
         change[..coordinates].copy_from_slice(&work.of_springs[..coordinates]);
         let mut response = forces[coordinates];
         for (b, z) in work.of_springs.iter().enumerate() {
-            response += work.plain[of.row_of(b) * rows + coordinates] * of.entry(b, frequency.c) * z;
+            response += work.plain[of.row_of(b) * rows + coordinates] * of.entry(b, frequency.at) * z;
         }
         change[coordinates] = response;
     }

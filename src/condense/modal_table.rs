@@ -109,7 +109,8 @@ impl ModalTable {
         let block = &condensed.blocks()[i];
         let force = rows.forced(&block.force)?;
         let unbalance = rows.forced(block.unbalance.as_deref().unwrap_or(&[]))?;
-        let coefficients = Coefficients::new(condensed, i, rows.springs(), rows.source().is_damped_by_stiffness())?;
+        let beside = (rows.springs(), rows.dampers().len());
+        let coefficients = Coefficients::new(condensed, i, beside, rows.source().is_damped_by_stiffness())?;
         let single = match rows.source() {
             Source::Modes(modes) if condensed.coordinates() == 1 && rows.count() == 2 && unbalance.is_empty() => {
                 Some(SingleContact::new(&modes.values, rows.left(), &force)?)
@@ -180,7 +181,7 @@ impl ModalTable {
                 least: NEAR_RESONANCE,
             };
             let of = &self.coefficients;
-            single.evaluate(by, (of.entry(0, frequency.c), of.d_entry(0, frequency.d_c)), table)
+            single.evaluate(by, (of.entry(0, frequency.at), of.d_entry(0, frequency.slope)), table)
         } else {
             let work = work.of(self)?;
             let is_clear = self

@@ -15,7 +15,7 @@
 use crate::condense::flexibility::Table;
 use crate::condense::low_rank::{Coefficients, LowRank, Plain};
 use crate::condense::modal_rows::{ModalRows, terms_within};
-use crate::condense::sum_terms::{Denominator, Source};
+use crate::condense::sum_terms::{Denominator, Factors, Source};
 use crate::condense::wave_modes::{NEAR_MODE, WaveModes};
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
@@ -92,7 +92,8 @@ impl SumWork {
 }
 
 impl ModeSums {
-    /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None` where these belong to poles, which would follow the damping ratio.
+    /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None` where these belong to poles, which
+    /// would follow the damping ratio, or to a wave with dampers.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -100,12 +101,15 @@ impl ModeSums {
         let Source::Modes(modes) = rows.source() else {
             return Ok(None);
         };
+        if !modes.dampers.is_empty() {
+            return Ok(None);
+        }
         let modes = Arc::clone(modes);
         let block = &condensed.blocks()[i];
         let is_mass_type = matches!(block.artificial, Artificial::Mass);
         let is_damped = modes.is_damped_by_stiffness() || !is_mass_type;
         Ok(Some(Self {
-            coefficients: Coefficients::new(condensed, i, rows.springs(), is_damped)?,
+            coefficients: Coefficients::new(condensed, i, (rows.springs(), 0), is_damped)?,
             number: block.number as f64,
             longest_row: longest_row(&modes),
             is_mass_type,
@@ -239,7 +243,7 @@ impl ModeSums {
         for (c, (out, column)) in out.of_columns.iter_mut().zip(columns).enumerate() {
             let mut size = work.seen[c].conj();
             if coordinates == 1 && order == 1 {
-                let force = self.coefficients.entry(0, work.at.a - 1.0) * column[0];
+                let force = self.coefficients.entry(0, work.at.frequency().at) * column[0];
                 size += work.seen[0].conj() * force;
             } else if self.coefficients.counts {
                 let force = &work.low_rank.force()[c * order..(c + 1) * order];
@@ -287,7 +291,7 @@ impl ModeSums {
             squares += square;
             weighted += square * *mu;
         }
-        let e = self.coefficients.entry(0, at.a - 1.0);
+        let e = self.coefficients.entry(0, Factors::of_stiffness(at.a - 1.0));
         let pivot = (1.0 - sum * e).inv();
         work.table.value[0] = sum * pivot;
         relative[0] = -sum * pivot * w;
@@ -304,7 +308,7 @@ impl ModeSums {
         }
         for ((slope, rate), to) in rates.into_iter().zip(&mut work.rates).zip(&mut relative[1..]) {
             let d_sum = slope.b * weighted - slope.a * squares;
-            let d_e = self.coefficients.d_entry(0, slope.a);
+            let d_e = self.coefficients.d_entry(0, Factors::of_stiffness(slope.a));
             *to = -pivot * pivot * (d_sum + sum * sum * d_e) * w;
             if is_fundamental {
                 let d_pivot = pivot * pivot * (d_sum * e + sum * d_e);
@@ -373,7 +377,7 @@ impl ModeSums {
         work.force.fill(Complex64::ZERO);
         if of.counts {
             for b in 0..of.len() {
-                work.force[of.row_of(b)] = of.d_entry(b, slope.a) * work.seen[of.row_of(b)];
+                work.force[of.row_of(b)] = of.d_entry(b, Factors::of_stiffness(slope.a)) * work.seen[of.row_of(b)];
             }
         }
         let rate = &mut work.rates[variable];
@@ -394,7 +398,7 @@ impl ModeSums {
             }
             work.memory.fill(Complex64::ZERO);
             for (b, z) in work.inner.iter().enumerate() {
-                work.memory[of.row_of(b)] = of.entry(b, work.at.a - 1.0) * z;
+                work.memory[of.row_of(b)] = of.entry(b, work.at.frequency().at) * z;
             }
             multiply_adjoint(self.rows.left(), &work.memory, &mut work.turned, &mut work.of_modes);
             for ((rate, inverse), force) in rate.iter_mut().zip(&work.inverse).zip(&work.of_modes) {
@@ -454,5 +458,7 @@ fn denominator(at: Pair, slope: Pair) -> Denominator {
         d_a: slope.a,
         b: at.b,
         d_b: slope.b,
+        i_nu: Complex64::ZERO,
+        d_i_nu: Complex64::ZERO,
     }
 }

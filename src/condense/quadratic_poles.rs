@@ -105,8 +105,8 @@ pub(super) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
         && is_same(damping, &block.damping)
 }
 
-/// Why the poles of a wave take more than a second, or longer than the factorisations of a sweep, if they do.
-fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<FlexibilityWay>> {
+/// The poles of a wave as the work of a real matrix.
+fn work(condensed: &Condensed, block: &HarmonicBlock) -> f64 {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
     let is_real = block.structural.is_none()
         && block.tied.is_none()
@@ -114,7 +114,12 @@ fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<O
         && real(&block.damping)
         && real(&block.mass);
     let order = 2.0 * condensed.ndof() as f64;
-    let work = order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX };
+    order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX }
+}
+
+/// Why the poles of a wave take more than a second, or longer than the factorisations of a sweep, if they do.
+fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<FlexibilityWay>> {
+    let work = work(condensed, block);
     if work > MOST_POLE_WORK {
         return Ok(Some(FlexibilityWay::Many));
     }

@@ -117,7 +117,7 @@ impl WithSimd for Sum<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
         let Self(modes, by) = self;
-        let (c, d_c) = (by.at.c, by.at.d_c);
+        let (c, d_c) = (by.at.at.c, by.at.slope.c);
         let mut sums = [[[0.0; ENTRIES]; 2]; 2];
         let mut is_clear = true;
         for mode in modes {

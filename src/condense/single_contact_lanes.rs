@@ -5,6 +5,7 @@
 
 use crate::condense::flexibility::Table;
 use crate::condense::modal_table::ModalTable;
+use crate::condense::sum_terms::Factors;
 use crate::condense::wave_modes::NEAR_RESONANCE;
 use crate::error::{Result, try_push, try_room};
 use core::array::from_fn;
@@ -101,8 +102,8 @@ impl SingleContactLanes {
                 alpha: number(&|part| part.proportional.0),
                 beta: number(&|part| part.proportional.1),
                 loss_factor: number(&|part| part.loss_factor),
-                stiffness: number(&|part| part.coefficients.entry(0, Complex64::ONE).re),
-                imaginary: number(&|part| -part.coefficients.entry(0, Complex64::ZERO).im),
+                stiffness: number(&|part| part.coefficients.entry(0, Factors::of_stiffness(Complex64::ONE)).re),
+                imaginary: number(&|part| -part.coefficients.entry(0, Factors::of_stiffness(Complex64::ZERO)).im),
                 forced: (0..tables.len())
                     .rfind(|&lane| of(lane).is_some_and(|part| part.contact.is_forced()))
                     .map_or(0, |lane| lane + 1),

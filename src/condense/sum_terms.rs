@@ -14,28 +14,53 @@ pub enum Source {
     Poles(Arc<WavePoles>),
 }
 
-/// a and b of the denominators d = a − b μ at a frequency, with their derivatives by it.
+/// a and b of the denominators d = a − b μ at a frequency, with their derivatives by it, and iν of dashpots beside them.
 #[derive(Clone, Copy)]
 pub struct Denominator {
     pub a: Complex64,
     pub d_a: Complex64,
     pub b: Complex64,
     pub d_b: Complex64,
+    pub i_nu: Complex64,
+    pub d_i_nu: Complex64,
 }
 
-/// c of the damping by stiffness, 1 + c = a, and ∂c/∂ω.
+/// Factors that the low-rank term follows: c of the damping by stiffness, 1 + c = a, and iν of the dashpots.
+#[derive(Clone, Copy)]
+pub struct Factors {
+    pub c: Complex64,
+    pub i_nu: Complex64,
+}
+
+/// These at a frequency, and their derivatives by it.
 #[derive(Clone, Copy)]
 pub struct Frequency {
-    pub c: Complex64,
-    pub d_c: Complex64,
+    pub at: Factors,
+    pub slope: Factors,
+}
+
+impl Factors {
+    /// No dashpots.
+    pub fn of_stiffness(c: Complex64) -> Self {
+        Self {
+            c,
+            i_nu: Complex64::ZERO,
+        }
+    }
 }
 
 impl Denominator {
-    /// c and its derivative, which the low-rank term takes.
+    /// The factors of the low-rank term.
     pub(super) fn frequency(self) -> Frequency {
         Frequency {
-            c: self.a - 1.0,
-            d_c: self.d_a,
+            at: Factors {
+                c: self.a - 1.0,
+                i_nu: self.i_nu,
+            },
+            slope: Factors {
+                c: self.d_a,
+                i_nu: self.d_i_nu,
+            },
         }
     }
 }
@@ -93,6 +118,8 @@ impl Source {
                     d_a: i(h * beta),
                     b: Complex64::new(nu * nu, -nu * alpha),
                     d_b: h * Complex64::new(2.0 * nu, -alpha),
+                    i_nu: i(nu),
+                    d_i_nu: i(h),
                 }
             }
             Self::Poles(_) => Denominator {
@@ -100,6 +127,8 @@ impl Source {
                 d_a: Complex64::ZERO,
                 b: i(nu),
                 d_b: i(h),
+                i_nu: i(nu),
+                d_i_nu: i(h),
             },
         }
     }

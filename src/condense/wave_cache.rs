@@ -1,7 +1,8 @@
 //! Computes the modes of waves, each once; see [`crate::condense::wave_modes`].
 
 use crate::condense::basis_outlook::are_all_modes_quicker;
-use crate::condense::harmonic_block::Values;
+use crate::condense::few_directions::few_directions;
+use crate::condense::harmonic_block::{Artificial, Values};
 use crate::condense::modal_rows::ModalRows;
 use crate::condense::quadratic_poles;
 use crate::condense::refined_modes;
@@ -31,6 +32,9 @@ const ALL_OF_BASIS_UP_TO: usize = 1_200;
 /// each.
 const ALL_BESIDE_DEAR_FACTORS_UP_TO: usize = 2_000;
 
+/// Degrees of freedom over directions of the damping beside αM + βK that a sum over modes takes, whose term costs their cube.
+const DEGREES_PER_DAMPER: usize = 6;
+
 const CONTEXT: &str = "the modes of the structure";
 
 /// Degrees of freedom from which sums over poles take less time than factorisations, and their search may take more of the stack than
@@ -47,9 +51,11 @@ pub struct WaveCache {
     /// Matrices of blocks whose modes were asked for, which other blocks share.
     blocks: Vec<KnownBlock>,
     poles: Vec<Arc<WavePoles>>,
-    /// Whether a wave without modes was met, and why one has no poles: there are no others then.
+    /// Whether a wave without modes was met, and why one has no poles: there are no others then; whether one has too many directions of
+    /// damping beside αM + βK, too.
     has_no_modes: bool,
     without_poles: Option<FlexibilityWay>,
+    has_many_dampers: bool,
 }
 
 /// Z_κ at rest and M of blocks, with the modes of their wave.
@@ -132,16 +138,17 @@ impl WaveCache {
         if block.number == 0 {
             return Ok(Err(FlexibilityWay::SingleFrequency));
         }
-        if !self.has_no_modes
-            && let Some(modes) = self.modes(model, condensed, i, interrupt)?
-        {
-            return Ok(Ok(Source::Modes(modes)));
+        if !self.has_no_modes {
+            if let Some(modes) = self.modes((model, condensed, i), false, interrupt)? {
+                return Ok(Ok(Source::Modes(modes)));
+            }
+            self.has_no_modes = true;
         }
         if condensed.ndof() < POLES_FROM {
             self.without_poles = Some(FlexibilityWay::Few);
         }
         if let Some(reason) = self.without_poles {
-            return Ok(Err(reason));
+            return self.with_dampers((model, condensed, i), reason, interrupt);
         }
         if let Some(poles) = self.poles.iter().find(|poles| quadratic_poles::are_of(poles, block)) {
             return Ok(Ok(Source::Poles(Arc::clone(poles))));
@@ -150,19 +157,36 @@ impl WaveCache {
             Ok(poles) => Arc::new(poles),
             Err(reason) => {
                 self.without_poles = Some(reason);
-                return Ok(Err(reason));
+                return self.with_dampers((model, condensed, i), reason, interrupt);
             }
         };
         try_push(&mut self.poles, Arc::clone(&poles), CONTEXT)?;
         Ok(Ok(Source::Poles(poles)))
     }
 
-    /// The modes of a harmonic; `None` where the damping is not proportional.
+    /// The modes of a harmonic that has no poles, with the directions of its damping beside αM + βK, or the reason.
+    fn with_dampers(
+        &mut self,
+        at: (&Model, &Condensed, usize),
+        reason: FlexibilityWay,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Found> {
+        let block = &at.1.blocks()[at.2];
+        if self.has_many_dampers || reason == FlexibilityWay::Few || !matches!(block.artificial, Artificial::None) {
+            return Ok(Err(reason));
+        }
+        if let Some(modes) = self.modes(at, true, interrupt)? {
+            return Ok(Ok(Source::Modes(modes)));
+        }
+        self.has_many_dampers = true;
+        Ok(Err(reason))
+    }
+
+    /// The modes of a harmonic; `None` where the damping is not proportional, and not beside few directions where these are allowed.
     fn modes(
         &mut self,
-        model: &Model,
-        condensed: &Condensed,
-        i: usize,
+        (model, condensed, i): (&Model, &Condensed, usize),
+        dampers: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
@@ -172,7 +196,7 @@ impl WaveCache {
         if let Some(known) = self.blocks.iter().find(is_same) {
             return Ok(Some(Arc::clone(&known.modes)));
         }
-        let found = self.find_by_values(model, condensed, i, interrupt)?;
+        let found = self.find_by_values((model, condensed, i), dampers, interrupt)?;
         if let Some(modes) = &found {
             let known = KnownBlock {
                 reference: Arc::clone(&block.reference),
@@ -187,14 +211,12 @@ impl WaveCache {
     /// The modes of a block that shares its matrices with none before.
     fn find_by_values(
         &mut self,
-        model: &Model,
-        condensed: &Condensed,
-        i: usize,
+        (model, condensed, i): (&Model, &Condensed, usize),
+        dampers: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
         let Some((reference, loss_factor)) = elastic_reference(model, condensed, i)? else {
-            self.has_no_modes = true;
             return Ok(None);
         };
         let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass, block.next);
@@ -205,8 +227,8 @@ impl WaveCache {
             .waves
             .iter()
             .find(|known| known.is_conjugate_of(&reference, &block.mass));
-        let Some(found) = modes_of(model, condensed, (i, reference, loss_factor), other, interrupt)? else {
-            self.has_no_modes = true;
+        let at = (i, reference, loss_factor, dampers);
+        let Some(found) = modes_of(model, condensed, at, other, interrupt)? else {
             return Ok(None);
         };
         let found = Arc::new(found);
@@ -220,11 +242,43 @@ impl WaveCache {
 /// # Errors
 /// `OutOfMemory`.
 pub(crate) fn have_modes(model: &Model) -> Result<bool> {
-    let structure = model.structure();
-    let n = structure.ndof();
-    if n > ALL_UP_TO || has_other_terms(model) {
+    if model.structure().ndof() > ALL_UP_TO || has_other_terms(model) {
         return Ok(false);
     }
+    let (_, [mass, stiffness, damping]) = on_one_pattern(model)?;
+    Ok(proportional([&mass, &stiffness, &damping]).is_some())
+}
+
+/// Whether a sweep with so many harmonics, or more, takes all modes of a structure that is too large for them in general.
+///
+/// # Errors
+/// `OutOfMemory`; `StoppedByCaller`.
+pub(super) fn are_all_modes_wanted(model: &Model, harmonics: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+    let n = model.structure().ndof();
+    if n > ALL_BESIDE_DEAR_FACTORS_UP_TO || has_other_terms(model) || model.structure().whole_loss_factor()?.is_none() {
+        return Ok(false);
+    }
+    let (pattern, [mass, stiffness, damping]) = on_one_pattern(model)?;
+    if !are_all_modes_quicker(&pattern, harmonics)? {
+        return Ok(false);
+    }
+    let matrices = [&mass[..], &stiffness, &damping];
+    if proportional(matrices).is_some() {
+        return Ok(true);
+    }
+    let few = few_directions(
+        &pattern,
+        matrices,
+        (model.structure().rayleigh, n / DEGREES_PER_DAMPER),
+        interrupt,
+    )?;
+    Ok(few.is_some_and(|few| few.middle.is_none()))
+}
+
+/// M, K and C of a travelling wave on one pattern.
+fn on_one_pattern(model: &Model) -> Result<(Csc, [Vec<Complex64>; 3])> {
+    let structure = model.structure();
+    let n = structure.ndof();
     let matrix = |kind| structure.wave_matrix(kind, 1);
     let (mass, stiffness) = (matrix(MatrixKind::Mass)?, matrix(MatrixKind::Stiffness)?);
     let damping = matrix(MatrixKind::Damping)?;
@@ -233,8 +287,8 @@ pub(crate) fn have_modes(model: &Model) -> Result<bool> {
         &[&mass, &stiffness, &damping].map(|of| (Complex64::ZERO, of, Form::Plain)),
     )?;
     let aligned = |of: &Csc| of.aligned(&pattern);
-    let (mass, stiffness, damping) = (aligned(&mass)?, aligned(&stiffness)?, aligned(&damping)?);
-    Ok(proportional([&mass, &stiffness, &damping]).is_some())
+    let values = [aligned(&mass)?, aligned(&stiffness)?, aligned(&damping)?];
+    Ok((pattern, values))
 }
 
 /// Whether a structure has terms of which its modes know nothing.
@@ -264,11 +318,11 @@ fn elastic_reference(model: &Model, condensed: &Condensed, i: usize) -> Result<O
     Ok(Some((reference, loss_factor)))
 }
 
-/// The modes of the i-th carried harmonic with this K_κ; from those of the wave that travels the other way where they are known.
+/// The modes of the i-th carried harmonic with this K_κ, and with few directions of damping beside αM + βK where these are allowed; from those of the wave that travels the other way where they are known.
 fn modes_of(
     model: &Model,
     condensed: &Condensed,
-    (i, reference, loss_factor): (usize, Csc, f64),
+    (i, reference, loss_factor, few): (usize, Csc, f64, bool),
     other: Option<&Arc<WaveModes>>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<WaveModes>> {
@@ -295,8 +349,17 @@ fn modes_of(
         with_springs = block.own_stiffness(model)?;
         &with_springs
     };
-    let Some(proportional) = proportional([&block.mass, own, &block.damping]) else {
-        return Ok(None);
+    let matrices = [&block.mass[..], own, &block.damping];
+    let (proportional, dampers) = match proportional(matrices) {
+        Some(found) => (found, Vec::new()),
+        None if few => {
+            let at = (model.structure().rayleigh, n / DEGREES_PER_DAMPER);
+            match few_directions(&block.reference, matrices, at, interrupt)? {
+                Some(few) if few.middle.is_none() => (few.proportional, few.directions),
+                _ => return Ok(None),
+            }
+        }
+        None => return Ok(None),
     };
     let mass = try_copy(&block.mass, CONTEXT)?;
     let (values, vectors) = if let Some(other) = other {
@@ -312,6 +375,10 @@ fn modes_of(
             _ => return Ok(None),
         }
     };
+    let mut rows = Vec::new();
+    for damper in &dampers {
+        try_push(&mut rows, MotionRow::adjoint(damper)?, CONTEXT)?;
+    }
     Ok(Some(WaveModes {
         reference,
         mass,
@@ -321,6 +388,7 @@ fn modes_of(
         proportional,
         loss_factor,
         springs,
+        dampers: rows,
     }))
 }
 

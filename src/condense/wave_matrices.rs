@@ -1,5 +1,6 @@
 //! The matrices of a wave that is reduced, checked, and the form of its damping.
 
+use crate::condense::few_directions::{FewDirections, few_directions};
 use crate::condense::wave_modes::proportional;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
@@ -9,6 +10,9 @@ use crate::model::reduced_wave::WaveKey;
 use crate::model::structure::MatrixKind;
 use crate::model::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
+
+/// Degrees of freedom over directions of the damping beside αM + βK that a basis begins with.
+const DEGREES_PER_DIRECTION: usize = 6;
 
 /// Relative deviation from a Hermitian matrix that is rounding.
 const HERMITIAN: f64 = 1e-10;
@@ -43,9 +47,11 @@ pub(super) struct Assembled<'a> {
     pub damping: Damping,
 }
 
-/// Damping as αM + βK, or as a matrix.
+/// Damping as αM + βK, alone or beside few directions, or as a matrix.
 pub(super) enum Damping {
     Proportional(f64, f64),
+    /// αM + βK and few directions.
+    Few(FewDirections),
     General(Csc),
 }
 
@@ -82,9 +88,15 @@ impl WaveMatrices<'_> {
                 aligned(&stiffness, &pattern)?,
                 aligned(&c, &pattern)?,
             ];
-            match proportional([&aligned[0], &aligned[1], &aligned[2]]) {
-                Some((alpha, beta)) => Damping::Proportional(alpha, beta),
-                None => Damping::General(c.into_csc()?),
+            let aligned = [&aligned[0][..], &aligned[1], &aligned[2]];
+            if let Some((alpha, beta)) = proportional(aligned) {
+                Damping::Proportional(alpha, beta)
+            } else {
+                let most = c.columns() / DEGREES_PER_DIRECTION;
+                match few_directions(&pattern, aligned, (structure.rayleigh, most), interrupt)? {
+                    Some(few) => Damping::Few(few),
+                    None => Damping::General(c.into_csc()?),
+                }
             }
         } else {
             let (alpha, beta) = structure.rayleigh;

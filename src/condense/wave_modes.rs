@@ -6,7 +6,8 @@
 //!
 //! where Bᴴ k B is the part of K_κ that belongs to no structure: springs, stuck contacts and κ. Without the last term
 //! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`]. A complex κ
-//! enters K_κ with its real part; its imaginary part adds to the low rank.
+//! enters K_κ with its real part; its imaginary part adds to the low rank, and so does damping L Lᴴ of few directions beside
+//! αM + βK, see [`crate::condense::few_directions`].
 
 use crate::linalg::sparse::Csc;
 use crate::model::reduced_wave::MotionRow;
@@ -33,6 +34,8 @@ pub struct WaveModes {
     pub(super) loss_factor: f64,
     /// Rows of B beyond those of the relative coordinates, with their stiffness.
     pub(super) springs: Vec<(MotionRow, f64)>,
+    /// Lᴴ of the damping αM + βK + L Lᴴ.
+    pub(super) dampers: Vec<MotionRow>,
 }
 
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.

@@ -11,7 +11,7 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
 use crate::condense::reduced_block::reduced_block;
 use crate::condense::sweep::Sweep;
-use crate::condense::wave_cache::ALL_UP_TO;
+use crate::condense::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
 use crate::condense::wave_matrices::{Factors, WaveMatrices};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -114,7 +114,7 @@ pub(super) fn reduced_blocks(
     let Some(groups) = groups(request, most, interrupt)? else {
         return Ok(None);
     };
-    if groups.iter().any(|group| group.inputs.is_empty()) || !(forced || pays(request, &groups)) {
+    if groups.iter().any(|group| group.inputs.is_empty()) || !(forced || pays(request, &groups, interrupt)?) {
         return Ok(None);
     }
     let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
@@ -179,10 +179,11 @@ fn limit(request: &Request<'_>) -> f64 {
 
 /// Whether a basis takes less time than all modes, where these are an alternative. Estimates of errors need so many harmonics that
 /// they take the modes.
-fn pays(request: &Request<'_>, groups: &[Group]) -> bool {
+fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = request.ndof();
+    let is_estimated = request.options.tolerance > 0.0 && request.sweep.is_range();
     if n > ALL_UP_TO {
-        return true;
+        return Ok(!is_estimated || !are_all_modes_wanted(request.model, request.numbers.len(), interrupt)?);
     }
     let (per_input, besides) = USUAL_COLUMNS;
     let columns = |group: &Group| (per_input * group.inputs.len() + besides) as f64;
@@ -192,7 +193,7 @@ fn pays(request: &Request<'_>, groups: &[Group]) -> bool {
     let is_modal = request.model.structure().has_modal_damping();
     let of_sum = if is_modal { OF_POLES } else { OF_MODES };
     let of_sum = of_sum * groups.len() as f64 * (n as f64).powi(3);
-    (request.options.tolerance == 0.0 || is_modal) && request.sweep.is_range() && of_basis < of_sum
+    Ok(request.options.tolerance == 0.0 && request.sweep.is_range() && of_basis < of_sum)
 }
 
 fn declined<T>(forced: bool) -> Result<Option<T>> {

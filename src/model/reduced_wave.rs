@@ -29,6 +29,18 @@ impl MotionRow {
         Ok(Self(terms))
     }
 
+    /// The row of the motion under a force: xᴴ for a column x.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn adjoint(column: &SparseVector) -> Result<Self> {
+        let mut terms = Vec::new();
+        for (p, z) in column {
+            try_push(&mut terms, (*p, z.conj()), CONTEXT)?;
+        }
+        Ok(Self(terms))
+    }
+
     /// Its entries: coordinate and coefficient.
     pub fn terms(&self) -> core::slice::Iter<'_, (usize, Complex64)> {
         self.0.iter()
@@ -91,8 +103,8 @@ impl Basis {
 pub enum WaveDamping {
     /// α and β of C = αM + βK.
     Proportional(f64, f64),
-    /// Vᴴ C V, column after column, of the rotated basis.
-    General(Vec<Complex64>),
+    /// Vᴴ C V, column after column, of the rotated basis; with α and β where the basis holds the images of C − αM − βK.
+    General(Vec<Complex64>, Option<(f64, f64)>),
 }
 
 /// Part of the images of the last block that the basis does not hold; see [`crate::linalg::block_krylov`].
@@ -190,7 +202,7 @@ impl ReducedView {
         match &pencil.damping {
             WaveDamping::Proportional(..) if i != j => Complex64::ZERO,
             WaveDamping::Proportional(alpha, beta) => (alpha * pencil.values[i] + beta * pencil.stiffness(i)).into(),
-            WaveDamping::General(c) => self.turned(c[j * pencil.order() + i]),
+            WaveDamping::General(c, _) => self.turned(c[j * pencil.order() + i]),
         }
     }
 

@@ -14,6 +14,7 @@ mod derivatives;
 mod direct_solutions;
 mod duffing;
 mod duffing_folds;
+mod few_dampers;
 mod folds;
 mod freedom_of_points;
 mod full_wheel;

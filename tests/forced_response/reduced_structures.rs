@@ -203,7 +203,7 @@ fn options(flexibility: Flexibility, harmonics: usize) -> SolverOptions {
     }
 }
 
-fn point(model: &Model, solver: &SolverOptions, omega: f64) -> Branch {
+pub fn point(model: &Model, solver: &SolverOptions, omega: f64) -> Branch {
     let range = ForcedOptions {
         omega_start: omega,
         omega_stop: omega,
@@ -395,7 +395,7 @@ fn a_memory_limit_is_told_with_the_need_before_memory_is_asked_for() {
 }
 
 /// A plate of masses between springs, clamped at its edges, with sliders against the ground.
-fn plate(side: usize, sliders: usize) -> Model {
+pub fn plate(side: usize, sliders: usize) -> Model {
     let n = side * side;
     let (mut k, mut m) = (vec![0.0; n * n], vec![0.0; n * n]);
     for i in 0..n {

@@ -15,7 +15,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
+use hbvib::options::{ForcedOptions, ModeChoice, ModeGuess, ModeOptions, SolverOptions};
 use hbvib::results::Branch;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -376,4 +376,38 @@ fn the_onset_of_slip_counts_from_the_load_that_the_contact_carries_at_rest() {
     assert!((linear_up_to - 0.2_f64.log10()).abs() < 1.1e-9, "{linear_up_to}");
     // The onset of slip is located to 1e-7.
     assert!((slip_from - 0.3_f64.log10()).abs() < 2e-7, "{slip_from}");
+}
+
+/// A mode about a static state goes on from a point of itself, given as a guess, to the same points.
+#[test]
+fn a_mode_about_a_static_state_starts_from_a_guess() {
+    let stop = Contact::unilateral(Some(1), None, 2.0, 0.1);
+    for (name, contact, h) in [
+        ("slider", Contact::jenkins(0, None, 1.0, 0.3, 1.0), 5),
+        ("stop", stop, 7),
+    ] {
+        let model = pressed(&[contact], [0.1, 0.2, 0.0]);
+        let range = ModeOptions {
+            log10_start: -2.0,
+            log10_stop: 0.8,
+            ..ModeOptions::default()
+        };
+        let whole = follow(&model, &harmonics(h), &range);
+        let from = whole.points() / 2;
+        let motion = all_harmonics(&whole, from);
+        let (log10_start, omega) = (whole.mode_at(from).unwrap().log10_amplitude, whole.omega()[from]);
+        let range = ModeOptions {
+            log10_start,
+            guess: Some(ModeGuess {
+                omega,
+                motion: &motion,
+                damping_ratio: damping(&whole)[from],
+            }),
+            ..range
+        };
+        let part = follow(&model, &harmonics(h), &range);
+        assert!((part.omega()[0] / omega - 1.0).abs() < 1e-10, "{name}");
+        let ends = [&whole, &part].map(|branch| branch.omega()[branch.points() - 1]);
+        assert!((ends[1] / ends[0] - 1.0).abs() < 1e-8, "{name}: {ends:?}");
+    }
 }

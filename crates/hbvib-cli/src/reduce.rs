@@ -279,7 +279,7 @@ fn job_text(job: &Job, file: Option<&std::ffi::OsStr>) -> Outcome<String> {
                 let _ = writeln!(text, "{}mesh = {mesh}", if section.is_empty() { "model." } else { "" });
             }
             _ => {
-                let _ = writeln!(text, "{line}");
+                let _ = writeln!(text, "{}", own_result(line, &section, file));
             }
         }
         if section == "[model]" && bare.starts_with("[model]") {
@@ -290,6 +290,34 @@ fn job_text(job: &Job, file: Option<&std::ffi::OsStr>) -> Outcome<String> {
         text = format!("model.matrices = {file:?}\n{text}");
     }
     Ok(text)
+}
+
+/// Keys of files that a job writes.
+const RESULTS: [&str; 10] = [
+    "csv",
+    "npz",
+    "figure",
+    "slip_csv",
+    "slip_figure",
+    "vtu",
+    "uff",
+    "netcdf",
+    "frd",
+    "report",
+];
+
+/// A line of the job with its file of results named after the reduced model, so that those of the whole one stay.
+fn own_result(line: &str, section: &str, model: &str) -> String {
+    let key = line.split('=').next().unwrap_or("").trim();
+    let key = key.strip_prefix("output.").unwrap_or(key);
+    let is_result = RESULTS.contains(&key) && section != "[model]" && !section.starts_with("[[data");
+    let stem = Path::new(model).file_stem().and_then(|stem| stem.to_str());
+    let (Some((before, rest)), Some(stem), true) = (line.split_once('"'), stem, is_result) else {
+        return line.to_string();
+    };
+    let end = rest.find('"').unwrap_or(rest.len());
+    let name = rest[..end].rfind(['/', '\\']).map_or(0, |at| at + 1);
+    format!("{before}\"{}{stem}_{}", &rest[..name], &rest[name..])
 }
 
 /// Frequency up to which the error is told: half above that of [forced], or the third natural one.

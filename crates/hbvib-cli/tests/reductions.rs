@@ -96,6 +96,9 @@ fn the_reduction_is_that_of_another_program_in_every_format() {
         gaps[0].1 > 3.0 * gaps[2].1,
         "and the error that is told falls: {gaps:?}"
     );
+    // Each job has results of its own.
+    let text = std::fs::read_to_string(folder.join("job.toml")).unwrap();
+    std::fs::write(folder.join("job.toml"), text + "[output]\ncsv = \"curve.csv\"\n").unwrap();
     // Modes are chosen by the error.
     let told = done(
         &["reduce", "job.toml", "--tolerance", "1e-5", "--output", "reduced.npz"],
@@ -131,6 +134,8 @@ fn the_reduction_is_that_of_another_program_in_every_format() {
             (number(&summary, "peak ") / hertz - 1.0).abs() < 2e-5,
             "{name}: {summary}"
         );
+        let curve = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+        assert_ne!(curve("curve.csv"), curve("reduced_curve.csv"), "{name}");
     }
     for name in ["reduced.op4", "reduced.mtx"] {
         let told = done(&["reduce", "job.toml", "--modes", "5", "--output", name], &folder);

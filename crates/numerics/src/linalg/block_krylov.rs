@@ -9,7 +9,7 @@
 //! not hold, so that its norm at any frequency follows from the Gram matrix EᴴAE. A block of combinations of E alone leaves the rest
 //! of E, which stays beside the images of that block.
 
-use crate::error::{Error, Result, try_copy, try_vec};
+use crate::error::{Error, Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::compensated_product::Rows;
@@ -191,6 +191,21 @@ impl<T: Entry> BlockKrylov<T> {
             }
         }
         Ok(())
+    }
+
+    /// Dᴴ V for vectors D, one number after the other for each column of V.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn seen_by(&self, vectors: &[SparseVector]) -> Result<Vec<Complex64>> {
+        let mut seen = Vec::new();
+        for column in self.basis.chunks_exact(self.n.max(1)) {
+            for vector in vectors {
+                let sum = vector.iter().map(|&(p, z)| z.conj() * column[p].complex()).sum();
+                try_push(&mut seen, sum, CONTEXT)?;
+            }
+        }
+        Ok(seen)
     }
 
     /// V z

@@ -1,0 +1,136 @@
+//! Damping of few directions beside αM + βK, dashpots and ratios of some modes: sums over modes, poles and bases respond as the factors of
+//! single frequencies do, on both sides of each size at which the way changes, at first, last and requested points.
+
+use crate::reduced_structures::{plate, point};
+use hbvib::analysis::forced_response::forced_response;
+use hbvib::condense::FlexibilityWay::Modes;
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
+
+/// Damping of a plate.
+#[derive(Clone, Copy, Debug)]
+enum Damping {
+    /// 0.02 K and dashpots at 3, at 40 and between 7 and 55.
+    Dashpots,
+    /// Ratios of the lowest 12 modes beside 0.02 K.
+    Modes,
+    /// 0.02 K, a force along a velocity at 11 and one of 20 by that of 90, which is no product L Lᴴ.
+    Coupled,
+}
+
+fn damped(side: usize, damping: Damping) -> Model {
+    let mut model = plate(side, 3);
+    let n = side * side;
+    let mut c = vec![0.0; n * n];
+    let mut add = |i: usize, j: usize, value: f64| c[j * n + i] += value;
+    match damping {
+        Damping::Dashpots => {
+            add(3, 3, 0.3);
+            add(40, 40, 0.2);
+            for (i, j, sign) in [(7, 7, 1.0), (55, 55, 1.0), (7, 55, -1.0), (55, 7, -1.0)] {
+                add(i, j, 0.4 * sign);
+            }
+        }
+        Damping::Coupled => {
+            add(11, 11, -0.01);
+            add(20, 90, 0.05);
+            add(90, 20, 0.05);
+        }
+        Damping::Modes => {
+            let ratios: Vec<f64> = (0..12).map(|r| 0.01 + 0.002 * f64::from(r)).collect();
+            model.set_modal_damping(&ratios).unwrap();
+            return model;
+        }
+    }
+    model
+        .set_matrix(MatrixKind::Damping, &MatrixView::dense(n, &c))
+        .unwrap();
+    model
+}
+
+/// Compares the points of a sweep, with single frequencies by factors.
+fn compare(side: usize, damping: Damping, solver: &SolverOptions) {
+    let model = damped(side, damping);
+    let at = [0.163, 0.19];
+    let range = ForcedOptions {
+        omega_start: 0.15,
+        omega_stop: 0.2,
+        at: &at,
+        ..ForcedOptions::default()
+    };
+    let branch = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
+    let reduction = branch.reduction();
+    let limit = 1e-10 + reduction.certificate;
+    let mut points = vec![0, branch.points() - 1];
+    points.extend((0..at.len()).map(|i| branch.at(i)[0].point));
+    let direct = SolverOptions {
+        flexibility: Flexibility::Direct,
+        ..*solver
+    };
+    for at in points {
+        let omega = branch.omega_at(at).unwrap();
+        let (found, alone) = (branch.response_at(at).unwrap()[0], point(&model, &direct, omega));
+        let alone = alone.response_at(0).unwrap()[0];
+        assert!(
+            (found - alone).norm() < limit * alone.norm(),
+            "{side}, {damping:?}, {omega}: {found} for {alone}"
+        );
+    }
+}
+
+fn fixed(harmonics: usize) -> SolverOptions {
+    SolverOptions {
+        tolerance: 0.0,
+        harmonics,
+        response_dof: Some(89),
+        ..SolverOptions::default()
+    }
+}
+
+#[test]
+fn dampers_of_few_directions_respond_as_by_factors() {
+    for damping in [Damping::Dashpots, Damping::Modes, Damping::Coupled] {
+        compare(10, damping, &fixed(3));
+        compare(22, damping, &fixed(5));
+        compare(26, damping, &fixed(1));
+    }
+}
+
+/// With a tolerance all modes are summed, so that estimates have them, where all poles take longer than factors or lose digits.
+#[test]
+fn dampers_of_few_directions_have_sums_for_estimates() {
+    for (side, damping) in [
+        (21, Damping::Modes),
+        (21, Damping::Dashpots),
+        (22, Damping::Dashpots),
+        (25, Damping::Modes),
+    ] {
+        let model = damped(side, damping);
+        let solver = SolverOptions {
+            tolerance: 1e-2,
+            response_dof: Some(89),
+            ..SolverOptions::default()
+        };
+        let range = ForcedOptions {
+            omega_start: 0.15,
+            omega_stop: 0.2,
+            ..ForcedOptions::default()
+        };
+        let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
+        assert_eq!(branch.reduction().flexibility_way, Modes, "{side}");
+        let last = branch.points() - 1;
+        let direct = SolverOptions {
+            flexibility: Flexibility::Direct,
+            ..solver
+        };
+        let alone = point(&model, &direct, branch.omega_at(last).unwrap());
+        let (found, alone) = (branch.response_at(last).unwrap()[0], alone.response_at(0).unwrap()[0]);
+        assert!(
+            (found - alone).norm() < 2e-2 * alone.norm(),
+            "{side}: {found} for {alone}"
+        );
+    }
+}
