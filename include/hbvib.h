@@ -1986,6 +1986,9 @@ typedef struct {
   double born_at_force;
   /// The same at which it merges with the curve beneath.
   double merges_at_force;
+  /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies;
+  /// 0 otherwise.
+  int64_t internal_resonance;
 } hbvib_descent;
 
 /// Fills a descent with that of a branch that was asked for.
@@ -3035,6 +3038,14 @@ typedef struct {
   double guess_omega;
   /// Damping ratio of the guess; 0 without one.
   double guess_damping;
+  /// Further curves that are sought, for hbvib_branch_children: 0 (default) none; 1 those of its
+  /// branch points, listed by hbvib_branch_bifurcations, with even harmonics carried along, and
+  /// the one beyond a tongue of internal resonance.
+  int32_t branches;
+  /// Largest number of generations of these curves, up to 8; 0 (default): 3.
+  int32_t branch_depth;
+  /// Largest number of these curves; 0 (default): 32.
+  int64_t most_branches;
 } hbvib_mode_options;
 
 /// Fills the options of a nonlinear mode with their defaults: the lowest mode of the model's wave,

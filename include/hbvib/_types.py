@@ -443,6 +443,8 @@ class Descent(NamedTuple):
     born_at_force   Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it; 0 where
         it is not known.
     merges_at_force   The same at which it merges with the curve beneath.
+    internal_resonance   Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies; 0
+        otherwise.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -459,6 +461,7 @@ class Descent(NamedTuple):
     mode: int
     born_at_force: float
     merges_at_force: float
+    internal_resonance: int
 
 
 class Searched(NamedTuple):

@@ -171,8 +171,14 @@ impl<'a> ForcedDiscretised<'a> {
         self.guess_used = used;
     }
 
-    /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start.
-    pub fn null_direction(&mut self, at: &Point, start: &[f64], interrupt: &Interrupt<'_>) -> Result<Option<Vec<f64>>> {
+    /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start, and the size of its
+    /// eigenvalue.
+    pub fn null_direction(
+        &mut self,
+        at: &Point,
+        start: &[f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<(Vec<f64>, f64)>> {
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let metric = Metric::along(norm(at.unknowns()), &self.settings);
         self.stale = true;

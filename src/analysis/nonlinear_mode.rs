@@ -2,10 +2,14 @@
 //! slide.
 
 use crate::adaptivity::branch_recorder::Ending;
-use crate::adaptivity::branch_tracer::BranchTracer;
-use crate::adaptivity::discretised::Recorder;
+use crate::adaptivity::branch_tracer::{BranchTracer, Course};
+use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::adaptivity::inner_ends::InnerEnds;
+use crate::analysis::inside_start::in_sense_of;
+use crate::analysis::mode_branches::with_branches;
 use crate::analysis::mode_discretised::ModeDiscretised;
+use crate::analysis::mode_entry::{EntryWay, ModeEntry};
 use crate::analysis::mode_equations::LinearStart;
 use crate::analysis::mode_guess;
 use crate::analysis::mode_path::{Onset, course, trace};
@@ -14,8 +18,8 @@ use crate::analysis::odd_laws;
 use crate::analysis::sampling::{Sampled, required, with_samples};
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache};
-use crate::continuation::Settings;
 use crate::continuation::step_control::StepControl;
+use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, boxed, fail};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::Hooks;
@@ -25,8 +29,8 @@ use crate::model::repeated_modes::Multiple;
 use crate::options::{Content, Flexibility, ModeOptions, SolverOptions, check_highest};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
-use crate::results::Branch;
 use crate::results::mode_branch::{ModeData, ModeInfo};
+use crate::results::{Branch, Descent};
 
 /// Follows a nonlinear mode of `model` from `range.log10_start` to `range.log10_stop`.
 ///
@@ -63,6 +67,24 @@ pub fn nonlinear_mode(
     model: &Model,
     solver: &SolverOptions,
     range: &ModeOptions<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Branch> {
+    if range.branches == 0 {
+        alone(model, solver, range, None, hooks)
+    } else {
+        with_branches(model, solver, range, hooks)
+    }
+}
+
+/// One curve: that of the linear mode, that of the guess, or the one that an entry leads to.
+///
+/// # Errors
+/// As [`nonlinear_mode`].
+pub(super) fn alone(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ModeOptions<'_>,
+    entry: Option<&ModeEntry<'_>>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
     solver.check()?;
@@ -105,17 +127,20 @@ pub fn nonlinear_mode(
     let separate = model.with_separate_loss()?;
     let model = &*separate;
     let interrupt = hooks.interrupt();
-    let with_guess;
-    let solver = match &range.guess {
-        Some(guess) => {
-            let (content, highest) = Content::of(guess.motion, &model.felt_by_contacts()?);
-            check_highest(highest, solver)?;
-            with_guess = SolverOptions { content, ..*solver };
-            &with_guess
-        }
-        None => solver,
-    };
-    match with_samples(solver, |solver| on_wave(model, solver, range, hooks, &interrupt)) {
+    let mut with_content = *solver;
+    if let Some(guess) = &range.guess {
+        let (content, highest) = Content::of(guess.motion, &model.felt_by_contacts()?);
+        check_highest(highest, solver)?;
+        with_content.content = content;
+    }
+    if range.branches > 0 {
+        // A broken symmetry is a branch point where the equations have the harmonics that it adds.
+        with_content.content = Content { base: 1, even: true };
+    }
+    let solver = &with_content;
+    match with_samples(solver, |solver| {
+        on_wave(model, solver, (range, entry), hooks, &interrupt)
+    }) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome.map(|branch| *branch),
     }
@@ -162,7 +187,7 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
 fn on_wave(
     model: &Model,
     solver: &SolverOptions,
-    range: &ModeOptions<'_>,
+    (range, entry): (&ModeOptions<'_>, Option<&ModeEntry<'_>>),
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Sampled> {
@@ -176,8 +201,9 @@ fn on_wave(
         let (condensed, _) = Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?;
         waves.attach(model, condensed, interrupt)
     })?;
-    let level = match &range.guess {
-        Some(guess) if levels.is_automatic() => {
+    let level = match (&range.guess, entry) {
+        (_, Some(entry)) => levels.level_of(entry.from.set()),
+        (Some(guess), None) if levels.is_automatic() => {
             levels.level_with(Content::of(guess.motion, &model.felt_by_contacts()?).1)
         }
         _ => levels.first(solver.harmonics),
@@ -207,12 +233,16 @@ fn on_wave(
         ))
     };
     let estimator = estimates.then(|| boxed(make)).transpose()?;
+    let mut steps = StepControl::new(solver.step, solver.step_min, solver.step_max);
+    if range.branches > 0 {
+        steps = steps.crossing_branches();
+    }
     let settings = Settings {
         start: range.log10_start,
         end: range.log10_stop,
         tolerance: solver.tol_residual,
         max_iterations: solver.max_newton,
-        steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
+        steps,
     };
     let begin = LinearStart {
         linear,
@@ -225,22 +255,57 @@ fn on_wave(
         .guess
         .map(|guess| mode_guess::unknowns(resolution, (linear, gauge), &guess))
         .transpose()?;
-    let (linear_up_to, nearly) = match guess {
+    let (linear_up_to, nearly) = if guess.is_some() || entry.is_some() {
         // All of the range is nonlinear.
-        Some(_) => (f64::NEG_INFINITY, f64::NEG_INFINITY),
-        None => mode.linear_up_to(range.log10_start)?,
+        (f64::NEG_INFINITY, f64::NEG_INFINITY)
+    } else {
+        mode.linear_up_to(range.log10_start)?
     };
     mode.set_mode(start.data(model, range, linear_up_to)?);
     let onset = Onset { linear_up_to, nearly };
-    let (course, settings) = course(solver, range, settings, onset);
+    let (mut course, settings) = course(solver, range, settings, onset);
+    if range.branches > 0 {
+        mode.seek_branch_points();
+    }
+    let entered = match entry {
+        Some(entry) => Some(enter(entry, &mut mode, &mut course, interrupt)?),
+        None => None,
+    };
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
-    let outcome = trace(&mut mode, &mut tracer, (settings, onset), guess, hooks, interrupt)
-        .map_err(|e| if linear.rest.is_loaded() { about_static(e) } else { e });
+    let outcome = match entered {
+        Some(first) => tracer.trace(&mut *mode, first, hooks),
+        None => trace(&mut mode, &mut tracer, (settings, onset), guess, hooks, interrupt)
+            .map_err(|e| if linear.rest.is_loaded() { about_static(e) } else { e }),
+    };
     if let Some(factor) = required(solver, &*mode) {
         return Ok(Err(factor));
     }
-    let ending = Ending::of(outcome, mode.branch())?;
-    mode.finish(model, solver, &ending, tracer.estimates()).map(Ok)
+    let mut ending = Ending::of(outcome, mode.branch())?;
+    if entry.is_some() && ending.status == Status::StoppedLeftRange {
+        // Both ends of the range are ends of a curve that was entered inside.
+        ending.status = Status::Ok;
+    }
+    let mut branch = mode.finish(model, solver, &ending, tracer.estimates())?;
+    if entry.is_some() {
+        branch.set_descent(Descent::merging_at(tracer.merged_at()));
+    }
+    Ok(Ok(branch))
+}
+
+/// The first point of a further curve, whose course begins there.
+fn enter(
+    entry: &ModeEntry<'_>,
+    mode: &mut ModeDiscretised<'_>,
+    course: &mut Course<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Point> {
+    interrupt.phase(Phase::FirstPoint, 0.0)?;
+    let entered = entry.enter(mode, &course.settings, interrupt)?;
+    if matches!(entry.way, EntryWay::BranchPoint { .. }) {
+        course.settings = in_sense_of(&entered.point, course.settings);
+        course.ends = Some(InnerEnds::new(&entered.point, mode.resolution(), entered.dropped)?);
+    }
+    Ok(entered.point)
 }
 
 /// The error of a mode about a loaded static state.

@@ -78,6 +78,9 @@ pub struct hbvib_descent {
     pub born_at_force: f64,
     /// The same at which it merges with the curve beneath.
     pub merges_at_force: f64,
+    /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies;
+    /// 0 otherwise.
+    pub internal_resonance: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_descent {
@@ -94,6 +97,7 @@ unsafe impl VersionedStruct for hbvib_descent {
             mode: -1,
             born_at_force: 0.0,
             merges_at_force: 0.0,
+            internal_resonance: 0,
         }
     }
 }
@@ -129,6 +133,7 @@ pub unsafe extern "C" fn hbvib_branch_descent(branch: *const hbvib_branch, out: 
             value.mode = index(descent.mode);
             value.born_at_force = known(descent.born_at_force);
             value.merges_at_force = known(descent.merges_at_force);
+            value.internal_resonance = descent.internal_resonance as i64;
         }
         unsafe { fill_out(out, value) };
         Ok(Status::Ok)

@@ -29,7 +29,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
-use crate::options::{DampingForm, Exchanged, Flexibility, SolverOptions};
+use crate::options::{Content, DampingForm, Exchanged, Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -135,6 +135,8 @@ impl Condensed {
     pub fn for_static(model: &Model, options: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<Self> {
         let options = SolverOptions {
             harmonics: 0,
+            // Nothing vibrates, whatever harmonics the motion about it has.
+            content: Content::default(),
             // A basis is good at the frequencies of a sweep.
             flexibility: Flexibility::Direct,
             ..*options

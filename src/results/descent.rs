@@ -21,6 +21,8 @@ pub struct Descent {
     pub born_at_force: f64,
     /// The same.
     pub merges_at_force: f64,
+    /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies; 0 otherwise.
+    pub internal_resonance: usize,
 }
 
 impl Descent {
@@ -43,6 +45,7 @@ impl Default for Descent {
             mode: None,
             born_at_force: f64::NAN,
             merges_at_force: f64::NAN,
+            internal_resonance: 0,
         }
     }
 }

@@ -13,6 +13,11 @@ impl Branch {
     pub fn bifurcations(&self) -> Result<Vec<Bifurcation>> {
         let mut found = Vec::new();
         if self.mode.is_some() {
+            // A nonlinear mode has no multipliers: its branch points are those of its equations, and its folds turn in amplitude.
+            let located = self.bifurcations.iter().map(|located| located.bifurcation);
+            for bifurcation in located.filter(|found| found.kind == BifurcationKind::BranchPoint) {
+                try_push(&mut found, bifurcation, "the bifurcations")?;
+            }
             return Ok(found);
         }
         for located in &self.bifurcations {

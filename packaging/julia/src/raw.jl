@@ -479,6 +479,7 @@ struct hbvib_descent
     mode::Int64
     born_at_force::Float64
     merges_at_force::Float64
+    internal_resonance::Int64
 end
 hbvib_descent() = initialised(hbvib_descent, dlsym_(:hbvib_descent_init))
 
@@ -591,6 +592,9 @@ struct hbvib_mode_options
     guess_len::Int64
     guess_omega::Float64
     guess_damping::Float64
+    branches::Int32
+    branch_depth::Int32
+    most_branches::Int64
 end
 hbvib_mode_options() = initialised(hbvib_mode_options, dlsym_(:hbvib_mode_options_init))
 

@@ -326,6 +326,7 @@ contains
       call field('mode', c_loc(s), c_loc(s%mode), c_sizeof(s%mode))
       call field('born_at_force', c_loc(s), c_loc(s%born_at_force), c_sizeof(s%born_at_force))
       call field('merges_at_force', c_loc(s), c_loc(s%merges_at_force), c_sizeof(s%merges_at_force))
+      call field('internal_resonance', c_loc(s), c_loc(s%internal_resonance), c_sizeof(s%internal_resonance))
    end subroutine descent
 
    subroutine searched()
@@ -438,6 +439,9 @@ contains
       call field('guess_len', c_loc(s), c_loc(s%guess_len), c_sizeof(s%guess_len))
       call field('guess_omega', c_loc(s), c_loc(s%guess_omega), c_sizeof(s%guess_omega))
       call field('guess_damping', c_loc(s), c_loc(s%guess_damping), c_sizeof(s%guess_damping))
+      call field('branches', c_loc(s), c_loc(s%branches), c_sizeof(s%branches))
+      call field('branch_depth', c_loc(s), c_loc(s%branch_depth), c_sizeof(s%branch_depth))
+      call field('most_branches', c_loc(s), c_loc(s%most_branches), c_sizeof(s%most_branches))
    end subroutine mode_options
 
    subroutine mode_point()
