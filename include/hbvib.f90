@@ -304,13 +304,14 @@ module hbvib
       integer(c_int64_t) :: internal_resonance = 0
    end type hbvib_descent
 
-   !> Solutions beside a response that were sought.
+   !> Solutions beside a branch that were sought.
    type, bind(c) :: hbvib_searched
-      integer(c_int32_t) :: struct_size = 88, reserved = 0
+      integer(c_int32_t) :: struct_size = 128, reserved = 0
       integer(c_int64_t) :: bifurcations = 0, lost = 0, left = 0, modes = 0, incomplete_modes = 0, resonances = 0, &
          lost_resonances = 0
       real(c_double) :: amplitude_min = 0, amplitude_max = 0
-      integer(c_int64_t) :: starts = 0
+      integer(c_int64_t) :: starts = 0, force_curves = 0, incomplete_force_curves = 0, crossings = 0, deflations = 0, &
+         deflated = 0
    end type hbvib_searched
 
    !> A borrowed array of results, valid until hbvib_branch_free.

@@ -604,6 +604,11 @@ struct hbvib_searched {
   double amplitude_min;
   double amplitude_max;
   int64_t starts;
+  int64_t force_curves;
+  int64_t incomplete_force_curves;
+  int64_t crossings;
+  int64_t deflations;
+  int64_t deflated;
 };
 struct hbvib_view {
   uint32_t struct_size;

@@ -1072,6 +1072,11 @@ static const Field searched_fields[] = {
   {"amplitude_min", DOUBLE, offsetof(hbvib_searched, amplitude_min), 1, NULL},
   {"amplitude_max", DOUBLE, offsetof(hbvib_searched, amplitude_max), 1, NULL},
   {"starts", INT64, offsetof(hbvib_searched, starts), 1, NULL},
+  {"force_curves", INT64, offsetof(hbvib_searched, force_curves), 1, NULL},
+  {"incomplete_force_curves", INT64, offsetof(hbvib_searched, incomplete_force_curves), 1, NULL},
+  {"crossings", INT64, offsetof(hbvib_searched, crossings), 1, NULL},
+  {"deflations", INT64, offsetof(hbvib_searched, deflations), 1, NULL},
+  {"deflated", INT64, offsetof(hbvib_searched, deflated), 1, NULL},
 };
 static hbvib_status searched_fill(void *s) { return hbvib_searched_init(s, sizeof(hbvib_searched)); }
 static const Struct SEARCHED_STRUCT = {"searched", sizeof(hbvib_searched), searched_fields, sizeof searched_fields / sizeof *searched_fields, searched_fill};

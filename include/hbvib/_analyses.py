@@ -80,8 +80,8 @@ class _Analyses(_Matrices):
                   amplitude and peaks of the branch, and a tolerance holds for each.
         together  the tolerance holds for all responses in one norm, instead of for each.
         branches  1: seek branches of the double period, of broken symmetry and at simple branch points, 2: detached curves,
-                  too, 3: subharmonic curves, too, with stability along all of them: Branch.children. branch_depth: most
-                  generations, 0: 3. most_branches: 0: 32.
+                  too, 3: those over the force and subharmonic curves, too, 4: those that deflation finds, too, with stability
+                  along all of them: Branch.children. branch_depth: most generations, 0: 3. most_branches: 0: 32.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points. True
                   shows a bar of tqdm, or a line on stderr where that is not installed.
         log       log(LogLevel, text), lines up to log_level.

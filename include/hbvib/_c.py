@@ -963,7 +963,8 @@ forced_options: uint32 struct_size; int32 together; double omega_start omega_sto
 descent: uint32 struct_size; int32 kind; int64 bifurcation periods; double merges_at; int64 mode; double born_at_force
     merges_at_force; int64 internal_resonance
 searched: uint32 struct_size; int32 reserved; int64 bifurcations lost left modes incomplete_modes resonances
-    lost_resonances; double amplitude_min amplitude_max; int64 starts
+    lost_resonances; double amplitude_min amplitude_max; int64 starts force_curves incomplete_force_curves crossings
+    deflations deflated
 view: uint32 struct_size; int32 scalar rank reserved; pointer data; int64 shape[3] stride[3]
 reduction: uint32 struct_size; int32 reserved; int64 sectors degrees_of_freedom coordinates contacts never_slipping
     inert harmonics_asked harmonics_carried unknowns response_dof; int32 mean_carried even_removed; int64

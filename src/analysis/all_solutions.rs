@@ -43,8 +43,16 @@ pub(super) fn forced_response(
     if range.branches > 1 {
         tree.add_detached(&mut branch, depth, hooks)?;
     }
+    // Where modes tell nothing, peaks and folds over the force do.
+    let told_by_modes = tree.searched.modes > tree.searched.incomplete_modes;
+    if range.branches > 2 || (range.branches > 1 && !told_by_modes) {
+        tree.add_over_force(&mut branch, depth, hooks)?;
+    }
     if range.branches > 2 {
         tree.add_subharmonics(&mut branch, depth, hooks)?;
+    }
+    if range.branches > 3 {
+        tree.add_deflated(&mut branch, depth, hooks)?;
     }
     branch.set_searched(tree.searched);
     Ok(branch)

@@ -210,6 +210,7 @@ impl Tree<'_> {
             periods,
             entry: Cell::default(),
             net: None,
+            deflation: None,
         };
         self.at_period(&model, (&inside, &guess), (periods, parent.response_dof()), hooks)
     }

@@ -7,6 +7,7 @@
 
 use crate::adaptivity::discretised::Discretised;
 use crate::adaptivity::inner_ends::Dropped;
+use crate::analysis::deflation::Deflation;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::analysis::known_curve::lies_on;
 use crate::analysis::phase_direction::phase_direction;
@@ -49,6 +50,8 @@ pub(super) struct Inside<'k> {
     pub entry: Cell<Entry>,
     /// Motions that are added to the guess, with amplitudes and phases of a net.
     pub net: Option<&'k Net<'k>>,
+    /// Solutions beside the guess are sought, which is a known one.
+    pub deflation: Option<&'k Deflation>,
 }
 
 /// The first point, oriented along the curve, and the harmonics that the branch does not have which it leaves.
@@ -121,6 +124,10 @@ impl Inside<'_> {
         start.tangent[n] = 1.0;
         if let Some(net) = self.net {
             let point = net.first_solution(response, &start, (self.known, self.periods), interrupt)?;
+            return Ok(point.map(|point| Entered { point, dropped: None }));
+        }
+        if let Some(deflation) = self.deflation {
+            let point = deflation.first_solution(response, &start, (self.known, self.periods), interrupt)?;
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
         let level = response.resolution();

@@ -88,6 +88,7 @@ impl Tree<'_> {
                         periods: order,
                         entry: Cell::default(),
                         net: Some(&net),
+                        deflation: None,
                     };
                     self.searched.starts += 1;
                     let way = (order, branch.response_dof());

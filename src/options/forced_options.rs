@@ -28,8 +28,9 @@ pub struct ForcedOptions<'a> {
     /// Whether the tolerance holds for the responses in one norm, (Σ|error|²/Σ|response|²)^½, instead of for each by itself.
     pub together: bool,
     /// Further solutions that are sought: 0 none; 1 branches that branch off where the period doubles, a symmetry breaks, or at
-    /// simple branch points; 2 detached curves along nonlinear modes and over the force, too; 3 subharmonic curves of
-    /// the orders 2 and 3 by a net of starts, too; 4 solutions that deflation finds beside the known ones, too. From 1 on stability is computed along all of them.
+    /// simple branch points; 2 detached curves along nonlinear modes, too; 3 those that peaks and folds lead to over the force, and
+    /// subharmonic curves of the orders 2 and 3 by a net of starts, too; 4 solutions that deflation finds beside the response, too.
+    /// From 1 on stability is computed along all of them.
     pub branches: usize,
     /// Largest number of generations of branches that branch off; 0: 3.
     pub branch_depth: usize,

@@ -21,6 +21,11 @@ impl Branch {
         &self.children
     }
 
+    /// The same, writable.
+    pub(crate) fn children_mut(&mut self) -> &mut [Self] {
+        &mut self.children
+    }
+
     /// The children, taken out of the branch.
     pub(crate) fn take_children(&mut self) -> Vec<Self> {
         core::mem::take(&mut self.children)

@@ -49,7 +49,7 @@ fn in_rust() -> String {
         hbvib_response { struct_size, measure, harmonic, n, dofs, weights, sector, component, reserved }
         hbvib_forced_options { struct_size, together, omega_start, omega_stop, at, at_len, guess, guess_len, responses, responses_len, branches, branch_depth, most_branches }
         hbvib_descent { struct_size, kind, bifurcation, periods, merges_at, mode, born_at_force, merges_at_force, internal_resonance }
-        hbvib_searched { struct_size, reserved, bifurcations, lost, left, modes, incomplete_modes, resonances, lost_resonances, amplitude_min, amplitude_max, starts }
+        hbvib_searched { struct_size, reserved, bifurcations, lost, left, modes, incomplete_modes, resonances, lost_resonances, amplitude_min, amplitude_max, starts, force_curves, incomplete_force_curves, crossings, deflations, deflated }
         hbvib_view { struct_size, scalar, rank, reserved, data, shape, stride }
         hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts, basis, certificate, response_harmonic, guess_used, flexibility_way }
         hbvib_energy { struct_size, reserved, twice_mean_kinetic, kinetic_mean, kinetic_peak, potential_mean, potential_peak, wheel_kinetic_mean, wheel_kinetic_peak, wheel_potential_mean, wheel_potential_peak, structural_loss, friction_loss }

@@ -344,6 +344,11 @@ contains
       call field('amplitude_min', c_loc(s), c_loc(s%amplitude_min), c_sizeof(s%amplitude_min))
       call field('amplitude_max', c_loc(s), c_loc(s%amplitude_max), c_sizeof(s%amplitude_max))
       call field('starts', c_loc(s), c_loc(s%starts), c_sizeof(s%starts))
+      call field('force_curves', c_loc(s), c_loc(s%force_curves), c_sizeof(s%force_curves))
+      call field('incomplete_force_curves', c_loc(s), c_loc(s%incomplete_force_curves), c_sizeof(s%incomplete_force_curves))
+      call field('crossings', c_loc(s), c_loc(s%crossings), c_sizeof(s%crossings))
+      call field('deflations', c_loc(s), c_loc(s%deflations), c_sizeof(s%deflations))
+      call field('deflated', c_loc(s), c_loc(s%deflated), c_sizeof(s%deflated))
    end subroutine searched
 
    subroutine view()
