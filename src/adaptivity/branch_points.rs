@@ -17,7 +17,7 @@ use crate::results::{BifurcationKind, SpecialKind};
 const BRANCH_POINTS_HALVINGS: usize = 26;
 
 /// Least cosine between the directions at both ends of the arc: across a corner the sign may change, too.
-const SMOOTH: f64 = 0.9;
+const BRANCH_POINTS_SMOOTH: f64 = 0.9;
 
 impl BranchTracer<'_> {
     /// Locates and records the branch point between two neighbours of the curve, where the analysis seeks it.
@@ -48,7 +48,7 @@ impl BranchTracer<'_> {
         let [a, b] = &ends[..] else { return Ok(()) };
         let metric = Metric::along(norm(b.unknowns()), &self.course.settings);
         let cosine = metric.dot(&a.tangent, &b.tangent) / (metric.norm(&a.tangent) * metric.norm(&b.tangent));
-        if a.positive == b.positive || cosine < SMOOTH {
+        if a.positive == b.positive || cosine < BRANCH_POINTS_SMOOTH {
             return Ok(());
         }
         let mut locator = Locator::new(a.unknowns().len(), self.course.settings)?;

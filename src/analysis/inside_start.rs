@@ -51,7 +51,7 @@ pub(super) struct Inside<'k> {
     /// Motions that are added to the guess, with amplitudes and phases of a net.
     pub net: Option<&'k Net<'k>>,
     /// Solutions beside the guess are sought, which is a known one.
-    pub deflation: Option<&'k Deflation>,
+    pub deflation: Option<Deflation>,
 }
 
 /// The first point, oriented along the curve, and the harmonics that the branch does not have which it leaves.
@@ -126,8 +126,8 @@ impl Inside<'_> {
             let point = net.first_solution(response, &start, (self.known, self.periods), interrupt)?;
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
-        if let Some(deflation) = self.deflation {
-            let point = deflation.first_solution(response, &start, (self.known, self.periods), interrupt)?;
+        if self.deflation.is_some() {
+            let point = Deflation::first_solution(response, &start, (self.known, self.periods), interrupt)?;
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
         let level = response.resolution();

@@ -5,8 +5,9 @@
 
 use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::inside_start::Entry;
-use crate::analysis::mode_entry::{EntryWay, ModeEntry, VANISHING_FUNDAMENTAL};
-use crate::analysis::nonlinear_mode::alone;
+use crate::analysis::mode_curve::alone;
+use crate::analysis::mode_discretised::VANISHING_FUNDAMENTAL;
+use crate::analysis::mode_entry::{EntryWay, ModeEntry};
 use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;

@@ -6,7 +6,6 @@ use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
-use crate::analysis::mode_entry::VANISHING_FUNDAMENTAL;
 use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::analysis::mode_onset::OnsetSearch;
 use crate::condense::Reduction;
@@ -24,6 +23,10 @@ use crate::problem::epmc::Epmc;
 use crate::results::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
 use num_complex::Complex64;
+
+/// Share of the fundamental in the energy below which a motion is nearly that of another mode, with a part of the period. Its equations
+/// for the fundamental are then near rounding, and have no branch point that is told.
+pub(super) const VANISHING_FUNDAMENTAL: f64 = 0.1;
 
 /// A nonlinear mode in the form that the tracer follows.
 pub(super) struct ModeDiscretised<'a> {

@@ -36,10 +36,6 @@ const MODE_ENTRY_DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 /// Share of the motion at a branch point in harmonics that the curve through it does not have.
 const MODE_ENTRY_ABSENT: f64 = 1e-4;
 
-/// Share of the fundamental in the energy below which a motion is nearly that of another mode, with a part of the period. Its equations
-/// for the fundamental are then near rounding, and have no branch point that is told.
-pub(super) const VANISHING_FUNDAMENTAL: f64 = 0.1;
-
 /// How a further curve is reached from a known point.
 pub(super) enum EntryWay<'k> {
     /// From a branch point of the curve with this direction, in a sense of the null vector.

@@ -55,12 +55,13 @@ impl Tree<'_> {
             return Ok(());
         }
         for (kind, point) in starts(branch)? {
-            for stop in [OVER_FORCE_FACTORS.1, OVER_FORCE_FACTORS.0] {
+            let (low, high) = OVER_FORCE_FACTORS;
+            for ends in [(low, high), (high, low)] {
                 if self.left == 0 {
                     return Ok(());
                 }
                 self.searched.force_curves += 1;
-                match self.crossings(branch, (kind, point), stop, hooks) {
+                match self.crossings(branch, (kind, point), ends, hooks) {
                     Ok(found) => {
                         // The curve begins at a known solution.
                         let is_first = |c: &Crossing| (c.omega - point.omega).abs() <= OVER_FORCE_SAME * point.omega;
@@ -79,17 +80,17 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The solutions at the force itself on the curve over the force that leaves a peak or a fold of the branch towards a factor.
+    /// The solutions at the force itself on the curve over the force that leaves a peak or a fold of the branch towards the second of
+    /// two factors.
     fn crossings(
         &mut self,
         branch: &Branch,
         (kind, special): (ResponsePoint, Special),
-        stop: f64,
+        (start, stop): (f64, f64),
         hooks: &mut Hooks<'_>,
     ) -> Result<Vec<Crossing>> {
-        let (low, high) = OVER_FORCE_FACTORS;
         let range = ParameterRange {
-            start: if stop == high { low } else { high },
+            start,
             stop,
             at: &[1.0],
             follow: Follow::PeakThroughFolds(special.omega),

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields)]
 pub struct SolutionsPart {
     /// 1: branches of the double period and of broken symmetry; 2: detached curves, too; 3: those over the force and subharmonic curves of
-    /// the orders 2 and 3, too; 4: those that deflation finds, too. Of [mode] any of them: curves of its branch points and beyond tongues.
+    /// the orders 2 and 3, too; 4: those that deflation finds, too. Beside [mode] any of them seeks curves of branch points and those
+    /// beyond tongues.
     #[serde(default = "all")]
     pub branches: usize,
     /// Most generations of branches; 0: 3.
