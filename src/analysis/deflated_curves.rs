@@ -2,10 +2,10 @@
 //! from the solutions that are known there. It needs neither a nonlinear mode nor a peak over the force, and shows those alone that its
 //! starts lead to.
 
-use crate::analysis::branch_switching::{Found, Place, Tree};
+use crate::analysis::branch_switching::{Found, Tree};
 use crate::analysis::deflation::Deflation;
 use crate::analysis::inside_start::Inside;
-use crate::error::{Result, Status, try_push, try_vec};
+use crate::error::{Result, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::options::Content;
 use crate::results::{Branch, Descent, Recovery};
@@ -47,15 +47,7 @@ impl Tree<'_> {
             self.left -= 1;
             self.searched.deflated += 1;
             found.set_descent(Descent::default());
-            if found.status() != Status::StoppedByCaller {
-                let root = Place::root();
-                let place = Place {
-                    above: Some((branch, &root)),
-                    ..Place::root()
-                };
-                self.grow(&mut found, &place, depth, hooks)?;
-            }
-            branch.push_child(found)?;
+            self.add(branch, found, (1, depth), hooks)?;
         }
         Ok(())
     }

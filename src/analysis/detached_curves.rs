@@ -5,7 +5,7 @@
 //! where its curve is followed until it closes or leaves the range. A minimum of F(a) is the force at which a curve is born, the
 //! maximum below it the one at which it merges with the curve beneath.
 
-use crate::analysis::branch_switching::{Found, Place, Tree};
+use crate::analysis::branch_switching::{Found, Tree};
 use crate::analysis::forced_curve::alone;
 use crate::analysis::inside_start::Inside;
 use crate::analysis::nonlinear_mode;
@@ -170,15 +170,7 @@ impl Tree<'_> {
                 merges_at_force: merges,
                 ..Descent::default()
             });
-            if found.status() != Status::StoppedByCaller {
-                let root = Place::root();
-                let place = Place {
-                    above: Some((branch, &root)),
-                    ..Place::root()
-                };
-                self.grow(&mut found, &place, depth, hooks)?;
-            }
-            branch.push_child(found)?;
+            self.add(branch, found, (1, depth), hooks)?;
         }
         Ok(())
     }

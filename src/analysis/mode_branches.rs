@@ -66,7 +66,14 @@ pub(super) fn with_branches(
         left,
         searched: Searched::default(),
     };
-    tree.grow(&mut branch, None, depth, hooks)?;
+    match tree.grow(&mut branch, None, depth, hooks) {
+        // Curves that were found before a stop are kept.
+        Err(e) if e.status == Status::StoppedByCaller => branch.set_ending(e.status, None, (false, false)),
+        grown => grown?,
+    }
+    if branch.was_stopped() {
+        branch.set_ending(Status::StoppedByCaller, None, (false, false));
+    }
     branch.set_searched(tree.searched);
     Ok(branch)
 }
@@ -86,14 +93,16 @@ impl ModeTree<'_> {
                 continue;
             }
             for sense in [1.0, -1.0] {
+                if self.left == 0 {
+                    break;
+                }
                 let Some((v, tangent)) = parent.mode_data().and_then(|mode| mode.branch_point(number)) else {
                     break;
                 };
                 let way = EntryWay::BranchPoint { tangent, sense };
                 let found = self.child(parent, (bifurcation.point, v, way), above, hooks)?;
                 let (mut child, dropped) = match found {
-                    Found::Curve(child, dropped) if self.left > 0 => (child, dropped),
-                    Found::Curve(..) => break,
+                    Found::Curve(child, dropped) => (child, dropped),
                     Found::Known => continue,
                     Found::Nothing => {
                         self.searched.lost += 1;
@@ -140,11 +149,15 @@ impl ModeTree<'_> {
     ) -> Result<bool> {
         self.left -= 1;
         let goes_on = child.status() != Status::StoppedByCaller;
+        let mut grown = Ok(());
         if goes_on {
             let place = Above { branch: parent, above };
-            self.grow(&mut child, Some(&place), depth.saturating_sub(1), hooks)?;
+            grown = self.grow(&mut child, Some(&place), depth.saturating_sub(1), hooks);
+        } else {
+            self.left = 0;
         }
         parent.push_child(child)?;
+        grown?;
         Ok(goes_on)
     }
 

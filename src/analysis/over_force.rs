@@ -5,7 +5,7 @@
 //! force meet where it is born, or has merged ([`crate::sensitivity::fold_point`]). Wherever such a curve comes back to the force
 //! itself, its solution is a start. No nonlinear mode is needed, and forces may act in any harmonic.
 
-use crate::analysis::branch_switching::{Found, Place, Tree};
+use crate::analysis::branch_switching::{Found, Tree};
 use crate::analysis::detached_curves::tolerate;
 use crate::analysis::parameter_range::{Follow, ParameterRange};
 use crate::analysis::parameter_response::follow_from;
@@ -170,15 +170,7 @@ impl Tree<'_> {
             merges_at_force: crossing.merges,
             ..Descent::default()
         });
-        if found.status() != Status::StoppedByCaller {
-            let root = Place::root();
-            let place = Place {
-                above: Some((branch, &root)),
-                ..Place::root()
-            };
-            self.grow(&mut found, &place, depth, hooks)?;
-        }
-        branch.push_child(found)
+        self.add(branch, found, (1, depth), hooks)
     }
 }
 

@@ -2,11 +2,13 @@
 
 use crate::common::{all_harmonics, harmonics, one_mass};
 use hbvib::contact::{Contact, ContactKind};
+use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};
 use hbvib::results::Branch;
 use hbvib::{Follow, Parameter, ParameterRange, Polynomial, forced_response, parameter_response, verify};
+use std::cell::Cell;
 
 /// x″ + 0.05 x′ − 0.05 x′³ + 0.012 x′⁵ + x under a force in harmonic 1.
 fn falling_damping(force: f64) -> Model {
@@ -116,4 +118,41 @@ fn deflation_finds_a_curve_that_nothing_else_shows() {
     assert!(child.unstable_directions()[highest] == 0.0 && holds_in_time(&model, child, highest));
     // It is closed: both its ends are one motion.
     assert!((child.omega()[0] - child.omega()[child.points() - 1]).abs() < 1e-9);
+}
+
+/// Wherever the caller stops the search, the run ends there without another check, and what was found before is kept.
+#[test]
+fn a_stopped_search_keeps_the_response() {
+    let model = falling_damping(0.015);
+    // Number of checks, points, children and status of a run that is stopped at a check.
+    let run = |stop: u64| {
+        let (checks, stopped) = (Cell::new(0_u64), Cell::new(false));
+        let cancelled = || {
+            assert!(!stopped.get(), "asked again after the stop");
+            checks.set(checks.get() + 1);
+            stopped.set(checks.get() == stop);
+            stopped.get()
+        };
+        let mut hooks = Hooks {
+            cancelled: Some(&cancelled),
+            ..Hooks::default()
+        };
+        let range = ForcedOptions {
+            omega_start: 0.95,
+            omega_stop: 1.05,
+            branches: 4,
+            ..ForcedOptions::default()
+        };
+        let branch = forced_response(&model, &harmonics(3), &range, &mut hooks).unwrap();
+        (checks.get(), branch.points(), branch.children().len(), branch.status())
+    };
+    let (checks, points, children, status) = run(0);
+    println!("{checks} checks, {points} points, {children} children, {status:?}");
+    assert!(children == 1 && status == Status::Ok);
+    for share in 1..5 {
+        let (until, kept, found, status) = run(checks * share / 5);
+        println!("{until} checks, {kept} points, {found} children, {status:?}");
+        assert_eq!((until, status), (checks * share / 5, Status::StoppedByCaller));
+        assert!(share < 4 || (kept, found) == (points, children));
+    }
 }
