@@ -344,8 +344,7 @@ static void branches(void)
     hbvib_descent d;
     hbvib_matrix m;
     double mass[4] = {1, 0, 0, 1}, stiffness[4] = {1.1, -0.1, -0.1, 1.1};
-    double kind = 0, place = 0;
-    int64_t i, count = 0;
+    int64_t i, kind = 0, place = 0, count = 0;
     WORKS("model", hbvib_model_new(2, &model));
     m = matrix(2, mass);
     WORKS("mass", hbvib_model_set_matrix(model, HBVIB_MASS, &m));
@@ -369,7 +368,7 @@ static void branches(void)
     WORKS("mode", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch));
     WORKS("branch point", hbvib_branch_bifurcations(branch, 1, NULL, NULL, &kind, &place, NULL, NULL, &count));
     EXPECT("branch point", count == 1 && kind == HBVIB_BIFURCATION_BRANCH_POINT);
-    EXPECT("branch point", fabs(mode_point(branch, (int64_t)place).modal_amplitude - 0.5147) < 1e-3);
+    EXPECT("branch point", fabs(mode_point(branch, place).modal_amplitude - 0.5147) < 1e-3);
     EXPECT("children", hbvib_branch_children(branch) == 2);
     WORKS("child", hbvib_branch_child(branch, 1, &child));
     WORKS("descent", hbvib_descent_init(&d, sizeof d));
