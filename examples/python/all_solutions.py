@@ -8,13 +8,14 @@ with stability, and with branches = 2 and 3. Takes a minute.
 import argparse
 import resource
 import sys
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 import hbvib
 
 FAILED: List[str] = []
+ENOUGH = 20  # chains whose times tell a ratio
 
 
 def row(name: str, found: float, right: float, within: float) -> None:
@@ -142,14 +143,14 @@ def cost(chains: int) -> None:
     row(f"curves reported beside {chains} chains without one", reported, 0, 0)
     for (name, _), seconds in zip(ways, times):
         print(f"{name:16} {seconds:8.3f} s  {seconds / times[0]:6.2f} x alone  {seconds / times[1]:6.2f} x with stability")
-    if times[3] > 1.5 * times[1]:
+    if chains >= ENOUGH and times[3] > 1.5 * times[1]:
         FAILED.append("the cost of branches = 2")
 
 
-def main() -> None:
+def main(arguments: Optional[Sequence[str]] = None) -> None:
     parser = argparse.ArgumentParser(description="Solutions that a sweep does not show.")
     parser.add_argument("--chains", type=int, default=100)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     falling_damping()
     doubled_periods()
     other_motions()
