@@ -6,7 +6,7 @@ use crate::results::verdict::{Bifurcation, BifurcationKind, Located, Stretch, Ve
 
 impl Branch {
     /// The bifurcations in the order of the branch: its folds and, with the solver option `stability`, those where a
-    /// multiplier passes the unit circle. The branch of a nonlinear mode has none.
+    /// multiplier passes the unit circle. The branch of a nonlinear mode has the branch points of its curve, where they were sought.
     ///
     /// # Errors
     /// `OutOfMemory`.
