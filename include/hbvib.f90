@@ -296,20 +296,22 @@ module hbvib
 
    !> Origin of a child.
    type, bind(c) :: hbvib_descent
-      integer(c_int32_t) :: struct_size = 56, kind = -1
+      integer(c_int32_t) :: struct_size = 64, kind = -1
       integer(c_int64_t) :: bifurcation = -1, periods = 1
       real(c_double) :: merges_at = 0
       integer(c_int64_t) :: mode = -1
       real(c_double) :: born_at_force = 0, merges_at_force = 0
+      integer(c_int64_t) :: internal_resonance = 0
    end type hbvib_descent
 
-   !> Solutions beside a response that were sought.
+   !> Solutions beside a branch that were sought.
    type, bind(c) :: hbvib_searched
-      integer(c_int32_t) :: struct_size = 88, reserved = 0
+      integer(c_int32_t) :: struct_size = 128, reserved = 0
       integer(c_int64_t) :: bifurcations = 0, lost = 0, left = 0, modes = 0, incomplete_modes = 0, resonances = 0, &
          lost_resonances = 0
       real(c_double) :: amplitude_min = 0, amplitude_max = 0
-      integer(c_int64_t) :: starts = 0
+      integer(c_int64_t) :: starts = 0, force_curves = 0, incomplete_force_curves = 0, crossings = 0, deflations = 0, &
+         deflated = 0
    end type hbvib_searched
 
    !> A borrowed array of results, valid until hbvib_branch_free.
@@ -350,7 +352,7 @@ module hbvib
 
    !> Options of hbvib_nonlinear_mode.
    type, bind(c) :: hbvib_mode_options
-      integer(c_int32_t) :: struct_size = 128, damping_form = 0
+      integer(c_int32_t) :: struct_size = 144, damping_form = 0
       real(c_double) :: log10_start = 0, log10_stop = 0
       integer(c_int64_t) :: diameter = HBVIB_DIAMETER_OF_ENGINE_ORDER, mode_index = 1
       real(c_double) :: near_omega = 0
@@ -361,6 +363,8 @@ module hbvib
       type(c_ptr) :: guess = c_null_ptr
       integer(c_int64_t) :: guess_len = 0
       real(c_double) :: guess_omega = 0, guess_damping = 0
+      integer(c_int32_t) :: branches = 0, branch_depth = 0
+      integer(c_int64_t) :: most_branches = 0
    end type hbvib_mode_options
 
    !> Numbers of one point of a nonlinear mode, in the units of the caller; energies are of one sector.

@@ -1903,9 +1903,10 @@ typedef struct {
   int64_t responses_len;
   /// Further solutions that are sought, for hbvib_branch_children: 0 (default) none; 1 branches
   /// that branch off where the period doubles, a symmetry breaks or at simple branch points; 2
-  /// detached curves, too, near the resonances that nonlinear modes predict; 3 subharmonic curves
-  /// of the orders 2 and 3, too, by a net of starts. Stability is then computed along all of
-  /// them, as by HBVIB_STABILITY_WAVE where the solver option is none.
+  /// detached curves, too, near the resonances that nonlinear modes predict; 3 those that peaks
+  /// and folds lead to over the force, and subharmonic curves of the orders 2 and 3, too, by a net
+  /// of starts; 4 those that deflation finds beside the response, too. Stability is then computed
+  /// along all of them, as by HBVIB_STABILITY_WAVE where the solver option is none.
   int32_t branches;
   /// Largest number of generations of branches that branch off, up to 8; 0 (default): 3.
   int32_t branch_depth;
@@ -1947,8 +1948,8 @@ hbvib_status hbvib_forced_response(const hbvib_model *model,
                                    hbvib_branch **out);
 
 /// Number of the children of a branch: the branches that branch off from it, and the detached
-/// curves beside it, as far as `branches` of hbvib_forced_options sought them; or a negative
-/// status.
+/// curves beside it, as far as `branches` of hbvib_forced_options or hbvib_mode_options sought
+/// them; or a negative status.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 int64_t hbvib_branch_children(const hbvib_branch *branch);
@@ -1981,11 +1982,14 @@ typedef struct {
   /// Number of the linear mode along whose nonlinear mode a detached curve was found; -1
   /// otherwise.
   int64_t mode;
-  /// Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it; 0
-  /// where it is not known.
+  /// Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it, or
+  /// as a curve over the force turns; 0 where it is not known.
   double born_at_force;
   /// The same at which it merges with the curve beneath.
   double merges_at_force;
+  /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies;
+  /// 0 otherwise.
+  int64_t internal_resonance;
 } hbvib_descent;
 
 /// Fills a descent with that of a branch that was asked for.
@@ -2004,7 +2008,7 @@ hbvib_status hbvib_descent_init(hbvib_descent *o, size_t size_of_o);
 HBVIB_NODISCARD
 hbvib_status hbvib_branch_descent(const hbvib_branch *branch, hbvib_descent *out);
 
-/// Solutions beside a response that were sought. The list of children is not complete: a solution
+/// Solutions beside a branch that were sought. The list of children is not complete: a solution
 /// that none of these searches leads to is not found. Fill it by hbvib_searched_init, then by
 /// hbvib_branch_searched.
 typedef struct {
@@ -2032,6 +2036,16 @@ typedef struct {
   double amplitude_max;
   /// Nets of starts of subharmonic curves.
   int64_t starts;
+  /// Curves of peaks and folds that were followed over the force, between a tenth and ten times it.
+  int64_t force_curves;
+  /// Those that ended early.
+  int64_t incomplete_force_curves;
+  /// Solutions at the force itself on these curves, beside those that they begin at.
+  int64_t crossings;
+  /// Points of the response beside which deflation sought solutions.
+  int64_t deflations;
+  /// Curves that it found.
+  int64_t deflated;
 } hbvib_searched;
 
 /// Fills a search with zeros.
@@ -3035,6 +3049,14 @@ typedef struct {
   double guess_omega;
   /// Damping ratio of the guess; 0 without one.
   double guess_damping;
+  /// Further curves that are sought, for hbvib_branch_children: 0 (default) none; 1 those of its
+  /// branch points, listed by hbvib_branch_bifurcations, with even harmonics carried along, and
+  /// the one beyond a tongue of internal resonance.
+  int32_t branches;
+  /// Largest number of generations of these curves, up to 8; 0 (default): 3.
+  int32_t branch_depth;
+  /// Largest number of these curves; 0 (default): 32.
+  int64_t most_branches;
 } hbvib_mode_options;
 
 /// Fills the options of a nonlinear mode with their defaults: the lowest mode of the model's wave,
@@ -4129,7 +4151,8 @@ typedef enum {
 /// Bifurcations of a forced response in the order of the branch: its folds and, with the solver
 /// option `stability`, the points where a Floquet multiplier passes the unit circle, located on the
 /// branch. A multiplier that jumps over the circle, as where slip sets in, is none of these kinds:
-/// HBVIB_UNSTABLE_DIRECTIONS then changes without a bifurcation. A nonlinear mode has none.
+/// HBVIB_UNSTABLE_DIRECTIONS then changes without a bifurcation. A nonlinear mode has the branch
+/// points of its curve, with the option `branches` of hbvib_mode_options.
 ///
 /// capacity         numbers that fit into each array.
 /// omega            receives their angular frequencies, or NULL.

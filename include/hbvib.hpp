@@ -412,6 +412,8 @@ using Energy = Filled<hbvib_energy, hbvib_energy_init>;
 using ContactSummary = Filled<hbvib_contact_summary, hbvib_contact_summary_init>;
 using ModePoint = Filled<hbvib_mode_point, hbvib_mode_point_init>;
 using ModeInfo = Filled<hbvib_mode_info, hbvib_mode_info_init>;
+using Descent = Filled<hbvib_descent, hbvib_descent_init>;
+using Searched = Filled<hbvib_searched, hbvib_searched_init>;
 using TimeInfo = Filled<hbvib_time_info, hbvib_time_info_init>;
 using VerifyOptions = Filled<hbvib_verify_options, hbvib_verify_options_init>;
 using VerificationInfo = Filled<hbvib_verification, hbvib_verification_init>;
@@ -1220,6 +1222,24 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
       out.push_back({omega[i], amplitude[i], static_cast<hbvib_bifurcation>(kind[i]), point[i], before[i], after[i]});
     return out;
   }
+  /// The branches that branch off from this one, and detached curves beside it, as far as the option branches sought them. Each keeps
+  /// this branch alive.
+  std::vector<Branch> children() const {
+    std::vector<Branch> out;
+    const Index count = use(hbvib_branch_children);
+    for (Index number = 0; number < count; number++) {
+      // The library frees a child with its parent.
+      const auto keep = [parent = core_](Core* core) { core->handle = nullptr, delete core; };
+      Branch child(std::shared_ptr<Core>(new Core, keep));
+      use(hbvib_branch_child, number, &child.core_->handle);
+      out.push_back(std::move(child));
+    }
+    return out;
+  }
+  /// Where a child comes from.
+  Descent descent() const { return filled<Descent>(hbvib_branch_descent); }
+  /// The solutions that were sought beside it; that list is never complete.
+  Searched searched() const { return filled<Searched>(hbvib_branch_searched); }
   /// Minima and maxima of the amplitude over the parameter of a parameter response.
   std::vector<Optimum> optima() const {
     Index count = 0;

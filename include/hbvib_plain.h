@@ -589,6 +589,7 @@ struct hbvib_descent {
   int64_t mode;
   double born_at_force;
   double merges_at_force;
+  int64_t internal_resonance;
 };
 struct hbvib_searched {
   uint32_t struct_size;
@@ -603,6 +604,11 @@ struct hbvib_searched {
   double amplitude_min;
   double amplitude_max;
   int64_t starts;
+  int64_t force_curves;
+  int64_t incomplete_force_curves;
+  int64_t crossings;
+  int64_t deflations;
+  int64_t deflated;
 };
 struct hbvib_view {
   uint32_t struct_size;
@@ -683,6 +689,9 @@ struct hbvib_mode_options {
   int64_t guess_len;
   double guess_omega;
   double guess_damping;
+  int32_t branches;
+  int32_t branch_depth;
+  int64_t most_branches;
 };
 struct hbvib_mode_point {
   uint32_t struct_size;

@@ -1056,6 +1056,7 @@ static const Field descent_fields[] = {
   {"mode", INT64, offsetof(hbvib_descent, mode), 1, NULL},
   {"born_at_force", DOUBLE, offsetof(hbvib_descent, born_at_force), 1, NULL},
   {"merges_at_force", DOUBLE, offsetof(hbvib_descent, merges_at_force), 1, NULL},
+  {"internal_resonance", INT64, offsetof(hbvib_descent, internal_resonance), 1, NULL},
 };
 static hbvib_status descent_fill(void *s) { return hbvib_descent_init(s, sizeof(hbvib_descent)); }
 static const Struct DESCENT_STRUCT = {"descent", sizeof(hbvib_descent), descent_fields, sizeof descent_fields / sizeof *descent_fields, descent_fill};
@@ -1071,6 +1072,11 @@ static const Field searched_fields[] = {
   {"amplitude_min", DOUBLE, offsetof(hbvib_searched, amplitude_min), 1, NULL},
   {"amplitude_max", DOUBLE, offsetof(hbvib_searched, amplitude_max), 1, NULL},
   {"starts", INT64, offsetof(hbvib_searched, starts), 1, NULL},
+  {"force_curves", INT64, offsetof(hbvib_searched, force_curves), 1, NULL},
+  {"incomplete_force_curves", INT64, offsetof(hbvib_searched, incomplete_force_curves), 1, NULL},
+  {"crossings", INT64, offsetof(hbvib_searched, crossings), 1, NULL},
+  {"deflations", INT64, offsetof(hbvib_searched, deflations), 1, NULL},
+  {"deflated", INT64, offsetof(hbvib_searched, deflated), 1, NULL},
 };
 static hbvib_status searched_fill(void *s) { return hbvib_searched_init(s, sizeof(hbvib_searched)); }
 static const Struct SEARCHED_STRUCT = {"searched", sizeof(hbvib_searched), searched_fields, sizeof searched_fields / sizeof *searched_fields, searched_fill};
@@ -1147,6 +1153,9 @@ static const Field mode_options_fields[] = {
   {"guess_len", INT64, offsetof(hbvib_mode_options, guess_len), 1, NULL},
   {"guess_omega", DOUBLE, offsetof(hbvib_mode_options, guess_omega), 1, NULL},
   {"guess_damping", DOUBLE, offsetof(hbvib_mode_options, guess_damping), 1, NULL},
+  {"branches", INT32, offsetof(hbvib_mode_options, branches), 1, NULL},
+  {"branch_depth", INT32, offsetof(hbvib_mode_options, branch_depth), 1, NULL},
+  {"most_branches", INT64, offsetof(hbvib_mode_options, most_branches), 1, NULL},
 };
 static hbvib_status mode_options_fill(void *s) { return hbvib_mode_options_init(s, sizeof(hbvib_mode_options)); }
 static const Struct MODE_OPTIONS_STRUCT = {"mode_options", sizeof(hbvib_mode_options), mode_options_fields, sizeof mode_options_fields / sizeof *mode_options_fields, mode_options_fill};

@@ -80,8 +80,8 @@ class _Analyses(_Matrices):
                   amplitude and peaks of the branch, and a tolerance holds for each.
         together  the tolerance holds for all responses in one norm, instead of for each.
         branches  1: seek branches of the double period, of broken symmetry and at simple branch points, 2: detached curves,
-                  too, 3: subharmonic curves, too, with stability along all of them: Branch.children. branch_depth: most
-                  generations, 0: 3. most_branches: 0: 32.
+                  too, 3: those over the force and subharmonic curves, too, 4: those that deflation finds, too, with stability
+                  along all of them: Branch.children. branch_depth: most generations, 0: 3. most_branches: 0: 32.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points. True
                   shows a bar of tqdm, or a line on stderr where that is not installed.
         log       log(LogLevel, text), lines up to log_level.
@@ -115,7 +115,7 @@ class _Analyses(_Matrices):
                        shape: Optional[ArrayLike] = None, damping_form: DampingForms = DampingForm.MASS,
                        diameter: Optional[int] = None, mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1,
                        reference_dof: int = -1, guess: Optional[ArrayLike] = None, guess_omega: float = 0,
-                       guess_damping: float = 0,
+                       guess_damping: float = 0, branches: int = 0, branch_depth: int = 0, most_branches: int = 0,
                        progress: Union[bool, Callable[[Progress], Any], None] = None,
                        log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: LogLevels = LogLevel.INFO,
                        cancel: Optional[CancelFlag] = None,
@@ -127,6 +127,8 @@ class _Analyses(_Matrices):
         mode_index, near_omega, shape   the linear mode to start from: by number, frequency or likeness (ndof complex).
         guess, guess_omega, guess_damping   a motion near the first point with its frequency and damping ratio, such as a
                           point of another mode: branch.harmonics(p), branch.omega[p], branch.damping_ratio[p].
+        branches          1: seek the curves of its branch points (Branch.bifurcations) and the one beyond a tongue of internal
+                          resonance: Branch.children. branch_depth: most generations, 0: 3. most_branches: 0: 32.
         damping_form      "mass" or "stiffness".     reference_dof   -1: chosen by the library.
         diameter          signed nodal diameter of the wave, modulo the sectors; None: that of the engine order.
         progress, log, log_level, cancel, phase   as in forced_response.
@@ -146,8 +148,8 @@ class _Analyses(_Matrices):
         options = _new("hbvib_mode_options", log10_start=start, log10_stop=stop, diameter=_diameter(diameter),
                        damping_form=_member(DampingForm, damping_form), mode_index=mode_index, near_omega=near_omega,
                        amplitude_contact=amplitude_contact, reference_dof=reference_dof, **_counted_array("at", at),
-                       guess_omega=guess_omega, guess_damping=guess_damping,
-                       **_counted_array("guess", guess, np.complex128, [None, self.ndof]),
+                       guess_omega=guess_omega, guess_damping=guess_damping, branches=branches, branch_depth=branch_depth,
+                       most_branches=most_branches, **_counted_array("guess", guess, np.complex128, [None, self.ndof]),
                        **_counted_array("shape", shape, np.complex128, [self.ndof]))
         return self._solve("hbvib_nonlinear_mode", solver, options, at, (progress, log, log_level, cancel, phase))
 

@@ -214,8 +214,8 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
 
     def plot(self, ax: Any = None, *, hertz: bool = False, **line: Any) -> Any:
         """Draws the branch with matplotlib: amplitude over angular frequency, peaks as dots; of a nonlinear mode
-        frequency and damping ratio over the modal amplitude. Returns the axes, of a mode two. ImportError without
-        matplotlib.
+        frequency and damping ratio over the modal amplitude. Children are drawn in colours of their own, over the
+        frequency of the forces. Returns the axes, of a mode two. ImportError without matplotlib.
 
         ax      axes to draw into, of a mode a pair; None: new ones.
         hertz   True: frequencies omega / (2 pi).    line   options of ax.plot, such as label or color.

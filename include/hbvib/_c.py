@@ -961,9 +961,10 @@ response: uint32 struct_size; int32 measure; int64 harmonic n; pointer dofs weig
 forced_options: uint32 struct_size; int32 together; double omega_start omega_stop; pointer at; int64 at_len; pointer
     guess; int64 guess_len; pointer responses; int64 responses_len; int32 branches branch_depth; int64 most_branches
 descent: uint32 struct_size; int32 kind; int64 bifurcation periods; double merges_at; int64 mode; double born_at_force
-    merges_at_force
+    merges_at_force; int64 internal_resonance
 searched: uint32 struct_size; int32 reserved; int64 bifurcations lost left modes incomplete_modes resonances
-    lost_resonances; double amplitude_min amplitude_max; int64 starts
+    lost_resonances; double amplitude_min amplitude_max; int64 starts force_curves incomplete_force_curves crossings
+    deflations deflated
 view: uint32 struct_size; int32 scalar rank reserved; pointer data; int64 shape[3] stride[3]
 reduction: uint32 struct_size; int32 reserved; int64 sectors degrees_of_freedom coordinates contacts never_slipping
     inert harmonics_asked harmonics_carried unknowns response_dof; int32 mean_carried even_removed; int64
@@ -975,7 +976,7 @@ contact_summary: uint32 struct_size; int32 reserved; double work slip_share open
     load_min load_max; int64 directions; double all_min[3] all_max[3]
 mode_options: uint32 struct_size; int32 damping_form; double log10_start log10_stop; int64 diameter mode_index; double
     near_omega; pointer shape; int64 shape_len amplitude_contact; pointer at; int64 at_len reference_dof; pointer guess;
-    int64 guess_len; double guess_omega guess_damping
+    int64 guess_len; double guess_omega guess_damping; int32 branches branch_depth; int64 most_branches
 mode_point: uint32 struct_size; int32 reserved; double log10_amplitude omega damping_ratio modal_amplitude energy
     fundamental_share friction_loss structural_loss energy_damping_ratio assurance
 mode_info: uint32 struct_size; int32 multiple; int64 mode_index multiplicity reference_dof engine_order

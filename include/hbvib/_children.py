@@ -30,8 +30,8 @@ class _BranchChildren(_Owner):
 
     @property
     def children(self) -> list[Branch]:
-        """The branches that branch off from this one, and the detached curves beside it, as far as forced_response(...,
-        branches=1 or 2) sought them. Each is a branch with children of its own and keeps its parent. Those of the double
+        """The branches that branch off from this one, and the detached curves beside it, as far as the option branches of
+        forced_response or nonlinear_mode sought them. Each is a branch with children of its own and keeps its parent. Those of the double
         period have half the frequencies, and Model.longer_period(2) is their model.
 
         >>> import hbvib
@@ -77,7 +77,7 @@ class _BranchChildren(_Owner):
 
     @property
     def searched(self) -> Searched:
-        """The solutions that were sought beside a forced response. That list is never complete.
+        """The solutions that were sought beside a branch. That list is never complete.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)

@@ -47,9 +47,23 @@ def peaks_of(branch: Branch) -> Points:
         return Points(np.empty(0), np.empty(0), np.empty(0, np.int64))
 
 
-def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
-    """See Branch.plot."""
+def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any], periods: int = 1) -> Any:
+    """See Branch.plot. Frequencies are those of the forces, of which one period of the branch has several."""
+    ax = curve(branch, ax, hertz, line, periods)
+    try:
+        children = branch.children
+    except UnsupportedError:  # a table that has fields alone
+        return ax
+    without_label = {name: value for name, value in line.items() if name != "label"}
+    for child in children:
+        plot(child, ax, hertz, without_label, periods * child.descent.periods)
+    return ax
+
+
+def curve(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any], periods: int) -> Any:
+    """The branch without its children."""
     unit, name = frequency(hertz, branch.units)
+    unit /= periods
     if branch.is_mode:
         above, below = axes(2) if ax is None else ax
         largest = [branch.mode_point(int(point)) for point in peaks_of(branch).point]

@@ -440,9 +440,11 @@ class Descent(NamedTuple):
     periods   Periods of the parent in one of its own; its frequencies are those of the parent over that.
     merges_at   Frequency, its own, at which it comes back to its parent; 0 where it does not.
     mode   Number of the linear mode along whose nonlinear mode a detached curve was found; -1 otherwise.
-    born_at_force   Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it; 0 where
-        it is not known.
+    born_at_force   Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it, or as a
+        curve over the force turns; 0 where it is not known.
     merges_at_force   The same at which it merges with the curve beneath.
+    internal_resonance   Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies; 0
+        otherwise.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -459,10 +461,11 @@ class Descent(NamedTuple):
     mode: int
     born_at_force: float
     merges_at_force: float
+    internal_resonance: int
 
 
 class Searched(NamedTuple):
-    """Solutions beside a response that were sought.
+    """Solutions beside a branch that were sought.
 
     bifurcations   Bifurcations of all generations from which a branch was sought.
     lost   Those from which none was found.
@@ -474,6 +477,11 @@ class Searched(NamedTuple):
     amplitude_min   Smallest modal amplitude to which modes were followed; 0 without modes.
     amplitude_max   Largest one.
     starts   Nets of starts of subharmonic curves.
+    force_curves   Curves of peaks and folds that were followed over the force, between a tenth and ten times it.
+    incomplete_force_curves   Those that ended early.
+    crossings   Solutions at the force itself on these curves, beside those that they begin at.
+    deflations   Points of the response beside which deflation sought solutions.
+    deflated   Curves that it found.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -492,6 +500,11 @@ class Searched(NamedTuple):
     amplitude_min: float
     amplitude_max: float
     starts: int
+    force_curves: int
+    incomplete_force_curves: int
+    crossings: int
+    deflations: int
+    deflated: int
 
 
 class Kick(NamedTuple):

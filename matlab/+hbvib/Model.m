@@ -210,10 +210,11 @@ classdef Model < handle
     function branch = nonlinear_mode(self, log10_amplitude, varargin)
     %NONLINEAR_MODE  Follows a nonlinear mode (EPMC) over [start stop] of log10 of the modal amplitude.
     %   options  mode_index (1), near_omega, shape, diameter, damping_form: 'mass' or 'stiffness', at, reference_dof,
-    %            amplitude_contact, guess, guess_omega, guess_damping, progress, and those of the solver.
+    %            amplitude_contact, guess, guess_omega, guess_damping, branches, branch_depth, most_branches, progress, and
+    %            those of the solver.
       own = struct('at', [], 'mode_index', 1, 'near_omega', [], 'shape', [], 'diameter', [], 'damping_form', [], ...
                    'reference_dof', [], 'amplitude_contact', [], 'guess', [], 'guess_omega', [], 'guess_damping', [], ...
-                   'progress', []);
+                   'branches', [], 'branch_depth', [], 'most_branches', [], 'progress', []);
       [own, rest] = hbvib.internal.options('nonlinear_mode', varargin, own, true);
       hooks = struct('progress', hbvib.internal.guarded(own.progress));
       own = rmfield(own, 'progress');

@@ -44,6 +44,7 @@ impl BranchTracer<'_> {
         };
         let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
         self.find_bifurcations(analysis, a, b, turn)?;
+        self.find_branch_point(analysis, a, b)?;
         if let Some((fold, resolution)) = &fold {
             self.find_requested(analysis, a, (fold, *resolution), false)?;
             self.find_requested(analysis, (fold, *resolution), b, last)

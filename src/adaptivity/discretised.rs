@@ -77,6 +77,11 @@ pub(crate) trait Discretised {
         Ok(None)
     }
 
+    /// Whether branch points are sought by the sign of the equations, not by stability.
+    fn seeks_branch_points(&self) -> bool {
+        false
+    }
+
     /// Further responses whose peaks are sought.
     fn further_responses(&self) -> core::ops::Range<usize> {
         0..0

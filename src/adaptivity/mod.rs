@@ -12,6 +12,7 @@
 //! [`branch_recorder`] stores points.
 
 mod bifurcations;
+mod branch_points;
 pub(crate) mod branch_recorder;
 mod branch_special_points;
 pub(crate) mod branch_tracer;

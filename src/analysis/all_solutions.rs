@@ -39,13 +39,35 @@ pub(super) fn forced_response(
         base,
         searched: Searched::default(),
     };
-    tree.grow(&mut branch, &Place::root(), depth, hooks)?;
-    if range.branches > 1 {
-        tree.add_detached(&mut branch, depth, hooks)?;
+    match seek(&mut tree, &mut branch, depth, hooks) {
+        // Branches that were found before a stop are kept.
+        Err(e) if e.status == Status::StoppedByCaller => branch.set_ending(e.status, None, (false, false)),
+        sought => sought?,
     }
-    if range.branches > 2 {
-        tree.add_subharmonics(&mut branch, depth, hooks)?;
+    if branch.was_stopped() {
+        branch.set_ending(Status::StoppedByCaller, None, (false, false));
     }
     branch.set_searched(tree.searched);
     Ok(branch)
+}
+
+/// Adds all branches that the options ask for, until there are as many as may be, or the caller stops the run.
+fn seek(tree: &mut Tree<'_>, branch: &mut Branch, depth: usize, hooks: &mut Hooks<'_>) -> Result<()> {
+    let sought = tree.range.branches;
+    tree.grow(branch, &Place::root(), depth, hooks)?;
+    if sought > 1 && tree.left > 0 {
+        tree.add_detached(branch, depth, hooks)?;
+    }
+    // Where modes tell nothing, peaks and folds over the force do.
+    let told_by_modes = tree.searched.modes > tree.searched.incomplete_modes;
+    if tree.left > 0 && (sought > 2 || (sought > 1 && !told_by_modes)) {
+        tree.add_over_force(branch, depth, hooks)?;
+    }
+    if sought > 2 && tree.left > 0 {
+        tree.add_subharmonics(branch, depth, hooks)?;
+    }
+    if sought > 3 && tree.left > 0 {
+        tree.add_deflated(branch, depth, hooks)?;
+    }
+    Ok(())
 }

@@ -122,6 +122,7 @@ impl Tree<'_> {
                     try_push(&mut taken, other, CONTEXT)?;
                 }
                 if child.status() == Status::StoppedByCaller {
+                    self.left = 0;
                     parent.push_child(child)?;
                     return Ok(());
                 }
@@ -132,14 +133,42 @@ impl Tree<'_> {
                     dropped,
                     above: Some((parent, at)),
                 };
-                self.grow(&mut child, &place, depth.saturating_sub(1), hooks)?;
+                let grown = self.grow(&mut child, &place, depth.saturating_sub(1), hooks);
                 parent.push_child(child)?;
+                grown?;
                 if is_whole {
                     break;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Adds a detached curve, of so many periods of the branch in one of its own, with its children down to `depth`.
+    ///
+    /// # Errors
+    /// As [`Self::grow`]; what was found before is added all the same.
+    pub fn add(
+        &mut self,
+        branch: &mut Branch,
+        mut found: Branch,
+        (periods, depth): (usize, usize),
+        hooks: &mut Hooks<'_>,
+    ) -> Result<()> {
+        let mut grown = Ok(());
+        if found.status() == Status::StoppedByCaller {
+            self.left = 0;
+        } else {
+            let root = Place::root();
+            let place = Place {
+                periods,
+                above: (periods == 1).then_some((&*branch, &root)),
+                dropped: None,
+            };
+            grown = self.grow(&mut found, &place, depth, hooks);
+        }
+        branch.push_child(found)?;
+        grown
     }
 
     /// The bifurcation at which a child ends that came back to its parent at a frequency, and its own frequency.
@@ -210,6 +239,7 @@ impl Tree<'_> {
             periods,
             entry: Cell::default(),
             net: None,
+            deflation: None,
         };
         self.at_period(&model, (&inside, &guess), (periods, parent.response_dof()), hooks)
     }

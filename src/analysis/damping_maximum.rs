@@ -115,7 +115,7 @@ pub(super) fn follow(
     let mut data = ParameterData::default();
     let recorder = CurveRecorder::new(
         Followed::new(&mut tracked, (&levels, level), settings, interrupt),
-        (settings, wanted(solver, range)),
+        (settings, wanted(solver, range, range.start)),
         (&mut found, &mut data),
         interrupt,
     );

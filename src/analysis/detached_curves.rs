@@ -5,11 +5,11 @@
 //! where its curve is followed until it closes or leaves the range. A minimum of F(a) is the force at which a curve is born, the
 //! maximum below it the one at which it merges with the curve beneath.
 
-use crate::analysis::branch_switching::{Found, Place, Tree};
+use crate::analysis::branch_switching::{Found, Tree};
 use crate::analysis::forced_curve::alone;
 use crate::analysis::inside_start::Inside;
 use crate::analysis::nonlinear_mode;
-use crate::analysis::synthesis::{ForceExtremum, ModeMotion, Motions, with_motions};
+use crate::analysis::synthesis::{ForceExtremum, Motions, with_motions};
 use crate::error::{Error, Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
@@ -18,6 +18,7 @@ use crate::model::linear_modes::{ContactState, LinearModes};
 use crate::options::{Content, Flexibility, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
 use crate::results::{Branch, Descent, Recovery};
 use core::cell::Cell;
+use num_complex::Complex64;
 
 const CONTEXT: &str = "the detached curves";
 
@@ -92,7 +93,8 @@ impl Tree<'_> {
         Ok(())
     }
 
-    fn ends(&self) -> (f64, f64) {
+    /// The ends of the range, the lower one first.
+    pub fn ends(&self) -> (f64, f64) {
         let (a, b) = (self.range.omega_start, self.range.omega_stop);
         (a.min(b), a.max(b))
     }
@@ -152,7 +154,7 @@ impl Tree<'_> {
                 continue;
             }
             self.searched.resonances += 1;
-            let mut found = match self.through(branch, resonance, hooks)? {
+            let mut found = match self.through(branch, (resonance.omega, &resonance.harmonics), hooks)? {
                 Found::Curve(found, _) => found,
                 Found::Known => continue,
                 Found::Nothing => {
@@ -168,35 +170,32 @@ impl Tree<'_> {
                 merges_at_force: merges,
                 ..Descent::default()
             });
-            if found.status() != Status::StoppedByCaller {
-                let root = Place::root();
-                let place = Place {
-                    above: Some((branch, &root)),
-                    ..Place::root()
-                };
-                self.grow(&mut found, &place, depth, hooks)?;
-            }
-            branch.push_child(found)?;
+            self.add(branch, found, (1, depth), hooks)?;
         }
         Ok(())
     }
 
-    /// The curve through a motion, unless it is known.
-    fn through(&self, branch: &Branch, motion: &ModeMotion, hooks: &mut Hooks<'_>) -> Result<Found> {
+    /// The curve through a motion at a frequency, unless it is known.
+    pub fn through(
+        &self,
+        branch: &Branch,
+        (omega, guess): (f64, &[Complex64]),
+        hooks: &mut Hooks<'_>,
+    ) -> Result<Found> {
         let mut known = Vec::new();
         try_push(&mut known, branch, CONTEXT)?;
         for sibling in branch.children().iter().filter(|sibling| sibling.periods() == 1) {
             try_push(&mut known, sibling, CONTEXT)?;
         }
-        let guess = &motion.harmonics;
         let inside = Inside {
-            omega: motion.omega,
+            omega,
             content: Content::of(guess, &self.model.felt_by_contacts()?).0,
             leaves: None,
             known: &known,
             periods: 1,
             entry: Cell::default(),
             net: None,
+            deflation: None,
         };
         let found = self.at_period(self.model, (&inside, guess), (1, branch.response_dof()), hooks)?;
         let Found::Curve(curve, dropped) = found else {
@@ -212,7 +211,7 @@ impl Tree<'_> {
     }
 
     /// Whether two curves leave the range in one motion: then they are one.
-    fn shares_an_end(&self, a: &Branch, b: &Branch, interrupt: &Interrupt<'_>) -> Result<bool> {
+    pub fn shares_an_end(&self, a: &Branch, b: &Branch, interrupt: &Interrupt<'_>) -> Result<bool> {
         let (low, high) = self.ends();
         let ends = |branch: &Branch| [0, branch.points().saturating_sub(1)];
         let bound = ONE_END.max(2.0 * self.solver.tolerance);
@@ -332,7 +331,7 @@ fn forces(resonance: f64, extrema: &[ForceExtremum]) -> (f64, f64) {
 }
 
 /// Goes on after a failure of the search, which costs no branch that is known.
-fn tolerate(e: Error, hooks: &mut Hooks<'_>) -> Result<()> {
+pub(super) fn tolerate(e: Error, hooks: &mut Hooks<'_>) -> Result<()> {
     match e.status {
         Status::StoppedByCaller | Status::OutOfMemory | Status::Callback => Err(e),
         _ => {

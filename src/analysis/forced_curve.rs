@@ -235,7 +235,10 @@ fn follow(
         Some(dof) => dof,
         None => forced_dof_with_largest_motion(model, &resolution.condensed, lower, interrupt)?,
     };
-    let settings = settings_of(solver, sweep, detail);
+    let mut settings = settings_of(solver, sweep, detail);
+    if inside.is_some() || range.branches > 0 {
+        settings.steps = settings.steps.crossing_branches();
+    }
     let coarse = if levels.is_automatic() || range.guess.is_some() {
         None
     } else {

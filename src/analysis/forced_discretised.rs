@@ -34,6 +34,9 @@ use num_complex::Complex64;
 /// Degrees of freedom up to which the points of a linear response, which are few, are factorised where small structures are.
 const FACTORISE_UP_TO: usize = 1000;
 
+/// Distance of two solutions that are one, over their size.
+const KNOWN: f64 = 1e-6;
+
 /// The equations of a linear response: those with the stuck structure as their reference, where the others have another
 /// one, and a damping that bounds the response of the stuck structure.
 struct LinearResponse<'a> {
@@ -171,8 +174,14 @@ impl<'a> ForcedDiscretised<'a> {
         self.guess_used = used;
     }
 
-    /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start.
-    pub fn null_direction(&mut self, at: &Point, start: &[f64], interrupt: &Interrupt<'_>) -> Result<Option<Vec<f64>>> {
+    /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start, and the size of its
+    /// eigenvalue.
+    pub fn null_direction(
+        &mut self,
+        at: &Point,
+        start: &[f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<(Vec<f64>, f64)>> {
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let metric = Metric::along(norm(at.unknowns()), &self.settings);
         self.stale = true;
@@ -199,6 +208,33 @@ impl<'a> ForcedDiscretised<'a> {
         };
         v[n] = near.parameter();
         Ok(Some(Point::new(v, corrected, 0.0)))
+    }
+
+    /// Solves at the parameter of a start, away from known unknowns; `None` where deflated steps do not converge, or lead to one of
+    /// them all the same.
+    pub fn solve_beside(
+        &mut self,
+        near: &Point,
+        known: &[Vec<f64>],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let mut beside = near.try_clone()?;
+        let metric = Metric::along(norm(near.unknowns()), &self.settings);
+        self.stale = true;
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
+        if !corrector.leave_known(problem, &mut beside.v, known, metric, interrupt)? {
+            return Ok(None);
+        }
+        let Some(found) = self.solve_at(&beside, interrupt)? else {
+            return Ok(None);
+        };
+        let u = found.unknowns();
+        let is_one = |known: &Vec<f64>| {
+            let gap = u.iter().zip(known).fold(0.0_f64, |gap, (u, k)| gap.hypot(u - k));
+            gap <= KNOWN * norm(known)
+        };
+        let is_known = known.iter().any(is_one);
+        Ok((!is_known).then_some(found))
     }
 
     /// How the flexibility is made along the branch, and why so.

@@ -7,12 +7,13 @@
 
 use crate::adaptivity::discretised::Discretised;
 use crate::adaptivity::inner_ends::Dropped;
+use crate::analysis::deflation::Deflation;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::analysis::known_curve::lies_on;
 use crate::analysis::phase_direction::phase_direction;
 use crate::analysis::start_net::Net;
 use crate::continuation::{Metric, Point, Settings};
-use crate::error::{Result, fail, try_copy, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
@@ -20,6 +21,7 @@ use crate::options::Content;
 use crate::results::Branch;
 use core::cell::Cell;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 const CONTEXT: &str = "the start of a branch";
 
@@ -28,6 +30,9 @@ const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion in harmonics that it does not have.
 const ABSENT: f64 = 1e-8;
+
+/// Eigenvalue over the smallest one among the harmonics that a motion does not have, below which another symmetry breaks.
+const OTHER_SYMMETRY: f64 = 0.1;
 
 /// Entry of a curve inside its range, near the guess of its options.
 pub(super) struct Inside<'k> {
@@ -45,6 +50,8 @@ pub(super) struct Inside<'k> {
     pub entry: Cell<Entry>,
     /// Motions that are added to the guess, with amplitudes and phases of a net.
     pub net: Option<&'k Net<'k>>,
+    /// Solutions beside the guess are sought, which is a known one.
+    pub deflation: Option<Deflation>,
 }
 
 /// The first point, oriented along the curve, and the harmonics that the branch does not have which it leaves.
@@ -119,8 +126,13 @@ impl Inside<'_> {
             let point = net.first_solution(response, &start, (self.known, self.periods), interrupt)?;
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
+        if self.deflation.is_some() {
+            let point = Deflation::first_solution(response, &start, (self.known, self.periods), interrupt)?;
+            return Ok(point.map(|point| Entered { point, dropped: None }));
+        }
         let level = response.resolution();
-        let set = response.levels().at(level)?.condensed.set();
+        let to = Arc::clone(&response.levels().at(level)?.condensed);
+        let set = to.set();
         let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
         let is_inside = |point: &Point| (low..=high).contains(&point.parameter());
         let Some(sense) = self.leaves else {
@@ -132,9 +144,9 @@ impl Inside<'_> {
             }
             return Ok(point.filter(is_inside).map(|point| Entered { point, dropped: None }));
         };
-        let dropped = dropped(set, guess);
-        let first = start_vector(set, n, dropped)?;
-        let Some(null) = response.null_direction(&start, &first, interrupt)? else {
+        let symmetric = dropped(set, guess, ABSENT);
+        let seek = |first: &[f64]| response.null_direction(&start, first, interrupt);
+        let Some((null, dropped)) = null_vector(set, (n, 0), symmetric, seek)? else {
             return Ok(None);
         };
         start.tangent = null;
@@ -171,8 +183,41 @@ pub(super) fn in_sense_of(point: &Point, settings: Settings) -> Settings {
     Settings { start, end, ..settings }
 }
 
+/// The null vector of a motion that may have a symmetry, and the harmonics that the motion does not have where the vector lies in
+/// these alone; `None` where no iteration converges. Another symmetry may break, of motions without these harmonics: the smaller
+/// eigenvalue decides. There are `n` unknowns, the last `others` of which are no motions.
+pub(super) fn null_vector(
+    set: &HarmonicSet,
+    (n, others): (usize, usize),
+    symmetric: Option<Dropped>,
+    mut seek: impl FnMut(&[f64]) -> Result<Option<(Vec<f64>, f64)>>,
+) -> Result<Option<(Vec<f64>, Option<Dropped>)>> {
+    let mut among = |dropped| -> Result<Option<(Vec<f64>, f64)>> {
+        let mut first = start_vector(set, n - others, dropped)?;
+        for _ in 0..others {
+            try_push(&mut first, 0.0, CONTEXT)?;
+        }
+        seek(&first)
+    };
+    let broken = match symmetric {
+        Some(_) => among(symmetric)?,
+        None => None,
+    };
+    let least = match (broken, among(None)?) {
+        (Some(broken), Some(any)) if any.1 < OTHER_SYMMETRY * broken.1 => any,
+        (Some(broken), _) => broken,
+        (None, Some(any)) => any,
+        (None, None) => return Ok(None),
+    };
+    let (null, _) = least;
+    let motion = &null[..n - others];
+    let is_broken = |dropped: &Dropped| dropped.dot(set, motion, motion) > 0.5 * norm(&null).powi(2);
+    let dropped = symmetric.filter(is_broken);
+    Ok(Some((null, dropped)))
+}
+
 /// The harmonics that a motion of this set does not have: the odd or the even multiples of its lowest one.
-fn dropped(set: &HarmonicSet, motion: &[f64]) -> Option<Dropped> {
+pub(super) fn dropped(set: &HarmonicSet, motion: &[f64], absent: f64) -> Option<Dropped> {
     let all = norm(motion);
     [1, 0].into_iter().find_map(|remainder| {
         let dropped = Dropped {
@@ -181,7 +226,7 @@ fn dropped(set: &HarmonicSet, motion: &[f64]) -> Option<Dropped> {
         };
         let has_some = set.numbers().iter().any(|h| dropped.has(*h));
         let part = dropped.dot(set, motion, motion).sqrt();
-        (has_some && part <= ABSENT * all).then_some(dropped)
+        (has_some && part <= absent * all).then_some(dropped)
     })
 }
 

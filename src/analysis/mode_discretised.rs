@@ -10,11 +10,12 @@ use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::analysis::mode_onset::OnsetSearch;
 use crate::condense::Reduction;
 use crate::continuation::resolve::resolve;
-use crate::continuation::{Point, Settings};
+use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, boxed, try_copy};
 use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
+use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
@@ -22,6 +23,10 @@ use crate::problem::epmc::Epmc;
 use crate::results::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
 use num_complex::Complex64;
+
+/// Share of the fundamental in the energy below which a motion is nearly that of another mode, with a part of the period. Its equations
+/// for the fundamental are then near rounding, and have no branch point that is told.
+pub(super) const VANISHING_FUNDAMENTAL: f64 = 0.1;
 
 /// A nonlinear mode in the form that the tracer follows.
 pub(super) struct ModeDiscretised<'a> {
@@ -42,6 +47,8 @@ pub(super) struct ModeDiscretised<'a> {
     before: Vec<Complex64>,
     guess_used: Option<bool>,
     onsets: OnsetSearch,
+    /// Whether branch points are located.
+    seeks_branches: bool,
 }
 
 /// Quantities of a point besides its motion.
@@ -78,6 +85,7 @@ impl<'a> ModeDiscretised<'a> {
             damping: start.linear.damping.abs(),
             before: Vec::new(),
             guess_used: None,
+            seeks_branches: false,
         })
     }
 
@@ -94,6 +102,24 @@ impl<'a> ModeDiscretised<'a> {
     /// Seeks the first point of this resolution near given unknowns.
     pub fn set_guess(&mut self, guess: Vec<f64>) {
         self.resolutions.current.problem.set_guess(guess);
+    }
+
+    /// Locates the branch points of the curve.
+    pub fn seek_branch_points(&mut self) {
+        self.seeks_branches = true;
+    }
+
+    /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start, and the size of its
+    /// eigenvalue.
+    pub fn null_direction(
+        &mut self,
+        at: &Point,
+        start: &[f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<(Vec<f64>, f64)>> {
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
+        let metric = Metric::along(norm(at.unknowns()), &self.settings);
+        corrector.null_direction(problem, &at.v, start, metric, interrupt)
     }
 
     /// Notes whether the first point was found from the given guess.
@@ -179,21 +205,21 @@ impl<'a> ModeDiscretised<'a> {
         estimator.at(&solved, state).map(Some)
     }
 
-    /// Quantities of the point evaluated last. Its errors are unknown at a fold, where no solution is isolated.
-    fn measure(&mut self, point: &Point, is_fold: bool) -> Result<Numbers> {
+    /// Quantities of the point evaluated last. Its errors are unknown where no solution is isolated, as at a fold.
+    fn measure(&mut self, point: &Point, is_singular: bool) -> Result<Numbers> {
         let mode = self.resolutions.current.measure(point, self.start.linear, &self.before);
         let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
         let equations = &mut *self.resolutions.current;
         let amplitude = equations.response[equations.resolution.condensed.set().fundamental()];
         let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
         let errors = match self.estimated.take() {
-            _ if is_fold => (f64::NAN, f64::NAN),
+            _ if is_singular => (f64::NAN, f64::NAN),
             Some(errors) => errors,
             None => self
                 .estimate_error(point)?
                 .map_or((f64::NAN, f64::NAN), |e| (e.frequency, e.damping)),
         };
-        if !is_fold {
+        if !is_singular {
             let error = self.bounded_error(errors, mode.damping_ratio);
             self.recorder.note_error(error);
         }
@@ -293,6 +319,12 @@ impl Discretised for ModeDiscretised<'_> {
         Ok(true)
     }
 
+    fn seeks_branch_points(&self) -> bool {
+        let branch = self.recorder.branch();
+        let last = branch.points().checked_sub(1).and_then(|last| branch.mode_at(last));
+        self.seeks_branches && last.is_some_and(|last| last.fundamental_share >= VANISHING_FUNDAMENTAL)
+    }
+
     /// The damping ratio is observed; where it is zero the motion is one of the model alone.
     fn level_of_limit_cycles(&self) -> Option<f64> {
         let linear = self.start.linear;
@@ -327,7 +359,11 @@ impl Recorder for ModeDiscretised<'_> {
     }
 
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
-        let numbers = self.measure(point, kind.is_fold())?;
+        let is_branch_point = matches!(kind, SpecialKind::Bifurcation(..));
+        let numbers = self.measure(point, kind.is_fold() || is_branch_point)?;
+        if let Some(data) = self.recorder.branch_mut().mode_data_mut().filter(|_| is_branch_point) {
+            data.push_branch_point(&point.v, &point.tangent)?;
+        }
         let kind = match kind {
             SpecialKind::LimitCycle { .. } => {
                 let along = point.tangent.last().copied().unwrap_or(f64::NAN);

@@ -43,9 +43,11 @@ struct Located {
     error: f64,
 }
 
-/// Values to store, and the most points.
+/// The first value, values to store, and the most points.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted<'a> {
+    /// Value of the parameter at the first point, within the range.
+    pub begin: f64,
     pub at: &'a [f64],
     pub max_points: usize,
     /// Tolerance that chooses the harmonics; 0: none.
@@ -105,7 +107,11 @@ impl<'a> CurveRecorder<'a> {
 
     fn trace(&mut self, hooks: &mut Hooks<'_>) -> Result<Status> {
         let (settings, interrupt) = (self.settings, self.interrupt);
-        let first = initial_point::solve(self.followed.problem(), &settings, interrupt)?.point;
+        let begin = Settings {
+            start: self.wanted.begin,
+            ..settings
+        };
+        let first = initial_point::solve(self.followed.problem(), &begin, interrupt)?.point;
         let first = self
             .controller
             .refine(&mut self.followed, first, true, interrupt)?

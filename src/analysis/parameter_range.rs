@@ -91,9 +91,10 @@ pub(super) fn settings(solver: &SolverOptions, range: &ParameterRange<'_>) -> Se
     }
 }
 
-/// Points to record beside the curve.
-pub(super) fn wanted<'a>(solver: &SolverOptions, range: &ParameterRange<'a>) -> Wanted<'a> {
+/// The first value, and points to record beside the curve.
+pub(super) fn wanted<'a>(solver: &SolverOptions, range: &ParameterRange<'a>, begin: f64) -> Wanted<'a> {
     Wanted {
+        begin,
         at: range.at,
         max_points: solver.max_points,
         tolerance: solver.tolerance,

@@ -172,6 +172,28 @@ fn follow(
             (1.0 + PARAMETER_RESPONSE_NEAR) * omega
         );
     };
+    let from = (&branch, point, kind);
+    follow_from(
+        (model, first, parameter),
+        solver,
+        (range, range.start),
+        from,
+        data,
+        hooks,
+        interrupt,
+    )
+}
+
+/// Follows a point of a branch of the model with a first value of the parameter, which may lie within the range.
+pub(super) fn follow_from(
+    (model, first, parameter): (&Model, &Model, Parameter<'_>),
+    solver: &SolverOptions,
+    (range, begin): (&ParameterRange<'_>, f64),
+    (branch, point, kind): (&Branch, usize, ResponsePoint),
+    data: &mut ParameterData,
+    hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Branch> {
     let Some(omega) = branch.omega_at(point) else {
         return fail!(Internal, "a stored point has no frequency");
     };
@@ -183,8 +205,8 @@ fn follow(
     let own = branch.condensed_at(point);
     let level = levels.level_of(own.set());
     let resolution = levels.at(level)?;
-    let mut begin = try_vec(resolution.condensed.unknowns(), 0.0, "the parameter response")?;
-    resolution.condensed.set().transfer(own.set(), &motion, 1.0, &mut begin);
+    let mut start = try_vec(resolution.condensed.unknowns(), 0.0, "the parameter response")?;
+    resolution.condensed.set().transfer(own.set(), &motion, 1.0, &mut start);
     let options = SolverOptions {
         harmonics: levels.highest(level),
         samples: branch.samples_at(point).max(resolution.samples),
@@ -194,7 +216,7 @@ fn follow(
         (model, parameter),
         (&options, branch.response_dof(), range.response),
         (range.start, range.stop),
-        (&begin, own.length(), omega),
+        (&start, own.length(), omega),
         kind,
         interrupt,
     )?;
@@ -204,7 +226,7 @@ fn follow(
     let mut found = Branch::new(resolution, reduction, highest, branch.response_dof())?;
     let recorder = CurveRecorder::new(
         Followed::new(&mut tracked, (&levels, level), settings, interrupt),
-        (settings, wanted(solver, range)),
+        (settings, wanted(solver, range, begin)),
         (&mut found, data),
         interrupt,
     );

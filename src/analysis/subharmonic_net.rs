@@ -5,7 +5,7 @@
 //! amplitudes and phases of a net; each is a start of Newton's method at that frequency. A solution with other harmonics than
 //! multiples of the order is a point of a subharmonic curve.
 
-use crate::analysis::branch_switching::{Found, Place, Tree};
+use crate::analysis::branch_switching::{Found, Tree};
 use crate::analysis::inside_start::Inside;
 use crate::analysis::start_net::Net;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -88,6 +88,7 @@ impl Tree<'_> {
                         periods: order,
                         entry: Cell::default(),
                         net: Some(&net),
+                        deflation: None,
                     };
                     self.searched.starts += 1;
                     let way = (order, branch.response_dof());
@@ -102,12 +103,7 @@ impl Tree<'_> {
                         mode: Some(number),
                         ..Descent::default()
                     });
-                    let place = Place {
-                        periods: order,
-                        ..Place::root()
-                    };
-                    self.grow(&mut found, &place, depth, hooks)?;
-                    branch.push_child(found)?;
+                    self.add(branch, found, (order, depth), hooks)?;
                 }
             }
         }

@@ -15,7 +15,7 @@ mod mode_motions;
 mod oscillator;
 mod resonance;
 
-pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, ModeMotion, Motions};
+pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, Motions};
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 pub(super) use crate::analysis::synthesis::oscillator::{Load, State, form};
 pub(super) use crate::analysis::synthesis::resonance::Refinement;

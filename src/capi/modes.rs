@@ -76,6 +76,14 @@ pub struct hbvib_mode_options {
     pub guess_omega: f64,
     /// Damping ratio of the guess; 0 without one.
     pub guess_damping: f64,
+    /// Further curves that are sought, for hbvib_branch_children: 0 (default) none; 1 those of its
+    /// branch points, listed by hbvib_branch_bifurcations, with even harmonics carried along, and
+    /// the one beyond a tongue of internal resonance.
+    pub branches: i32,
+    /// Largest number of generations of these curves, up to 8; 0 (default): 3.
+    pub branch_depth: i32,
+    /// Largest number of these curves; 0 (default): 32.
+    pub most_branches: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_mode_options {
@@ -101,6 +109,9 @@ unsafe impl VersionedStruct for hbvib_mode_options {
             guess_len: 0,
             guess_omega: 0.0,
             guess_damping: 0.0,
+            branches: 0,
+            branch_depth: 0,
+            most_branches: 0,
         }
     }
 }
@@ -198,6 +209,9 @@ pub(super) unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> 
         damping_form,
         reference_dof: optional(o.reference_dof, model.ndof(), "reference_dof", "automatic")?,
         guess: unsafe { guess(o) }?,
+        branches: count(i64::from(o.branches), 3, "branches")?,
+        branch_depth: count(i64::from(o.branch_depth), 3, "branch_depth")?,
+        most_branches: count(o.most_branches, 3, "most_branches")?,
     };
     options.check(model.ndof(), model.contacts().len(), sectors)?;
     Ok(options)

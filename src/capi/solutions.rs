@@ -14,8 +14,8 @@ use crate::error::{Status, fail};
 use crate::model::Model;
 
 /// Number of the children of a branch: the branches that branch off from it, and the detached
-/// curves beside it, as far as `branches` of hbvib_forced_options sought them; or a negative
-/// status.
+/// curves beside it, as far as `branches` of hbvib_forced_options or hbvib_mode_options sought
+/// them; or a negative status.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
@@ -73,11 +73,14 @@ pub struct hbvib_descent {
     /// Number of the linear mode along whose nonlinear mode a detached curve was found; -1
     /// otherwise.
     pub mode: i64,
-    /// Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it; 0
-    /// where it is not known.
+    /// Factor of all forces at which a detached curve is born, as its nonlinear mode predicts it, or
+    /// as a curve over the force turns; 0 where it is not known.
     pub born_at_force: f64,
     /// The same at which it merges with the curve beneath.
     pub merges_at_force: f64,
+    /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies;
+    /// 0 otherwise.
+    pub internal_resonance: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_descent {
@@ -94,6 +97,7 @@ unsafe impl VersionedStruct for hbvib_descent {
             mode: -1,
             born_at_force: 0.0,
             merges_at_force: 0.0,
+            internal_resonance: 0,
         }
     }
 }
@@ -129,13 +133,14 @@ pub unsafe extern "C" fn hbvib_branch_descent(branch: *const hbvib_branch, out: 
             value.mode = index(descent.mode);
             value.born_at_force = known(descent.born_at_force);
             value.merges_at_force = known(descent.merges_at_force);
+            value.internal_resonance = descent.internal_resonance as i64;
         }
         unsafe { fill_out(out, value) };
         Ok(Status::Ok)
     })
 }
 
-/// Solutions beside a response that were sought. The list of children is not complete: a solution
+/// Solutions beside a branch that were sought. The list of children is not complete: a solution
 /// that none of these searches leads to is not found. Fill it by hbvib_searched_init, then by
 /// hbvib_branch_searched.
 #[repr(C)]
@@ -165,6 +170,16 @@ pub struct hbvib_searched {
     pub amplitude_max: f64,
     /// Nets of starts of subharmonic curves.
     pub starts: i64,
+    /// Curves of peaks and folds that were followed over the force, between a tenth and ten times it.
+    pub force_curves: i64,
+    /// Those that ended early.
+    pub incomplete_force_curves: i64,
+    /// Solutions at the force itself on these curves, beside those that they begin at.
+    pub crossings: i64,
+    /// Points of the response beside which deflation sought solutions.
+    pub deflations: i64,
+    /// Curves that it found.
+    pub deflated: i64,
 }
 
 unsafe impl VersionedStruct for hbvib_searched {
@@ -185,6 +200,11 @@ unsafe impl VersionedStruct for hbvib_searched {
             amplitude_min: 0.0,
             amplitude_max: 0.0,
             starts: 0,
+            force_curves: 0,
+            incomplete_force_curves: 0,
+            crossings: 0,
+            deflations: 0,
+            deflated: 0,
         }
     }
 }
@@ -220,6 +240,11 @@ pub unsafe extern "C" fn hbvib_branch_searched(branch: *const hbvib_branch, out:
             amplitude_min: searched.amplitudes.0,
             amplitude_max: searched.amplitudes.1,
             starts: searched.starts as i64,
+            force_curves: searched.force_curves as i64,
+            incomplete_force_curves: searched.incomplete_force_curves as i64,
+            crossings: searched.crossings as i64,
+            deflations: searched.deflations as i64,
+            deflated: searched.deflated as i64,
             ..hbvib_searched::defaults()
         };
         unsafe { fill_out(out, value) };

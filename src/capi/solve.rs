@@ -81,9 +81,10 @@ pub struct hbvib_forced_options {
     pub responses_len: i64,
     /// Further solutions that are sought, for hbvib_branch_children: 0 (default) none; 1 branches
     /// that branch off where the period doubles, a symmetry breaks or at simple branch points; 2
-    /// detached curves, too, near the resonances that nonlinear modes predict; 3 subharmonic curves
-    /// of the orders 2 and 3, too, by a net of starts. Stability is then computed along all of
-    /// them, as by HBVIB_STABILITY_WAVE where the solver option is none.
+    /// detached curves, too, near the resonances that nonlinear modes predict; 3 those that peaks
+    /// and folds lead to over the force, and subharmonic curves of the orders 2 and 3, too, by a net
+    /// of starts; 4 those that deflation finds beside the response, too. Stability is then computed
+    /// along all of them, as by HBVIB_STABILITY_WAVE where the solver option is none.
     pub branches: i32,
     /// Largest number of generations of branches that branch off, up to 8; 0 (default): 3.
     pub branch_depth: i32,

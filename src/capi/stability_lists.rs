@@ -27,7 +27,8 @@ pub enum hbvib_bifurcation {
 /// Bifurcations of a forced response in the order of the branch: its folds and, with the solver
 /// option `stability`, the points where a Floquet multiplier passes the unit circle, located on the
 /// branch. A multiplier that jumps over the circle, as where slip sets in, is none of these kinds:
-/// HBVIB_UNSTABLE_DIRECTIONS then changes without a bifurcation. A nonlinear mode has none.
+/// HBVIB_UNSTABLE_DIRECTIONS then changes without a bifurcation. A nonlinear mode has the branch
+/// points of its curve, with the option `branches` of hbvib_mode_options.
 ///
 /// capacity         numbers that fit into each array.
 /// omega            receives their angular frequencies, or NULL.

@@ -135,7 +135,7 @@ impl Condensed {
     pub fn for_static(model: &Model, options: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<Self> {
         let options = SolverOptions {
             harmonics: 0,
-            // A guess has harmonics of the vibration, not of its static state.
+            // Nothing vibrates, whatever harmonics the motion about it has.
             content: Content::default(),
             // A basis is good at the frequencies of a sweep.
             flexibility: Flexibility::Direct,

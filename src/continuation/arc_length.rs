@@ -99,6 +99,9 @@ const MOST_STATIONARY: usize = 32;
 /// Relative error of a prediction far below that which shortens steps.
 const SMOOTH: f64 = 1e-5;
 
+/// Largest relative error of the prediction of a step over a crossing, and least cosine between its directions.
+const CROSSED: (f64, f64) = (1e-4, 0.99);
+
 /// Length of a step that changes no parameter beyond rounding, wherever the branch leads.
 const TINY: f64 = 1e-6;
 
@@ -408,6 +411,9 @@ impl Continuation {
         let far = chord > 3.0 * step;
         let size = norm(point.unknowns());
         let error = self.prediction_error(&self.scratch, (&point, size), amplitude);
+        // A smooth curve that another one crosses changes its sense, too, and a step over the crossing is well predicted.
+        let crossed = self.steps.crosses_branches() && error <= CROSSED.0 && kept >= CROSSED.1;
+        let jumped = jumped && !crossed;
         self.history.judge(&self.scratch, &point, &self.row, metric);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);

@@ -3,6 +3,7 @@
 
 mod contraction;
 mod damped_step;
+mod deflated;
 mod last_evaluation;
 mod moved_tangent;
 mod null_direction;

@@ -50,6 +50,7 @@ pub struct StepControl {
     /// Whether the caller gave the largest step.
     has_bound: bool,
     detail: Detail,
+    crosses: bool,
 }
 
 /// Angle in radians by which the branch may turn in a step as foreseen. Steps in which it turns by more than π/3 are rejected.
@@ -82,7 +83,21 @@ impl StepControl {
             max,
             has_bound,
             detail,
+            crosses: false,
         }
+    }
+
+    /// The same for a curve that goes straight on where another one crosses it.
+    #[must_use]
+    pub fn crossing_branches(mut self) -> Self {
+        self.crosses = true;
+        self
+    }
+
+    /// Whether the curve goes straight on where another one crosses it.
+    #[must_use]
+    pub fn crosses_branches(&self) -> bool {
+        self.crosses
     }
 
     /// Relative residual to which the points are solved, where `requested` is that of exact ones.

@@ -3,6 +3,7 @@
 use crate::error::{Result, fail};
 use crate::options::response::Response;
 use crate::options::solver_options::{MAX_HARMONIC, SolverOptions};
+use crate::options::tree_size::{check_tree, size_of_tree};
 use num_complex::Complex64;
 
 /// Width of a range, relative, that is rounding of its ends.
@@ -27,8 +28,9 @@ pub struct ForcedOptions<'a> {
     /// Whether the tolerance holds for the responses in one norm, (Σ|error|²/Σ|response|²)^½, instead of for each by itself.
     pub together: bool,
     /// Further solutions that are sought: 0 none; 1 branches that branch off where the period doubles, a symmetry breaks, or at
-    /// simple branch points; 2 detached curves, too; 3 subharmonic curves of
-    /// the orders 2 and 3 by a net of starts, too. From 1 on stability is computed along all of them.
+    /// simple branch points; 2 detached curves along nonlinear modes, too; 3 those that peaks and folds lead to over the force, and
+    /// subharmonic curves of the orders 2 and 3 by a net of starts, too; 4 solutions that deflation finds beside the response, too.
+    /// From 1 on stability is computed along all of them.
     pub branches: usize,
     /// Largest number of generations of branches that branch off; 0: 3.
     pub branch_depth: usize,
@@ -36,20 +38,11 @@ pub struct ForcedOptions<'a> {
     pub most_branches: usize,
 }
 
-/// Values of [`ForcedOptions::branch_depth`] and [`ForcedOptions::most_branches`] where they are 0, and their largest ones.
-const DEPTH: usize = 3;
-const MOST_BRANCHES: usize = 32;
-const FORCED_OPTIONS_LARGEST: (usize, usize) = (8, 10_000);
-
 impl ForcedOptions<'_> {
     /// Largest numbers of generations and of branches beside the response.
     #[must_use]
     pub(crate) fn size_of_tree(&self) -> (usize, usize) {
-        let value = |given: usize, default| if given == 0 { default } else { given };
-        (
-            value(self.branch_depth, DEPTH),
-            value(self.most_branches, MOST_BRANCHES),
-        )
+        size_of_tree(self.branch_depth, self.most_branches)
     }
 
     /// Checks range and requested frequencies.
@@ -75,17 +68,10 @@ impl ForcedOptions<'_> {
                 self.omega_start
             );
         }
-        if self.branches > 3 {
-            return fail!(Argument, "branches = {}, needs 0, 1, 2 or 3", self.branches);
+        if self.branches > 4 {
+            return fail!(Argument, "branches = {}, needs 0 .. 4", self.branches);
         }
-        for (name, value, most) in [
-            ("branch_depth", self.branch_depth, FORCED_OPTIONS_LARGEST.0),
-            ("most_branches", self.most_branches, FORCED_OPTIONS_LARGEST.1),
-        ] {
-            if value > most {
-                return fail!(Argument, "{name} = {value}, needs 0 (automatic) .. {most}");
-            }
-        }
+        check_tree(self.branch_depth, self.most_branches)?;
         let (low, high) = (
             self.omega_start.min(self.omega_stop),
             self.omega_start.max(self.omega_stop),

@@ -14,6 +14,7 @@ mod solver_options;
 mod sweep_options;
 mod synthesis_options;
 mod time_options;
+mod tree_size;
 mod waves;
 
 pub use crate::fourier::Measure;

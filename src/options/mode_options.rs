@@ -2,6 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::options::solver_options::MAX_HARMONIC;
+use crate::options::tree_size::{check_tree, size_of_tree};
 use num_complex::Complex64;
 
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
@@ -103,6 +104,13 @@ pub struct ModeOptions<'a> {
     pub reference_dof: Option<usize>,
     /// Motion near the first point; `None`: the linear mode, from small amplitudes on.
     pub guess: Option<ModeGuess<'a>>,
+    /// Further curves that are sought: 0 none; 1 those of its branch points, with even harmonics carried along, and the one beyond a
+    /// tongue of internal resonance. They are children of the branch.
+    pub branches: usize,
+    /// Largest number of generations of these curves; 0: 3.
+    pub branch_depth: usize,
+    /// Largest number of these curves; 0: 32.
+    pub most_branches: usize,
 }
 
 impl Default for ModeOptions<'_> {
@@ -117,6 +125,9 @@ impl Default for ModeOptions<'_> {
             damping_form: DampingForm::Mass,
             reference_dof: None,
             guess: None,
+            branches: 0,
+            branch_depth: 0,
+            most_branches: 0,
         }
     }
 }
@@ -125,6 +136,11 @@ impl Default for ModeOptions<'_> {
 const MAX_LOG10: f64 = 150.0;
 
 impl ModeOptions<'_> {
+    /// Largest numbers of generations and of curves beside the mode.
+    pub(crate) fn size_of_tree(&self) -> (usize, usize) {
+        size_of_tree(self.branch_depth, self.most_branches)
+    }
+
     /// Checks every field for a model with these numbers of degrees of freedom (per sector), contacts and sectors.
     ///
     /// # Errors
@@ -168,6 +184,10 @@ impl ModeOptions<'_> {
                 );
             }
         }
+        if self.branches > 1 {
+            return fail!(Argument, "branches = {}, needs 0 or 1", self.branches);
+        }
+        check_tree(self.branch_depth, self.most_branches)?;
         if let Some(guess) = &self.guess {
             let rows = guess.motion.len() / ndof.max(1);
             if rows < 2 || rows * ndof != guess.motion.len() || rows > MAX_HARMONIC + 1 {

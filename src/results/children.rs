@@ -1,6 +1,6 @@
 //! Branches that branch off from a branch, and curves without connection to it.
 
-use crate::error::{Result, try_push};
+use crate::error::{Result, Status, try_push};
 use crate::results::{Branch, Descent, Searched};
 
 impl Branch {
@@ -21,9 +21,19 @@ impl Branch {
         &self.children
     }
 
+    /// The same, writable.
+    pub(crate) fn children_mut(&mut self) -> &mut [Self] {
+        &mut self.children
+    }
+
     /// The children, taken out of the branch.
     pub(crate) fn take_children(&mut self) -> Vec<Self> {
         core::mem::take(&mut self.children)
+    }
+
+    /// Whether the caller stopped the branch or one of its children.
+    pub(crate) fn was_stopped(&self) -> bool {
+        self.status() == Status::StoppedByCaller || self.children.iter().any(Self::was_stopped)
     }
 
     /// Where the branch comes from; `None` for one that was asked for.

@@ -17,10 +17,12 @@ pub struct Descent {
     /// The nonlinear mode along which a detached curve was found, by its number among the linear ones.
     pub mode: Option<usize>,
     /// Factor of all forces at which a detached curve is born, and the one at which it merges with what lies below, as its mode
-    /// predicts them; NaN where the mode has no such force.
+    /// predicts them, or where a curve over the force turns; NaN where there is no such force.
     pub born_at_force: f64,
     /// The same.
     pub merges_at_force: f64,
+    /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies; 0 otherwise.
+    pub internal_resonance: usize,
 }
 
 impl Descent {
@@ -43,6 +45,7 @@ impl Default for Descent {
             mode: None,
             born_at_force: f64::NAN,
             merges_at_force: f64::NAN,
+            internal_resonance: 0,
         }
     }
 }
@@ -68,4 +71,14 @@ pub struct Searched {
     pub lost_resonances: usize,
     /// Nets of starts of subharmonic curves.
     pub starts: usize,
+    /// Curves of peaks and folds over the force, and those that ended early.
+    pub force_curves: usize,
+    /// The same.
+    pub incomplete_force_curves: usize,
+    /// Solutions on these curves at the force itself, beside those that they begin at.
+    pub crossings: usize,
+    /// Points of the response beside which deflation sought solutions, and curves that it found.
+    pub deflations: usize,
+    /// The same.
+    pub deflated: usize,
 }

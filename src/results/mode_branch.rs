@@ -1,6 +1,6 @@
 //! Data of a nonlinear mode beside the points that every branch has.
 
-use crate::error::{Error, Result, try_extend, try_push};
+use crate::error::{Error, Result, try_copy, try_extend, try_push};
 use crate::model::repeated_modes::Multiple;
 use crate::options::Amplitude;
 use crate::problem::epmc::{Gauge, LinearMode};
@@ -80,6 +80,8 @@ pub(crate) struct ModeData {
     states: Vec<f64>,
     /// Offset of the state of each point.
     begins: Vec<usize>,
+    /// Unknowns with parameter, and direction of the curve, of each branch point, in the order of the bifurcations.
+    branch_points: Vec<[Vec<f64>; 2]>,
 }
 
 /// Number of fields of a [`ModePoint`].
@@ -95,6 +97,7 @@ impl ModeData {
             fields: Default::default(),
             states: Vec::new(),
             begins: Vec::new(),
+            branch_points: Vec::new(),
         }
     }
 
@@ -133,6 +136,19 @@ impl ModeData {
         let end = self.begins.get(point + 1).copied().unwrap_or(self.states.len());
         let both = self.states.get(begin..end)?;
         Some(both.split_at(both.len() / 2))
+    }
+
+    /// Stores the state of a branch point.
+    pub fn push_branch_point(&mut self, v: &[f64], tangent: &[f64]) -> Result<()> {
+        const CONTEXT: &str = "the branch points of the mode";
+        let state = [try_copy(v, CONTEXT)?, try_copy(tangent, CONTEXT)?];
+        try_push(&mut self.branch_points, state, CONTEXT)
+    }
+
+    /// Unknowns with parameter, and direction of the curve, of a branch point.
+    pub fn branch_point(&self, number: usize) -> Option<(&[f64], &[f64])> {
+        let [v, tangent] = self.branch_points.get(number)?;
+        Some((v, tangent))
     }
 
     /// A field at each stored point.

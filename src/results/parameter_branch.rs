@@ -97,6 +97,11 @@ impl ParameterData {
         &self.optima
     }
 
+    /// The turns stored so far.
+    pub fn turns(&self) -> &[Turn] {
+        &self.turns
+    }
+
     /// Value of the parameter at a stored point.
     pub fn parameter_at(&self, point: usize) -> Option<f64> {
         self.parameter.get(point).copied()

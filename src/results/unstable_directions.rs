@@ -6,13 +6,18 @@ use crate::results::verdict::{Bifurcation, BifurcationKind, Located, Stretch, Ve
 
 impl Branch {
     /// The bifurcations in the order of the branch: its folds and, with the solver option `stability`, those where a
-    /// multiplier passes the unit circle. The branch of a nonlinear mode has none.
+    /// multiplier passes the unit circle. The branch of a nonlinear mode has the branch points of its curve, where they were sought.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn bifurcations(&self) -> Result<Vec<Bifurcation>> {
         let mut found = Vec::new();
         if self.mode.is_some() {
+            // A nonlinear mode has no multipliers: its branch points are those of its equations, and its folds turn in amplitude.
+            let located = self.bifurcations.iter().map(|located| located.bifurcation);
+            for bifurcation in located.filter(|found| found.kind == BifurcationKind::BranchPoint) {
+                try_push(&mut found, bifurcation, "the bifurcations")?;
+            }
             return Ok(found);
         }
         for located in &self.bifurcations {

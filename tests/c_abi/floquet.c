@@ -180,8 +180,8 @@ static void children(void)
     o.omega_start = 2.3;
     o.omega_stop = 2.4;
     EXPECT("defaults", o.branches == 0 && o.branch_depth == 0 && o.most_branches == 0);
-    o.branches = 4;
-    REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 4");
+    o.branches = 5;
+    REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 5");
     o.branches = 1;
     o.branch_depth = 9;
     REFUSED("depth", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branch_depth = 9");
@@ -205,6 +205,7 @@ static void children(void)
     WORKS("searched", hbvib_searched_init(&searched, sizeof searched));
     WORKS("searched", hbvib_branch_searched(branch, &searched));
     EXPECT("searched", searched.bifurcations == 1 && searched.lost == 0 && searched.modes == 0);
+    EXPECT("searched", searched.force_curves == 0 && searched.deflations == 0);
     WORKS("longer", hbvib_model_longer_period(model, 2, &longer));
     WORKS("stability", hbvib_floquet(longer, child, 3, NULL, NULL, NULL, 0, NULL, 0, NULL));
     REFUSED("periods", hbvib_model_longer_period(model, 0, &longer), HBVIB_E_ARGUMENT, 2, "periods = 0");

@@ -333,6 +333,51 @@ static void cancelled(void)
     WORKS("hooks", hbvib_branch_free(branch));
 }
 
+/* Two masses on hardening springs, weakly coupled: beside their opposed mode are two localised ones. */
+static void branches(void)
+{
+    hbvib_solver_options s = three_harmonics();
+    hbvib_mode_options o;
+    hbvib_model *model = NULL;
+    hbvib_branch *branch = NULL, *child = NULL;
+    hbvib_contact c;
+    hbvib_descent d;
+    hbvib_matrix m;
+    double mass[4] = {1, 0, 0, 1}, stiffness[4] = {1.1, -0.1, -0.1, 1.1};
+    int64_t i, kind = 0, place = 0, count = 0;
+    WORKS("model", hbvib_model_new(2, &model));
+    m = matrix(2, mass);
+    WORKS("mass", hbvib_model_set_matrix(model, HBVIB_MASS, &m));
+    m = matrix(2, stiffness);
+    WORKS("stiffness", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &m));
+    for (i = 0; i < 2; i++) {
+        WORKS("contact", hbvib_contact_init(&c, sizeof c));
+        c.kind = HBVIB_CUBIC;
+        c.dof_a[0] = i;
+        c.cubic = 1;
+        WORKS("contact", hbvib_model_add_contact(model, &c, NULL));
+    }
+    WORKS("options", hbvib_mode_options_init(&o, sizeof o));
+    EXPECT("defaults", o.branches == 0 && o.branch_depth == 0 && o.most_branches == 0);
+    o.log10_start = -1;
+    o.log10_stop = 0.5;
+    o.mode_index = 1;
+    o.branches = 2;
+    REFUSED("branches", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 2");
+    o.branches = 1;
+    WORKS("mode", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch));
+    WORKS("branch point", hbvib_branch_bifurcations(branch, 1, NULL, NULL, &kind, &place, NULL, NULL, &count));
+    EXPECT("branch point", count == 1 && kind == HBVIB_BIFURCATION_BRANCH_POINT);
+    EXPECT("branch point", fabs(mode_point(branch, place).modal_amplitude - 0.5147) < 1e-3);
+    EXPECT("children", hbvib_branch_children(branch) == 2);
+    WORKS("child", hbvib_branch_child(branch, 1, &child));
+    WORKS("descent", hbvib_descent_init(&d, sizeof d));
+    WORKS("descent", hbvib_branch_descent(child, &d));
+    EXPECT("descent", d.kind == HBVIB_BIFURCATION_BRANCH_POINT && d.bifurcation == 0 && d.internal_resonance == 0);
+    WORKS("free", hbvib_branch_free(branch));
+    WORKS("free", hbvib_model_free(model));
+}
+
 int main(int count, char **arguments)
 {
     if (count != 8) return 2;
@@ -342,6 +387,7 @@ int main(int count, char **arguments)
     repeated();
     losses();
     cancelled();
+    branches();
     WORKS("free", hbvib_model_free(the_model));
     return verdict(500);
 }

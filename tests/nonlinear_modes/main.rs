@@ -9,6 +9,7 @@ mod equal_pairs;
 mod mode_about_static;
 mod mode_balance;
 mod mode_bands;
+mod mode_branches;
 mod mode_closed_forms;
 mod mode_conservative;
 mod mode_decay;

@@ -221,6 +221,63 @@ fn the_curve_above_the_tongue_is_reached_by_a_guess() {
     }
 }
 
+/// The same curve without a guess: the tongue of the lower one ends where the fundamental vanishes, and from there the other phase leads
+/// up. A broken symmetry of the lower curve, a 2:1 resonance, is found on the way.
+#[test]
+fn the_curve_above_the_tongue_is_reached_by_switching() {
+    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]);
+    model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
+    let range = ModeOptions {
+        log10_start: 0.0,
+        log10_stop: 2.2,
+        at: &[2.0],
+        branches: 1,
+        branch_depth: 1,
+        ..ModeOptions::default()
+    };
+    let lower = nonlinear_mode(&model, &harmonics(31), &range, &mut Hooks::default()).unwrap();
+    let order = |branch: &Branch| branch.descent().unwrap().internal_resonance;
+    let upper = lower.children().iter().find(|child| order(child) == 3).unwrap();
+    let mut motion = vec![Complex64::new(0.0, 0.0); 2 * 2];
+    (motion[2], motion[3]) = (6.0.into(), 100.0.into());
+    let guess = ModeGuess {
+        omega: 1.39,
+        motion: &motion,
+        damping_ratio: 0.0,
+    };
+    let above = ModeOptions {
+        log10_start: 2.0,
+        guess: Some(guess),
+        ..ModeOptions {
+            branches: 0,
+            at: &[],
+            ..range
+        }
+    };
+    let guessed = nonlinear_mode(&model, &harmonics(31), &above, &mut Hooks::default()).unwrap();
+    let found = upper.at(0);
+    println!("{} {found:?} {}", lower.children().len(), guessed.omega()[0]);
+    assert!(
+        found
+            .iter()
+            .any(|point| (point.omega / guessed.omega()[0] - 1.0).abs() < 1e-9)
+    );
+    for child in lower.children() {
+        for point in (0..child.points()).step_by(child.points() / 4) {
+            let gap = gap_after_a_period(child, point, child.omega()[point]);
+            assert!(gap < 1e-5, "point {point}: {gap:e}");
+        }
+    }
+    // Symmetric motions of the lower curve have no even harmonics, those that branch off at its branch points have.
+    let even = |branch: &Branch, point| all_harmonics(branch, point)[4].norm();
+    let bifurcations = lower.bifurcations().unwrap();
+    assert_eq!(bifurcations.len(), 2);
+    let broken = lower.children().iter().find(|child| order(child) == 0).unwrap();
+    assert!(even(broken, broken.points() / 2) > 1e-2);
+    let searched = lower.searched().unwrap();
+    assert_eq!((searched.bifurcations, searched.lost), (3, 0));
+}
+
 /// The other mode stiffens without bound, and is the truth at every amplitude as well.
 #[test]
 fn a_mode_that_is_no_similar_one_is_an_orbit_of_the_equations() {

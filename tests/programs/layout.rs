@@ -48,13 +48,13 @@ fn in_rust() -> String {
         hbvib_hooks { struct_size, log_level, user, progress, log, cancel, phase }
         hbvib_response { struct_size, measure, harmonic, n, dofs, weights, sector, component, reserved }
         hbvib_forced_options { struct_size, together, omega_start, omega_stop, at, at_len, guess, guess_len, responses, responses_len, branches, branch_depth, most_branches }
-        hbvib_descent { struct_size, kind, bifurcation, periods, merges_at, mode, born_at_force, merges_at_force }
-        hbvib_searched { struct_size, reserved, bifurcations, lost, left, modes, incomplete_modes, resonances, lost_resonances, amplitude_min, amplitude_max, starts }
+        hbvib_descent { struct_size, kind, bifurcation, periods, merges_at, mode, born_at_force, merges_at_force, internal_resonance }
+        hbvib_searched { struct_size, reserved, bifurcations, lost, left, modes, incomplete_modes, resonances, lost_resonances, amplitude_min, amplitude_max, starts, force_curves, incomplete_force_curves, crossings, deflations, deflated }
         hbvib_view { struct_size, scalar, rank, reserved, data, shape, stride }
         hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts, basis, certificate, response_harmonic, guess_used, flexibility_way }
         hbvib_energy { struct_size, reserved, twice_mean_kinetic, kinetic_mean, kinetic_peak, potential_mean, potential_peak, wheel_kinetic_mean, wheel_kinetic_peak, wheel_potential_mean, wheel_potential_peak, structural_loss, friction_loss }
         hbvib_contact_summary { struct_size, reserved, work, slip_share, open_share, half_range, motion_min, motion_max, load_min, load_max, directions, all_min, all_max }
-        hbvib_mode_options { struct_size, damping_form, log10_start, log10_stop, diameter, mode_index, near_omega, shape, shape_len, amplitude_contact, at, at_len, reference_dof, guess, guess_len, guess_omega, guess_damping }
+        hbvib_mode_options { struct_size, damping_form, log10_start, log10_stop, diameter, mode_index, near_omega, shape, shape_len, amplitude_contact, at, at_len, reference_dof, guess, guess_len, guess_omega, guess_damping, branches, branch_depth, most_branches }
         hbvib_mode_point { struct_size, reserved, log10_amplitude, omega, damping_ratio, modal_amplitude, energy, fundamental_share, friction_loss, structural_loss, energy_damping_ratio, assurance }
         hbvib_mode_info { struct_size, multiple, mode_index, multiplicity, reference_dof, engine_order, amplitude_contact, omega, linear_up_to, slip_from, lift_off_from }
         hbvib_synthesis_options { struct_size, model_damping, force_factor, damping_ratio }

@@ -24,6 +24,9 @@ const RANGE: ModeOptions = ModeOptions {
     damping_form: hbvib::options::DampingForm::Mass,
     reference_dof: None,
     guess: None,
+    branches: 0,
+    branch_depth: 0,
+    most_branches: 0,
 };
 
 fn follow(model: &Model, range: &ModeOptions) -> Result<Branch> {

@@ -234,6 +234,9 @@ const SIX_DECADES: ModeOptions<'static> = ModeOptions {
     damping_form: DampingForm::Mass,
     reference_dof: None,
     guess: None,
+    branches: 0,
+    branch_depth: 0,
+    most_branches: 0,
 };
 
 #[test]

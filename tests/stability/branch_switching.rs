@@ -4,7 +4,9 @@ use crate::common::peers::structure;
 use crate::common::{all_harmonics, data, harmonics, largest, one_mass};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};
 use hbvib::results::Branch;
 use hbvib::{BifurcationKind, Polynomial, forced_response, verify};
@@ -76,6 +78,8 @@ fn a_cascade_of_doublings_is_followed_down_to_its_depth() {
         assert_eq!(first.kind, BifurcationKind::PeriodDoubling);
         doublings.push(first.omega * f64::from(periods));
         let Some(child) = branch.children().first() else { break };
+        // Each is stable from where it begins to its own doubling.
+        assert!(child.unstable_directions()[0] < 0.5 && first.unstable[0] == Some(0));
         assert_eq!(child.descent().unwrap().bifurcation, Some(0));
         // The motion does not have the period of its parent, nor a shorter one.
         let mut x = vec![Complex64::ZERO; child.harmonics() + 1];
@@ -182,4 +186,58 @@ fn a_doubled_period_ends_where_it_merges() {
         println!("{} {odd} {}", 2.0 * child.omega()[point], largest(&x));
         assert!(odd > 1e-3 * largest(&x));
     }
+}
+
+/// Two oscillators of the cascade that a weak spring pushes apart: where both move alike with the double period, a branch point leads to
+/// motions in which one moves more than the other, in both senses. The doubled curve itself goes straight on there.
+#[test]
+fn a_doubled_curve_has_children_at_its_branch_point() {
+    let push = 0.005;
+    let mut model = Model::new(2).unwrap();
+    for (kind, values) in [
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
+        (MatrixKind::Damping, [0.1, 0.0, 0.0, 0.1]),
+        (MatrixKind::Stiffness, [1.0 - push, push, push, 1.0 - push]),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
+    }
+    for dof in [0, 1] {
+        let spring = Polynomial::scalar(&[0.0, -1.0], &[]).unwrap();
+        let contact = Contact::between(dof, None, ContactKind::Polynomial(spring));
+        model.add_contact(&contact).unwrap();
+        model.add_force(dof, 1, 0.11.into()).unwrap();
+    }
+    let found = tree(&model, &harmonics(6), (0.9, 0.86), &[]);
+    let doubled = found
+        .children()
+        .iter()
+        .find(|child| !child.children().is_empty())
+        .unwrap();
+    assert_eq!(doubled.descent().unwrap().kind, Some(BifurcationKind::PeriodDoubling));
+    assert_eq!(doubled.children().len(), 2);
+    let all = doubled.bifurcations().unwrap();
+    assert!(
+        all.iter().all(|found| found.kind == BifurcationKind::BranchPoint),
+        "{all:?}"
+    );
+    for point in 0..doubled.points() {
+        let x = all_harmonics(doubled, point);
+        assert!((x[2] - x[3]).norm() < 1e-6 * x[2].norm());
+    }
+    let longer = model.with_longer_period(2).unwrap();
+    let mut larger = Vec::new();
+    for child in doubled.children() {
+        let descent = child.descent().unwrap();
+        assert_eq!((descent.kind, descent.periods), (Some(BifurcationKind::BranchPoint), 1));
+        let middle = child.points() / 2;
+        let x = all_harmonics(child, middle);
+        let [a, b] = [x[2].norm(), x[3].norm()];
+        assert!((a / b).ln().abs() > 0.1 && child.unstable_directions()[middle].is_finite());
+        larger.push(a > b);
+        let found = verify(&longer, child, middle, &VerifyOptions::default(), &mut Hooks::default()).unwrap();
+        println!("{:?} {}", found.response_error, found.same);
+        // Six harmonics of half the frequency doubled are twelve.
+        assert!(found.response_error < 1e-3);
+    }
+    assert_ne!(larger[0], larger[1]);
 }

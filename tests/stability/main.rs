@@ -16,6 +16,7 @@ mod hard_cases_in_time;
 mod hill;
 mod limit_cycles;
 mod on_modes;
+mod over_force;
 mod senses_of_perturbations;
 mod smallest_kick;
 mod subharmonic_net;

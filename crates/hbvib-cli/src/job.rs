@@ -464,8 +464,8 @@ impl Job {
                 path.display()
             ));
         }
-        if job.solutions.is_some() && job.forced.is_none() {
-            return Err(format!("{}: [solutions] needs [forced]", path.display()));
+        if job.solutions.is_some() && job.forced.is_none() && job.mode.is_none() {
+            return Err(format!("{}: [solutions] needs [forced] or [mode]", path.display()));
         }
         if job.verify.is_some() && job.forced.is_none() {
             return Err(format!("{}: [verify] needs [forced]", path.display()));

@@ -5,11 +5,13 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// Solutions that the sweep of [forced] does not show.
+/// Solutions that the sweep of [forced] does not show, or curves that branch off from that of [mode].
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolutionsPart {
-    /// 1: branches of the double period and of broken symmetry; 2: detached curves, too; 3: subharmonic curves of the orders 2 and 3, too.
+    /// 1: branches of the double period and of broken symmetry; 2: detached curves, too; 3: those over the force and subharmonic curves of
+    /// the orders 2 and 3, too; 4: those that deflation finds, too. Beside [mode] any of them seeks curves of branch points and those
+    /// beyond tongues.
     #[serde(default = "all")]
     pub branches: usize,
     /// Most generations of branches; 0: 3.

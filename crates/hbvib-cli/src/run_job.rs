@@ -216,7 +216,7 @@ fn solve(job: &Job, built: &Built, stored: Option<Stored>, stop: &AtomicBool) ->
                 .map(|branch| (branch, None)),
             }
         }
-        (None, Some(part)) => mode(part, built, hooks).map(|branch| (branch, None)),
+        (None, Some(part)) => mode((part, job.solutions.as_ref()), built, hooks).map(|branch| (branch, None)),
         (None, None) => Err("names no analysis".into()),
     })
 }
@@ -254,8 +254,11 @@ fn forced(
     forced_response(&built.model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
 }
 
-fn mode(part: &ModePart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+fn mode((part, sought): (&ModePart, Option<&SolutionsPart>), built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
     let range = ModeOptions {
+        branches: sought.map_or(0, |sought| sought.branches.min(1)),
+        branch_depth: sought.map_or(0, |sought| sought.depth),
+        most_branches: sought.map_or(0, |sought| sought.most),
         choice: ModeChoice::Index(part.index),
         log10_start: part.log10_from,
         log10_stop: part.log10_to,

@@ -127,6 +127,7 @@ fn summary(branch: &Branch, places: &[Place<'_>]) -> String {
         let origin = match descent.kind {
             Some(BifurcationKind::PeriodDoubling) => "double period".to_owned(),
             Some(_) => "branch point".to_owned(),
+            None if descent.internal_resonance > 0 => format!("beyond a {}:1 resonance", descent.internal_resonance),
             None if descent.born_at_force.is_nan() => "detached".to_owned(),
             None => format!("detached, born at {:.6} times the force", descent.born_at_force),
         };
@@ -151,6 +152,20 @@ fn summary(branch: &Branch, places: &[Place<'_>]) -> String {
             searched.incomplete_modes,
             counted(searched.resonances, "resonance")
         );
+        if searched.force_curves > 0 {
+            let _ = writeln!(
+                text,
+                "sought along {} over the force ({} incomplete, {})",
+                counted(searched.force_curves, "curve"),
+                searched.incomplete_force_curves,
+                counted(searched.crossings, "crossing")
+            );
+        }
+        if searched.deflations > 0 {
+            let found = counted(searched.deflated, "curve");
+            let places = counted(searched.deflations, "place");
+            let _ = writeln!(text, "sought by deflation at {places} ({found})");
+        }
     }
     text
 }

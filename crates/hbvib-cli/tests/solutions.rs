@@ -50,6 +50,49 @@ fn the_motion_of_the_double_period_is_in_every_output() {
     assert!(svg.matches("<polyline").count() > 4);
 }
 
+/// The opposed mode of two equal masses on hardening springs has two localised ones beside it, in a job with `[mode]`.
+#[test]
+fn curves_that_branch_off_from_a_mode_are_in_every_output() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (mass, stiffness) = (folder.join("two_masses.mtx"), folder.join("two_springs.mtx"));
+    for (path, rows) in [
+        (&mass, "2 2 2\n1 1 1.0\n2 2 1.0\n"),
+        (&stiffness, "2 2 3\n1 1 1.1\n2 1 -0.1\n2 2 1.1\n"),
+    ] {
+        std::fs::write(path, format!("%%MatrixMarket matrix coordinate real symmetric\n{rows}")).unwrap();
+    }
+    let contact = |dof| format!("[[contact]]\nkind = 'cubic'\na = [{dof}]\ncubic = 1\n");
+    let job = format!(
+        "model.stiffness = '{}'\nmodel.mass = '{}'\n{}{}\
+         [mode]\nindex = 1\nlog10_from = -1\nlog10_to = 0.5\nharmonics = 3\n\
+         [solutions]\ncsv = 'all.csv'\nfigure = 'all.svg'\n",
+        stiffness.display(),
+        mass.display(),
+        contact(0),
+        contact(1)
+    );
+    let (output, folder) = crate::common::hbvib("run", ("solutions", "of_mode"), &job);
+    let screen = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{screen}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    for number in [1, 2] {
+        assert!(
+            screen.contains(&format!("branch {number} of 0: branch point")),
+            "{screen}"
+        );
+    }
+    assert!(
+        screen.contains("sought from 1 bifurcation (0 without a branch, 0 left)"),
+        "{screen}"
+    );
+    let csv = std::fs::read_to_string(folder.join("all.csv")).unwrap();
+    assert!(csv.lines().any(|line| line.starts_with("2,0,1,")));
+    assert!(folder.join("all.svg").exists());
+}
+
 /// Between the folds of a hardening spring both stable motions have a kick across the unstable one, that which the library finds; without a
 /// frequency the job is refused.
 #[test]

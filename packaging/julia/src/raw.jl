@@ -479,10 +479,11 @@ struct hbvib_descent
     mode::Int64
     born_at_force::Float64
     merges_at_force::Float64
+    internal_resonance::Int64
 end
 hbvib_descent() = initialised(hbvib_descent, dlsym_(:hbvib_descent_init))
 
-"Solutions beside a response that were sought."
+"Solutions beside a branch that were sought."
 struct hbvib_searched
     struct_size::UInt32
     reserved::Int32
@@ -496,6 +497,11 @@ struct hbvib_searched
     amplitude_min::Float64
     amplitude_max::Float64
     starts::Int64
+    force_curves::Int64
+    incomplete_force_curves::Int64
+    crossings::Int64
+    deflations::Int64
+    deflated::Int64
 end
 hbvib_searched() = initialised(hbvib_searched, dlsym_(:hbvib_searched_init))
 
@@ -591,6 +597,9 @@ struct hbvib_mode_options
     guess_len::Int64
     guess_omega::Float64
     guess_damping::Float64
+    branches::Int32
+    branch_depth::Int32
+    most_branches::Int64
 end
 hbvib_mode_options() = initialised(hbvib_mode_options, dlsym_(:hbvib_mode_options_init))
 
@@ -1172,7 +1181,7 @@ hbvib_response_init(r, size_of_r) = ccall(dlsym_(:hbvib_response_init), Int32, (
 hbvib_forced_options_init(o, size_of_o) = ccall(dlsym_(:hbvib_forced_options_init), Int32, (Ptr{hbvib_forced_options}, Csize_t), o, size_of_o)
 "Follows the periodic response of a model to its forces over a range of frequency, by harmonic balance and arc-length continuation: folds are passed, peaks and folds refined."
 hbvib_forced_response(model, solver, forced, hooks, out) = ccall(dlsym_(:hbvib_forced_response), Int32, (Ptr{Cvoid}, Ptr{hbvib_solver_options}, Ptr{hbvib_forced_options}, Ptr{hbvib_hooks}, Ptr{Ptr{Cvoid}}), model, solver, forced, hooks, out)
-"Number of the children of a branch: the branches that branch off from it, and the detached curves beside it, as far as `branches` of hbvib_forced_options sought them; or a negative status."
+"Number of the children of a branch: the branches that branch off from it, and the detached curves beside it, as far as `branches` of hbvib_forced_options or hbvib_mode_options sought them; or a negative status."
 hbvib_branch_children(branch) = ccall(dlsym_(:hbvib_branch_children), Int64, (Ptr{Cvoid},), branch)
 "A child of a branch."
 hbvib_branch_child(branch, number, out) = ccall(dlsym_(:hbvib_branch_child), Int32, (Ptr{Cvoid}, Int64, Ptr{Ptr{Cvoid}}), branch, number, out)

@@ -19,8 +19,8 @@ const CONVERGED: f64 = 1e-9;
 const NULL_DIRECTION_SHIFT: f64 = 1e-9;
 
 impl Corrector {
-    /// The null vector φ of the Jacobian at `v` = (u, p), from a start in u, as a direction (φ, 0) of length 1; `None` where the
-    /// iteration does not converge to a real vector.
+    /// The null vector φ of the Jacobian at `v` = (u, p), from a start in u, as a direction (φ, 0) of length 1, with the size of its
+    /// eigenvalue; `None` where the iteration does not converge to a real vector.
     ///
     /// # Errors
     /// Those of the problem; `StoppedByCaller`; `OutOfMemory`.
@@ -31,7 +31,7 @@ impl Corrector {
         start: &[f64],
         metric: Metric,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Vec<f64>>> {
+    ) -> Result<Option<(Vec<f64>, f64)>> {
         const CONTEXT: &str = "the direction of a bifurcation";
         let n = v.len() - 1;
         let mut row = try_vec(n + 1, 0.0, CONTEXT)?;
@@ -59,7 +59,7 @@ impl Corrector {
         (start, row): (&[f64], &[f64]),
         metric: Metric,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Vec<f64>>> {
+    ) -> Result<Option<(Vec<f64>, f64)>> {
         let n = start.len();
         let mut last = try_vec(n + 1, 0.0, "the direction of a bifurcation")?;
         let inverse = 1.0 / norm(start);
@@ -86,7 +86,7 @@ impl Corrector {
                 *x = next;
             }
             if change <= CONVERGED {
-                return Ok(Some(last));
+                return Ok(Some((last, 1.0 / size)));
             }
         }
         Ok(None)

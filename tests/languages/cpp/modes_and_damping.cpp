@@ -41,6 +41,29 @@ void pressed() {
   near(loaded.harmonics(0)(0, 0).real(), 0.1, 1e-12, "about the static state");
 }
 
+/// Two masses on hardening springs with a weak one between: beside the opposed mode are two localised ones.
+void branches() {
+  const double mass[2][2] = {{1, 0}, {0, 1}}, stiffness[2][2] = {{1.1, -0.1}, {-0.1, 1.1}};
+  auto model = Model::plain(2);
+  model.set_matrix(HBVIB_MASS, mass);
+  model.set_matrix(HBVIB_STIFFNESS, stiffness);
+  for (const Index dof : {0, 1}) model.add_contact(Contact::cubic_spring(dof, HBVIB_GROUND, 0, 1));
+  hbvib::ModeOptions o(-1, 0.5);
+  o.mode_index = 1, o.branches = 1;
+  std::vector<hbvib::Branch> children;
+  {
+    const auto mode = model.nonlinear_mode(harmonics(1), o);
+    claim(mode.bifurcations().size() == 1 && mode.bifurcations()[0].kind == HBVIB_BIFURCATION_BRANCH_POINT, "one branch point");
+    near(mode.mode_point(mode.bifurcations()[0].point).modal_amplitude, std::sqrt(0.8 / 3), 1e-7, "that of the closed form");
+    claim(mode.searched().bifurcations == 1 && mode.descent().bifurcation == -1, "sought from there");
+    children = mode.children();
+  }
+  claim(children.size() == 2 && children[0].descent().bifurcation == 0, "children keep their parent alive");
+  const auto x = children[1].harmonics(children[1].points() - 1);
+  near((x(1, 0) * x(1, 1)).real(), -0.4 / 3, 1e-8, "the product of both motions is that of the closed form");
+  claim(children[0].children().empty(), "no further ones");
+}
+
 /// Two masses of 1 between three springs of 1 + i eta.
 void parts() {
   const double n = std::numeric_limits<double>::quiet_NaN();
@@ -199,6 +222,7 @@ void patterns() {
 int main() {
   return verdict(120, [] {
     pressed();
+    branches();
     parts();
     speed();
     senses();

@@ -326,6 +326,7 @@ contains
       call field('mode', c_loc(s), c_loc(s%mode), c_sizeof(s%mode))
       call field('born_at_force', c_loc(s), c_loc(s%born_at_force), c_sizeof(s%born_at_force))
       call field('merges_at_force', c_loc(s), c_loc(s%merges_at_force), c_sizeof(s%merges_at_force))
+      call field('internal_resonance', c_loc(s), c_loc(s%internal_resonance), c_sizeof(s%internal_resonance))
    end subroutine descent
 
    subroutine searched()
@@ -343,6 +344,11 @@ contains
       call field('amplitude_min', c_loc(s), c_loc(s%amplitude_min), c_sizeof(s%amplitude_min))
       call field('amplitude_max', c_loc(s), c_loc(s%amplitude_max), c_sizeof(s%amplitude_max))
       call field('starts', c_loc(s), c_loc(s%starts), c_sizeof(s%starts))
+      call field('force_curves', c_loc(s), c_loc(s%force_curves), c_sizeof(s%force_curves))
+      call field('incomplete_force_curves', c_loc(s), c_loc(s%incomplete_force_curves), c_sizeof(s%incomplete_force_curves))
+      call field('crossings', c_loc(s), c_loc(s%crossings), c_sizeof(s%crossings))
+      call field('deflations', c_loc(s), c_loc(s%deflations), c_sizeof(s%deflations))
+      call field('deflated', c_loc(s), c_loc(s%deflated), c_sizeof(s%deflated))
    end subroutine searched
 
    subroutine view()
@@ -438,6 +444,9 @@ contains
       call field('guess_len', c_loc(s), c_loc(s%guess_len), c_sizeof(s%guess_len))
       call field('guess_omega', c_loc(s), c_loc(s%guess_omega), c_sizeof(s%guess_omega))
       call field('guess_damping', c_loc(s), c_loc(s%guess_damping), c_sizeof(s%guess_damping))
+      call field('branches', c_loc(s), c_loc(s%branches), c_sizeof(s%branches))
+      call field('branch_depth', c_loc(s), c_loc(s%branch_depth), c_sizeof(s%branch_depth))
+      call field('most_branches', c_loc(s), c_loc(s%most_branches), c_sizeof(s%most_branches))
    end subroutine mode_options
 
    subroutine mode_point()

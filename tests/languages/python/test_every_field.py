@@ -440,7 +440,7 @@ TABLE = {
         "guess_len": [(refused("guess_len"), guessed, -1), (refused("guess_len"), guessed, 3), (CHANGES, guessed, 4)],
         "responses": [(CHANGES, watched, gauges(4, 3)), (refused("responses"), watched, NONE)],
         "responses_len": [(CHANGES, watched, 1), (refused("responses_len"), watched, -1)],
-        "branches": [(refused("branches"), forced, 4), (refused("branches"), forced, -1)],
+        "branches": [(refused("branches"), forced, 5), (refused("branches"), forced, -1)],
         "branch_depth": [(refused("branch_depth"), forced, 9), (refused("branch_depth"), forced, -1)],
         "most_branches": [(refused("most_branches"), forced, 10001), (refused("most_branches"), forced, -1)],
     },
@@ -764,6 +764,9 @@ TABLE["hbvib_mode_options"].update({
                     (refused("guess_omega"), followed(plain), 1.0)],
     "guess_damping": [(CHANGES, begun, 0.9 * mode.damping_ratio[near]), (refused("guess_damping"), begun, NAN),
                       (refused("guess_damping"), followed(plain), 0.1)],
+    "branches": [(refused("branches"), begun, 2), (refused("branches"), begun, -1)],
+    "branch_depth": [(refused("branch_depth"), begun, 9), (refused("branch_depth"), begun, -1)],
+    "most_branches": [(refused("most_branches"), begun, 10001), (refused("most_branches"), begun, -1)],
 })
 
 references = {}

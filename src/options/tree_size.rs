@@ -1,0 +1,30 @@
+//! Size of the tree of branches beside one that was asked for.
+
+use crate::error::{Result, fail};
+
+/// Generations and branches where an option is 0, and their largest numbers.
+const DEPTH: usize = 3;
+const MOST_BRANCHES: usize = 32;
+const TREE_SIZE_LARGEST: (usize, usize) = (8, 10_000);
+
+/// Largest numbers of generations and of branches that options ask for.
+pub(crate) fn size_of_tree(depth: usize, most: usize) -> (usize, usize) {
+    let value = |given: usize, default| if given == 0 { default } else { given };
+    (value(depth, DEPTH), value(most, MOST_BRANCHES))
+}
+
+/// Refuses a larger tree.
+///
+/// # Errors
+/// `Argument`, naming the field, its value and its range.
+pub(super) fn check_tree(depth: usize, most: usize) -> Result<()> {
+    for (name, value, largest) in [
+        ("branch_depth", depth, TREE_SIZE_LARGEST.0),
+        ("most_branches", most, TREE_SIZE_LARGEST.1),
+    ] {
+        if value > largest {
+            return fail!(Argument, "{name} = {value}, needs 0 (automatic) .. {largest}");
+        }
+    }
+    Ok(())
+}
