@@ -92,7 +92,9 @@ fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, V
         harmonics: &harmonics,
         autonomous: false,
         compared: true,
+        fine: None,
         difference: None,
+        quick: false,
     };
     let mut options = FloquetOptions {
         waves,

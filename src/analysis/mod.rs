@@ -24,6 +24,7 @@ mod damping_maximum;
 pub mod design_peak;
 mod detached_curves;
 mod evaluation_need;
+mod fine_motion;
 pub mod fit;
 pub mod floquet;
 mod floquet_of_sliders;

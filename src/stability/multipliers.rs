@@ -5,13 +5,14 @@
 //! which is split off by factorisations that reveal the rank, again and again until nothing is left of it. Its
 //! multipliers are exact zeros, which an eigensolver would find as roots of round-off.
 
-use crate::error::{Error, Result, Status, check_memory, try_push};
+use crate::error::{Result, check_memory, try_copy, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::{eigenvalues, general_eigen};
 use crate::model::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;
-use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, Schur};
+use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the Floquet multipliers";
@@ -28,9 +29,6 @@ const FORGOTTEN: f64 = f64::EPSILON;
 
 /// Largest residual of a known perturbation, relative to it; above it is not invariant after all.
 const INVARIANT: f64 = 1e-6;
-
-/// Iterations of the eigensolver, far above what converging cases need.
-const MULTIPLIERS_MOST_ITERATIONS: usize = 100_000;
 
 /// Facts about the motion from which multipliers are known.
 pub(crate) struct Known<'a> {
@@ -117,10 +115,10 @@ pub(crate) fn classified(
     check_memory::<Complex64>(map.len().saturating_mul(MULTIPLIERS_COPIES), CONTEXT)?;
     let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
         let (rest, zeros) = without_zeros(map.map(|z| z.re), interrupt)?;
-        (real_eigenvalues(&rest)?, zeros)
+        (real_eigenvalues(&rest, interrupt)?, zeros)
     } else {
         let (rest, zeros) = without_zeros(map, interrupt)?;
-        (eigenvalues(rest)?, zeros)
+        (general_eigen::values(rest.as_slice(), rest.nrows(), interrupt)?, zeros)
     };
     let moving = counts.moving;
     let mut found = Vec::new();
@@ -194,12 +192,25 @@ fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>)
         .into_owned()
 }
 
+/// Removes the columns that are zero with their rows, each with one zero multiplier, and returns their number: those of
+/// sliders that slip at the begin of the lapse.
+fn without_zero_columns<T: ComplexField<RealField = f64>>(map: &mut DMatrix<T>) -> usize {
+    let mut zeros = 0;
+    while let Some(j) = (0..map.ncols()).find(|&j| map.column(j).iter().all(T::is_zero)) {
+        *map = core::mem::replace(map, DMatrix::zeros(0, 0))
+            .remove_column(j)
+            .remove_row(j);
+        zeros += 1;
+    }
+    zeros
+}
+
 /// The map on its lasting range, and the number of its zero multipliers.
 fn without_zeros<T: ComplexField<RealField = f64>>(
     mut map: DMatrix<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<(DMatrix<T>, usize)> {
-    let mut zeros = 0;
+    let mut zeros = without_zero_columns(&mut map);
     loop {
         interrupt.check()?;
         let order = map.nrows();
@@ -221,36 +232,11 @@ fn without_zeros<T: ComplexField<RealField = f64>>(
     }
 }
 
-fn real_eigenvalues(map: &DMatrix<f64>) -> Result<Vec<Complex64>> {
-    let order = map.nrows();
+fn real_eigenvalues(map: &DMatrix<f64>, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
     let mut found = Vec::new();
-    if order == 0 {
-        return Ok(found);
-    }
-    let Some(schur) = Schur::try_new(map.clone(), f64::EPSILON, MULTIPLIERS_MOST_ITERATIONS) else {
-        return eigenvalues(map.map(Complex64::from));
-    };
-    for value in schur.complex_eigenvalues().iter() {
-        try_push(&mut found, *value, CONTEXT)?;
-    }
-    Ok(found)
-}
-
-fn eigenvalues(map: DMatrix<Complex64>) -> Result<Vec<Complex64>> {
-    let order = map.nrows();
-    let mut found = Vec::new();
-    if order == 0 {
-        return Ok(found);
-    }
-    let Some(schur) = Schur::try_new(map, f64::EPSILON, MULTIPLIERS_MOST_ITERATIONS) else {
-        return Err(Error::new(
-            Status::NoConvergence,
-            format_args!("the eigenvalues of a map of order {order} were not found"),
-        ));
-    };
-    let (_, triangular) = schur.unpack();
-    for i in 0..order {
-        try_push(&mut found, triangular[(i, i)], CONTEXT)?;
-    }
+    let mut copy = try_copy(map.as_slice(), CONTEXT)?;
+    eigenvalues::of_real(&mut copy, map.nrows(), interrupt, |value| {
+        try_push(&mut found, value, CONTEXT)
+    })?;
     Ok(found)
 }

@@ -96,14 +96,16 @@ impl Products {
             (&equations.damping, &mut damping),
         ] {
             for (r, c, z) in matrix.each() {
-                each_part(n, parts, (r, c), z.complex(), |r, c, v| try_push(entries, (r, c, v), CONTEXT))?;
+                each_part((n, n), parts, (r, c), z.complex(), |r, c, v| {
+                    try_push(entries, (r, c, v), CONTEXT)
+                })?;
             }
         }
         for element in &equations.elements {
             for &(r, a) in element.rows.iter().flatten().flatten() {
                 for &(c, b) in element.rows.iter().flatten().flatten() {
                     let z = a.complex().conj() * b.complex();
-                    each_part(n, parts, (r, c), z, |r, c, _| {
+                    each_part((n, n), parts, (r, c), z, |r, c, _| {
                         try_push(&mut stiffness, (r, c, 0.0), CONTEXT)
                     })?;
                 }
@@ -162,7 +164,7 @@ impl Products {
                         for &(c, b) in from.iter().flatten() {
                             let z = a.complex().conj() * b.complex() * slope;
                             let stiffness = &mut self.stiffness;
-                            each_part(n, parts, (r, c), z, |r, c, v| {
+                            each_part((n, n), parts, (r, c), z, |r, c, v| {
                                 stiffness.add(r, c, v);
                                 Ok(())
                             })?;
@@ -173,9 +175,7 @@ impl Products {
             if let (Some(slider), Some(row), true) = (element.slider, element.rows.first(), piece.memory != 0.0) {
                 for &(r, a) in row.iter().flatten() {
                     let z = a.complex().conj() * piece.memory;
-                    each_part(n, parts, (r, slider), z, |r, c, v| {
-                        // Columns are those of sliders here.
-                        let slider = if c < n { c } else { c - n + sliders };
+                    each_part((n, sliders), parts, (r, slider), z, |r, slider, v| {
                         let scale = self.inverse.as_ref().map_or(1.0, |inverse| inverse[r]);
                         try_push(&mut self.memory, (r, slider, scale * v), CONTEXT)
                     })?;
@@ -216,19 +216,13 @@ impl Products {
         (x, v): (&mut [Numbers], &mut [Numbers]),
         (scale, rate): (f64, f64),
     ) -> Numbers {
-        self.arch.dispatch(AddTerm {
-            new,
-            x,
-            v,
-            scale,
-            rate,
-        })
+        self.arch.dispatch(AddTerm { new, x, v, scale, rate })
     }
 }
 
-/// The real entries of a complex one: z x = (re x_re − im x_im) + i (im x_re + re x_im).
+/// The real entries of a complex one among n rows and m columns: z x = (re x_re − im x_im) + i (im x_re + re x_im).
 fn each_part(
-    n: usize,
+    (n, m): (usize, usize),
     parts: usize,
     (r, c): (usize, usize),
     z: Complex64,
@@ -236,9 +230,9 @@ fn each_part(
 ) -> Result<()> {
     visit(r, c, z.re)?;
     if parts == 2 {
-        visit(n + r, n + c, z.re)?;
+        visit(n + r, m + c, z.re)?;
         if z.im != 0.0 {
-            visit(r, n + c, -z.im)?;
+            visit(r, m + c, -z.im)?;
             visit(n + r, c, z.im)?;
         }
     }
@@ -301,13 +295,7 @@ impl WithSimd for AddTerm<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Numbers {
-        let Self {
-            new,
-            x,
-            v,
-            scale,
-            rate,
-        } = self;
+        let Self { new, x, v, scale, rate } = self;
         let (mut largest, mut sum) = ([0.0_f64; LANES], [0.0_f64; LANES]);
         for ((new, x), v) in new.iter_mut().zip(x).zip(v) {
             let mut k = 0;

@@ -156,12 +156,7 @@ impl<T: Number> VariationalStep<T> {
     }
 
     /// One part by the Taylor series; `false`: it is too long, and nothing has changed.
-    fn series(
-        &mut self,
-        equations: &mut VariationalEquations<T>,
-        h: f64,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<bool> {
+    fn series(&mut self, equations: &mut VariationalEquations<T>, h: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
         let Some(products) = &self.products else {
             return Ok(true);
         };
