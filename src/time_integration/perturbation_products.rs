@@ -294,20 +294,31 @@ impl WithSimd for AddTerm<'_> {
     type Output = Numbers;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> Numbers {
-        let Self { new, x, v, scale, rate } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> Numbers {
+        let Self {
+            new,
+            x,
+            v,
+            scale,
+            rate,
+        } = self;
+        let (scale, rate) = (simd.splat_f64s(scale), simd.splat_f64s(rate));
         let (mut largest, mut sum) = ([0.0_f64; LANES], [0.0_f64; LANES]);
+        let (largest_lanes, _) = S::as_mut_simd_f64s(&mut largest);
+        let (sum_lanes, _) = S::as_mut_simd_f64s(&mut sum);
         for ((new, x), v) in new.iter_mut().zip(x).zip(v) {
-            let mut k = 0;
-            while k < LANES {
-                let term = scale * new[k];
-                new[k] = term;
-                x[k] += term;
-                v[k] += rate * term;
-                let size = term.abs();
-                largest[k] = if size > largest[k] { size } else { largest[k] };
-                sum[k] += size;
-                k += 1;
+            let (new, _) = S::as_mut_simd_f64s(new);
+            let (x, _) = S::as_mut_simd_f64s(x);
+            let (v, _) = S::as_mut_simd_f64s(v);
+            let sizes = largest_lanes.iter_mut().zip(sum_lanes.iter_mut());
+            for (((new, x), v), (largest, sum)) in new.iter_mut().zip(x).zip(v).zip(sizes) {
+                let term = simd.mul_f64s(scale, *new);
+                *new = term;
+                *x = simd.add_f64s(*x, term);
+                *v = simd.add_f64s(*v, simd.mul_f64s(rate, term));
+                let size = simd.abs_f64s(term);
+                *largest = simd.max_f64s(*largest, size);
+                *sum = simd.add_f64s(*sum, size);
             }
         }
         for (largest, sum) in largest.iter_mut().zip(sum) {
