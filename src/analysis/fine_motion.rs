@@ -14,10 +14,17 @@ use crate::options::SolverOptions;
 use crate::results::Recovery;
 use num_complex::Complex64;
 
+/// States in time for each unknown of a point from which a correction takes less time than the lapses that it saves. Tuned on the
+/// ring damper, 96 states and 10 unknowns, where it saves three quarters of them, and on chains of three masses with stops, 6 and 57,
+/// where it takes twice as long as they do.
+const STATES_FOR_EACH: usize = 2;
+
 /// Corrected motions of the points of one forced response.
 pub(super) struct FineMotion<'a> {
     estimator: Box<ForcedEstimator<'a>>,
     models: &'a ModelCache,
+    /// Displacements and velocities in time.
+    states: usize,
     interrupt: &'a Interrupt<'a>,
 }
 
@@ -37,15 +44,20 @@ impl<'a> FineMotion<'a> {
         Ok(Self {
             estimator: boxed(estimator)?,
             models,
+            states: 2 * model.structure().ndof() * model.structure().repeating_sectors(),
             interrupt,
         })
     }
 
-    /// The harmonics of all degrees of freedom of a point after its correction; `None` where that is not certified.
+    /// The harmonics of all degrees of freedom of a point after its correction; `None` where that is not certified, or does
+    /// not pay.
     ///
     /// # Errors
     /// Those of callbacks; `OutOfMemory`, `StoppedByCaller`.
     pub fn at(&mut self, solved: &Solved<'_>) -> Result<Option<Vec<Complex64>>> {
+        if self.states < STATES_FOR_EACH * solved.motion.len() {
+            return Ok(None);
+        }
         let found = self.estimator.at(solved)?;
         let numbers = found.corrected.set.numbers();
         let highest = numbers.last().copied().unwrap_or(0);
