@@ -85,6 +85,7 @@ mod subharmonic_net;
 pub mod synthesis;
 pub mod time_response;
 mod tracked_damping;
+mod two_numbers_of_modes;
 mod unbounded_response;
 mod verified_responses;
 pub mod verify;

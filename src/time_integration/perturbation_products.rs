@@ -295,13 +295,7 @@ impl WithSimd for AddTerm<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Numbers {
-        let Self {
-            new,
-            x,
-            v,
-            scale,
-            rate,
-        } = self;
+        let Self { new, x, v, scale, rate } = self;
         let (scale, rate) = (simd.splat_f64s(scale), simd.splat_f64s(rate));
         let (mut largest, mut sum) = ([0.0_f64; LANES], [0.0_f64; LANES]);
         let (largest_lanes, _) = S::as_mut_simd_f64s(&mut largest);
