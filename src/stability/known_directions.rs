@@ -17,7 +17,7 @@ const NO_STRAIN: f64 = 1e-12;
 
 /// Last pivot over the first one above which no singular value is rounding. Chosen: pivots are larger than singular values by a
 /// few powers of ten at most.
-const REGULAR: f64 = 1e-8;
+const NO_DOUBT_OF_RANK: f64 = 1e-8;
 
 /// Iterations of the singular values, far above what converging cases need.
 const KNOWN_DIRECTIONS_MOST_ITERATIONS: usize = 100_000;
@@ -99,7 +99,7 @@ fn is_regular(strain: &DMatrix<Complex64>) -> bool {
         let r = ColPivQR::new(a).unpack_r();
         let size = |i: usize| r[(i, i)].clone().modulus();
         let last = r.ncols().min(r.nrows());
-        last > 0 && size(last - 1) > REGULAR * size(0)
+        last > 0 && size(last - 1) > NO_DOUBT_OF_RANK * size(0)
     }
     if strain.iter().all(|z| z.im == 0.0) {
         least(strain.map(|z| z.re))

@@ -28,7 +28,7 @@ const MULTIPLIERS_ROUNDING: f64 = 1e-12;
 const FORGOTTEN: f64 = f64::EPSILON;
 
 /// Lapses of a period for each slider that moves from which a root of round-off vanishes. Chosen: round-off squared.
-const VANISHING: usize = 2;
+const LAPSES_FOR_EACH_SLIDER: usize = 2;
 
 /// Largest residual of a known perturbation, relative to it; above it is not invariant after all.
 const INVARIANT: f64 = 1e-6;
@@ -221,7 +221,7 @@ fn without_zeros<T: ComplexField<RealField = f64>>(
     interrupt: &Interrupt<'_>,
 ) -> Result<(DMatrix<T>, usize)> {
     let mut zeros = without_zero_columns(&mut map);
-    if lapses >= VANISHING * moving.saturating_sub(zeros) {
+    if lapses >= LAPSES_FOR_EACH_SLIDER * moving.saturating_sub(zeros) {
         return Ok((map, zeros));
     }
     loop {

@@ -8,14 +8,13 @@
 
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::time_integration::variational_equations::{LANES, Number, VariationalElement, VariationalEquations};
+use crate::time_integration::variational_equations::{
+    LANES, Number, Numbers, VariationalElement, VariationalEquations,
+};
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 const CONTEXT: &str = "a step of perturbations";
-
-/// One real number of each of the perturbations that are carried together.
-pub(super) type Numbers = [f64; LANES];
 
 /// A real sparse matrix, row by row.
 struct Rows {

@@ -8,7 +8,6 @@ use crate::linalg::lu::Scalar;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::Entry;
 use crate::model::sector_motion::MOTION_TERMS;
-use crate::time_integration::perturbation_products::Numbers;
 use crate::time_integration::unrolled_structure::{OF_ONE_ELEMENT, Sparse, System};
 use num_complex::Complex64;
 
@@ -16,6 +15,9 @@ const CONTEXT: &str = "the equations of perturbations";
 
 /// Perturbations that are carried together.
 pub(crate) const LANES: usize = 8;
+
+/// One real number of each of the perturbations that are carried together.
+pub(super) type Numbers = [f64; LANES];
 
 /// Numbers of perturbations: real ones, or complex ones.
 pub(crate) trait Number: Entry + Scalar {}

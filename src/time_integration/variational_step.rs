@@ -8,9 +8,9 @@ use crate::error::{Result, Status, fail, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 use crate::time_integration::gauss::STAGES;
-use crate::time_integration::perturbation_products::{Numbers, Products};
+use crate::time_integration::perturbation_products::Products;
 use crate::time_integration::variation::{Collocation, Interval};
-use crate::time_integration::variational_equations::{LANES, Number, VariationalEquations};
+use crate::time_integration::variational_equations::{LANES, Number, Numbers, VariationalEquations};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "a step of perturbations";

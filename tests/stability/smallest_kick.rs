@@ -230,8 +230,9 @@ fn amplitudes_after_kicks((force, omega): (f64, f64), near: Complex64, impulse: 
             [v, force * (omega * t - lag(s)).cos() - spring - 0.1 * v]
         })
     };
-    let plus =
-        |z: &Ring, k: &Ring, h: f64| -> Ring { std::array::from_fn(|s| [z[s][0] + h * k[s][0], z[s][1] + h * k[s][1]]) };
+    let plus = |z: &Ring, k: &Ring, h: f64| -> Ring {
+        std::array::from_fn(|s| [z[s][0] + h * k[s][0], z[s][1] + h * k[s][1]])
+    };
     let mut z: Ring = std::array::from_fn(|s| {
         let turned = near * Complex64::cis(-lag(s));
         [turned.re, -omega * turned.im]

@@ -139,9 +139,9 @@ impl WithSimd for Reduce<'_> {
         }
         // The columns of A v, then A − (A v) vᵀ/s: four columns at a time would not be quicker, the rows fit.
         let count = v.len();
-        for rows in 0..n.div_ceil(ROWS) {
-            let (from, to) = (rows * ROWS, ((rows + 1) * ROWS).min(n));
-            let mut sum = [0.0; ROWS];
+        for rows in 0..n.div_ceil(REFLECTED_ROWS) {
+            let (from, to) = (rows * REFLECTED_ROWS, ((rows + 1) * REFLECTED_ROWS).min(n));
+            let mut sum = [0.0; REFLECTED_ROWS];
             for (column, v) in rest.chunks_exact(n).zip(v.iter()) {
                 for (sum, x) in sum.iter_mut().zip(&column[from..to]) {
                     *sum += v * x;
@@ -160,7 +160,7 @@ impl WithSimd for Reduce<'_> {
 }
 
 /// Rows to which a reflection is applied from the right at a time.
-const ROWS: usize = 64;
+const REFLECTED_ROWS: usize = 64;
 
 #[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
