@@ -178,12 +178,14 @@ fn on_quickest(
         (None, None) => first_number(at_speed, motion.omega, (way, kept), options.waves, interrupt)?,
     };
     let mut few: Option<Found> = None;
+    let mut refused = None;
     for _ in 0..=DOUBLINGS {
         let next = on_a_number(at_speed, motion, (options, way, modes), (hooks, kept), interrupt);
         let mut many = match next {
             // A motion on too few modes may be far from the point.
             Err(e) if e.status == Status::NoConvergence && few.is_none() && options.modes.is_none() => {
                 modes *= 2;
+                refused = Some(e);
                 continue;
             }
             next => next?,
@@ -208,6 +210,9 @@ fn on_quickest(
         }
         few = Some(many);
         modes *= 2;
+    }
+    if let (None, Some(refused)) = (&few, refused) {
+        return Err(refused);
     }
     fail!(
         NoConvergence,
