@@ -490,12 +490,12 @@ module hbvib
 
    !> Numbers of the stability of a point.
    type, bind(c) :: hbvib_floquet_info
-      integer(c_int32_t) :: struct_size = 88, grazing = 0
+      integer(c_int32_t) :: struct_size = 96, grazing = 0
       real(c_double) :: omega = 0, radius = 0
       integer(c_int64_t) :: count = 0, unstable = 0, neutral = 0, grazing_contact = -1
       real(c_double) :: orbit_change = 0, residual = 0
       integer(c_int64_t) :: modes = 0
-      real(c_double) :: modes_change = 0
+      real(c_double) :: modes_change = 0, radius_error = 0
    end type hbvib_floquet_info
 
    !> The smallest kick that was found.

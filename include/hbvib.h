@@ -4019,6 +4019,9 @@ typedef struct {
   /// Largest change of a multiplier above half the radius from half as many modes; NaN where
   /// orbit_change is above 0.2.
   double modes_change;
+  /// Estimate of the error of the radius that the other modes make, from the changes of those
+  /// multipliers that reach as far from zero; 0 on all degrees of freedom, NaN as modes_change.
+  double radius_error;
 } hbvib_floquet_info;
 
 /// Fills the numbers of a stability with zeros, grazing_contact with -1.

@@ -863,6 +863,7 @@ struct hbvib_floquet_info {
   double residual;
   int64_t modes;
   double modes_change;
+  double radius_error;
 };
 struct hbvib_kick {
   uint32_t struct_size;

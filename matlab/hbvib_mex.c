@@ -1351,6 +1351,7 @@ static const Field floquet_info_fields[] = {
   {"residual", DOUBLE, offsetof(hbvib_floquet_info, residual), 1, NULL},
   {"modes", INT64, offsetof(hbvib_floquet_info, modes), 1, NULL},
   {"modes_change", DOUBLE, offsetof(hbvib_floquet_info, modes_change), 1, NULL},
+  {"radius_error", DOUBLE, offsetof(hbvib_floquet_info, radius_error), 1, NULL},
 };
 static hbvib_status floquet_info_fill(void *s) { return hbvib_floquet_info_init(s, sizeof(hbvib_floquet_info)); }
 static const Struct FLOQUET_INFO_STRUCT = {"floquet_info", sizeof(hbvib_floquet_info), floquet_info_fields, sizeof floquet_info_fields / sizeof *floquet_info_fields, floquet_info_fill};

@@ -55,13 +55,13 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "the same with the stability of the wave",
         unit: Unit::Lu11,
-        stored: 811_000.0,
+        stored: 260_000.0,
         run: || with_stability(Some(Waves::Wave)),
     },
     Row {
         name: "the same with the stability of the wheel",
         unit: Unit::Lu11,
-        stored: 1_440_000.0,
+        stored: 439_000.0,
         run: || with_stability(Some(Waves::Wheel)),
     },
 ];

@@ -1002,7 +1002,7 @@ verification: uint32 struct_size; int32 same_solution marched reserved; int64 ha
     worst_response_error
 floquet_options: uint32 struct_size; int32 waves refine modes; double tolerance; int64 max_periods
 floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
-    double orbit_change residual; int64 modes; double modes_change
+    double orbit_change residual; int64 modes; double modes_change radius_error
 kick: uint32 struct_size; int32 verified; double impulse returning phase estimate estimate_phase velocity multiplier
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
 parameter_options: uint32 struct_size; int32 follow; pointer parameter; double start stop omega; pointer at; int64

@@ -358,7 +358,7 @@ class Floquet(NamedTuple):
     moved the point, `omega` the angular frequency of the motion. `reason` tells why the radius is NaN, or is empty.
     A large structure is computed on `modes` modes of each nodal diameter, not on all degrees of freedom (0);
     `modes_change` is the largest change of a multiplier above half the radius from half as many, NaN where
-    `orbit_change` is above 0.2.
+    `orbit_change` is above 0.2; `radius_error` estimates the error of the radius that the other modes make.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -381,3 +381,4 @@ class Floquet(NamedTuple):
     modes: int
     modes_change: float
     status: Status
+    radius_error: float = 0.0

@@ -165,4 +165,4 @@ class _TimeIntegration(_Matrices, _Contacts):
                    Grazing.LANDING: "contact {} closes without normal speed"}
         reason = reasons[Grazing(info.grazing)].format(info.grazing_contact)
         return Floquet(mu[:info.count], names, info.radius, info.unstable, info.neutral, info.orbit_change, info.omega,
-                       info.residual, reason, info.modes, info.modes_change, Status(status))
+                       info.residual, reason, info.modes, info.modes_change, Status(status), info.radius_error)

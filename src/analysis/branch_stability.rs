@@ -13,11 +13,14 @@ use crate::model::speed::Speed;
 use crate::options::{FloquetOptions, Waves};
 use crate::results::{Floquet, MultiplierClass, Recovery, Verdict};
 use crate::time_integration::{State, System};
+use num_complex::Complex64;
 
 /// Stability of the points of one branch.
 pub(super) struct BranchStability<'a> {
     model: &'a Model,
     options: FloquetOptions,
+    /// Whether the motion is integrated on all degrees of freedom.
+    pub on_all_degrees: bool,
     /// Modes of a large structure.
     modes: KeptModes,
     interrupt: &'a Interrupt<'a>,
@@ -39,10 +42,12 @@ impl<'a> BranchStability<'a> {
             ..FloquetOptions::default()
         };
         let mut modes = KeptModes::default();
-        if modes.on_all_degrees(model, omega, &options)? {
+        let on_all_degrees = modes.on_all_degrees(model, omega, &options)?;
+        if on_all_degrees {
             System::new(model, omega, interrupt)?;
         }
         Ok(Self {
+            on_all_degrees,
             model,
             options,
             modes,
@@ -55,12 +60,18 @@ impl<'a> BranchStability<'a> {
     }
 
     /// The same for the next point of the curve, at which every contact may be linear.
-    pub fn along(&mut self, resolution: &Resolution, point: &Point, linear: bool) -> Result<&Verdict> {
+    pub fn along(
+        &mut self,
+        resolution: &Resolution,
+        point: &Point,
+        fine: Option<&[Complex64]>,
+        linear: bool,
+    ) -> Result<&Verdict> {
         let omega = point.parameter();
         let fixed = !matches!(self.model.speed(), Speed::PerOmega(_));
         let verdict = match (self.linear, &self.last[1]) {
             (Some(before), Some(last)) if linear && fixed => with_linear_contacts(last, before / omega)?,
-            _ => self.at(resolution, point)?,
+            _ => self.solve(resolution, point, fine, true)?,
         };
         self.linear = (linear && verdict.unstable.is_some()).then_some(omega);
         self.last.rotate_left(1);
@@ -77,9 +88,21 @@ impl<'a> BranchStability<'a> {
         Some((before.clone()?, after.clone()?))
     }
 
+    /// Stability of the motion of a solved point that need not lie on the curve; `fine`: its motion with more harmonics.
+    pub fn at(&mut self, resolution: &Resolution, point: &Point, fine: Option<&[Complex64]>) -> Result<Verdict> {
+        self.solve(resolution, point, fine, false)
+    }
+
     /// Stability of the motion of a solved point. The multipliers are those of the motion in time that shooting finds
-    /// near it; of the path of the point itself where it finds none, as near a fold.
-    pub fn at(&mut self, resolution: &Resolution, point: &Point) -> Result<Verdict> {
+    /// near it, to its tolerance or (not `quick`) to round-off; of the path of the point itself where it finds none, as
+    /// near a fold.
+    fn solve(
+        &mut self,
+        resolution: &Resolution,
+        point: &Point,
+        fine: Option<&[Complex64]>,
+        quick: bool,
+    ) -> Result<Verdict> {
         let highest = resolution.condensed.set().numbers().last().copied().unwrap_or(0);
         let solution = (point.unknowns(), point.parameter(), 0.0);
         let harmonics = Recovery::of(resolution, solution, self.interrupt)?.all(highest)?;
@@ -89,7 +112,9 @@ impl<'a> BranchStability<'a> {
             harmonics: &harmonics,
             autonomous: false,
             compared: false,
+            fine,
             difference: near.as_ref(),
+            quick,
         };
         for refine in [true, false] {
             let options = FloquetOptions { refine, ..self.options };

@@ -59,7 +59,9 @@ pub fn floquet(
             harmonics: &harmonics,
             autonomous: branch.mode().is_some(),
             compared: true,
+            fine: None,
             difference: None,
+            quick: false,
         };
         let mut kept = KeptModes::default();
         Ok(floquet_of(model, &motion, options, (hooks, &mut kept), &interrupt)?.stability)

@@ -3,6 +3,7 @@
 use super::*;
 use crate::analysis::floquet_on_modes::{KeptModes, floquet_of};
 use crate::analysis::forced_response;
+use crate::analysis::two_numbers_of_modes::{change, error_of_radius};
 use crate::hooks::Hooks;
 use crate::linalg::matrix_view::MatrixView;
 use crate::model::structure::MatrixKind;
@@ -92,7 +93,9 @@ fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, V
         harmonics: &harmonics,
         autonomous: false,
         compared: true,
+        fine: None,
         difference: None,
+        quick: false,
     };
     let mut options = FloquetOptions {
         waves,
@@ -166,6 +169,27 @@ fn sliders_of_waves_have_the_multipliers_of_all_degrees_of_freedom() {
 #[test]
 fn sliders_of_a_wheel_have_the_multipliers_of_all_degrees_of_freedom() {
     compare(&wheel(2, 0.0), 2.9, Waves::Wheel);
+}
+
+/// The radius on all degrees of freedom lies within the error told by two numbers of modes.
+#[test]
+fn the_error_of_the_radius_holds_on_sliders() {
+    let models = [
+        (plain(), 3.0),
+        (plain(), 1.7),
+        (wheel(2, 0.0), 2.9),
+        (wheel(3, 0.01), 1.6),
+    ];
+    for (model, omega) in &models {
+        let (all, found) = both(model, *omega, Waves::Wave, &[2, 3, 4, 6]);
+        for (few, many) in [(0, 2), (1, 3)] {
+            let (few, many) = (&found[few], &found[many]);
+            let off = (many.radius - all.radius).abs();
+            let (told, change) = (error_of_radius(few, many), change(few, many));
+            println!("at {omega}: {off:.1e} off, {told:.1e} told, {change:.1e} of any multiplier");
+            assert!(off <= told.max(1e-10), "{off:.1e} {told:.1e}");
+        }
+    }
 }
 
 #[test]

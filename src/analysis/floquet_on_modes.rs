@@ -1,7 +1,8 @@
 //! Choice between the whole structure and modes of it, and the comparison of two numbers of modes.
 
 use crate::analysis::floquet_of_sliders::{SliderModes, are_sliders, perturbed_sliders};
-use crate::analysis::perturbed_motion::{FAR, Found, Motion, Subject, perturbed};
+use crate::analysis::perturbed_motion::{Found, Motion, Subject, perturbed};
+use crate::analysis::two_numbers_of_modes::{agree, change, error_of_radius};
 use crate::error::{Result, Status, fail, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
@@ -12,7 +13,7 @@ use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;
 use crate::options::{FloquetOptions, Waves};
-use crate::results::{Floquet, Multiplier, MultiplierClass};
+use crate::results::Floquet;
 use crate::stability::{Extent, fastest_motion};
 use crate::time_integration::{refuse_massless, refuse_structural_damping};
 use std::f64::consts::TAU;
@@ -31,15 +32,6 @@ const DOUBLINGS: usize = 4;
 
 /// Frequency below which modes belong to the first ones, relative to that of the highest force.
 const CUTOFF: f64 = 5.0;
-
-/// Difference of the radius, as a share of its distance from the unit circle, up to which two numbers of modes agree.
-const AGREEMENT: f64 = 0.01;
-
-/// The same where the radius is next to 1.
-const FLOQUET_ON_MODES_LEAST: f64 = 1e-7;
-
-/// Share of the radius above which multipliers of two numbers of modes are compared.
-const FLOQUET_ON_MODES_LARGE: f64 = 0.5;
 
 /// Shapes and small models that points of one branch share.
 #[derive(Default)]
@@ -186,12 +178,14 @@ fn on_quickest(
         (None, None) => first_number(at_speed, motion.omega, (way, kept), options.waves, interrupt)?,
     };
     let mut few: Option<Found> = None;
+    let mut refused = None;
     for _ in 0..=DOUBLINGS {
         let next = on_a_number(at_speed, motion, (options, way, modes), (hooks, kept), interrupt);
         let mut many = match next {
             // A motion on too few modes may be far from the point.
             Err(e) if e.status == Status::NoConvergence && few.is_none() && options.modes.is_none() => {
                 modes *= 2;
+                refused = Some(e);
                 continue;
             }
             next => next?,
@@ -199,6 +193,7 @@ fn on_quickest(
         if let Some(few) = &few {
             let (used, more) = (few.stability.modes, many.stability.modes);
             many.stability.modes_change = change(&few.stability, &many.stability);
+            many.stability.radius_error = error_of_radius(&few.stability, &many.stability);
             // Where no more modes exist nothing is left out.
             if agree(&few.stability, &many.stability) || more == used {
                 kept.last = Some(modes);
@@ -215,6 +210,9 @@ fn on_quickest(
         }
         few = Some(many);
         modes *= 2;
+    }
+    if let (None, Some(refused)) = (&few, refused) {
+        return Err(refused);
     }
     fail!(
         NoConvergence,
@@ -255,33 +253,6 @@ fn log_radius(hooks: &mut Hooks<'_>, stability: &Floquet) {
         LogLevel::Info,
         &format!("on {modes} modes of each nodal diameter the radius is {radius:.6}"),
     );
-}
-
-/// Whether two numbers of modes have the same verdict.
-fn agree(few: &Floquet, many: &Floquet) -> bool {
-    if few.grazing.is_some() || many.grazing.is_some() {
-        return few.grazing.is_some() == many.grazing.is_some();
-    }
-    let allowed = FLOQUET_ON_MODES_LEAST.max(AGREEMENT * (1.0 - many.radius).abs());
-    few.unstable == many.unstable && (many.radius - few.radius).abs() <= allowed
-}
-
-/// Largest distance of a large ordinary multiplier on few modes from the next one on many; NaN where the motion is far
-/// from the point: two numbers of modes may agree on a motion that has little to do with it.
-fn change(few: &Floquet, many: &Floquet) -> f64 {
-    if few.orbit_change.max(many.orbit_change) > FAR {
-        return f64::NAN;
-    }
-    let ordinary = |m: &&Multiplier| m.class == MultiplierClass::Ordinary;
-    let mut largest = (many.radius - few.radius).abs();
-    for a in few.multipliers.iter().filter(ordinary) {
-        if a.value.norm() >= FLOQUET_ON_MODES_LARGE * few.radius {
-            let all = many.multipliers.iter().filter(ordinary);
-            let next = all.map(|b| (a.value - b.value).norm()).fold(f64::INFINITY, f64::min);
-            largest = largest.max(next);
-        }
-    }
-    largest
 }
 
 /// The modes below a multiple of the frequency of the highest force.

@@ -247,7 +247,7 @@ fn follow(
     let given = given_start(range, resolution, coarse.as_ref())?;
     let entry = given.as_deref().filter(|_| inside.is_some());
     let entry = entry.map(|guess| try_copy(guess, "the guess")).transpose()?;
-    let extended = extended_models(solver.estimate_error || levels.is_automatic())?;
+    let extended = extended_models(solver.stability.is_some() || solver.estimate_error || levels.is_automatic())?;
     let models = (&levels, &stuck, (&extended, waves));
     let mut response = boxed(|| {
         ForcedDiscretised::new(

@@ -7,6 +7,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
+use crate::analysis::fine_motion::FineMotion;
 use crate::analysis::forced_equations::Equations;
 use crate::analysis::point_error::observed;
 use crate::analysis::watched_responses::WatchedResponses;
@@ -106,6 +107,8 @@ pub(super) struct ForcedDiscretised<'a> {
     /// Whether every contact was linear at the point of the curve recorded last.
     linear: bool,
     stability: Option<BranchStability<'a>>,
+    /// Motions with more harmonics, for stability.
+    fine: Option<FineMotion<'a>>,
 }
 
 impl<'a> ForcedDiscretised<'a> {
@@ -133,6 +136,10 @@ impl<'a> ForcedDiscretised<'a> {
         let responses = WatchedResponses::new(responses, together);
         branch.watch((responses.list, together), responses.is_observed())?;
         let estimates = solver.estimate_error || levels.is_automatic();
+        let stability = match solver.stability {
+            Some(waves) => Some(BranchStability::new(model, waves, settings.start, interrupt)?),
+            None => None,
+        };
         let equations = boxed(|| Equations::new(resolution, &settings, (responses.list, response), guess, interrupt))?;
         Ok(Self {
             flexibility_way: equations.problem.flexibility_way(),
@@ -157,10 +164,14 @@ impl<'a> ForcedDiscretised<'a> {
             first_iterations: 0,
             guess_used: None,
             linear: false,
-            stability: match solver.stability {
-                Some(waves) => Some(BranchStability::new(model, waves, settings.start, interrupt)?),
-                None => None,
+            fine: match &stability {
+                Some(stability) if stability.on_all_degrees => {
+                    let observed = (response, (settings.start, settings.end));
+                    Some(FineMotion::new(model, solver, observed, extended, interrupt)?)
+                }
+                _ => None,
             },
+            stability,
         })
     }
 
@@ -296,6 +307,31 @@ impl<'a> ForcedDiscretised<'a> {
             iterations: self.first_iterations,
         };
         estimator.at(&solved).map(Some)
+    }
+
+    /// The motion of the point evaluated last with more harmonics, where stability needs it and it is certified.
+    fn fine_motion(&mut self, point: &Point) -> Result<Option<Vec<Complex64>>> {
+        let Some(fine) = &mut self.fine else {
+            return Ok(None);
+        };
+        let Equations {
+            resolution,
+            problem,
+            response,
+            ..
+        } = &mut *self.resolutions.current;
+        let condensed = &resolution.condensed;
+        problem.response(point.unknowns(), point.parameter(), response);
+        fine.at(&Solved {
+            condensed,
+            motion: point.unknowns(),
+            omega: point.parameter(),
+            response: response[observed(condensed)] * condensed.length(),
+            watched: &[],
+            together: false,
+            sticks: Some(problem.forces().all_stuck()),
+            iterations: self.first_iterations,
+        })
     }
 
     /// Estimated relative error of the response amplitude; NaN if unknown or not requested.
@@ -449,9 +485,15 @@ impl Discretised for ForcedDiscretised<'_> {
     }
 
     fn verdict(&mut self, point: &Point) -> Result<Option<Verdict>> {
-        self.stale = true;
+        self.stale |= self.fine.is_some();
+        self.refresh(point)?;
+        let fine = self.fine_motion(point)?;
         let resolution = self.resolutions.current.resolution;
-        self.stability.as_mut().map(|s| s.at(resolution, point)).transpose()
+        let found = self
+            .stability
+            .as_mut()
+            .map(|s| s.at(resolution, point, fine.as_deref()));
+        found.transpose()
     }
 
     fn further_responses(&self) -> core::ops::Range<usize> {
@@ -506,8 +548,10 @@ impl Recorder for ForcedDiscretised<'_> {
         let record = self.resolutions.current.record(point, error, &self.responses.seen)?;
         self.recorder.record(&record, point.stalled)?;
         self.linear = self.resolutions.current.problem.forces().all_linear();
+        let fine = if self.linear { None } else { self.fine_motion(point)? };
         if let Some(stability) = &mut self.stability {
-            let verdict = stability.along(self.resolutions.current.resolution, point, self.linear)?;
+            let resolution = self.resolutions.current.resolution;
+            let verdict = stability.along(resolution, point, fine.as_deref(), self.linear)?;
             self.recorder.record_verdict(verdict)?;
         }
         self.resolutions.note_recorded();

@@ -29,8 +29,12 @@ pub(super) struct Motion<'a> {
     pub autonomous: bool,
     /// Whether the motion in time is compared with the harmonics.
     pub compared: bool,
-    /// Difference of the state in time and that of the harmonics at a neighbouring point, from which shooting begins.
+    /// The motion with more harmonics, from which shooting begins.
+    pub fine: Option<&'a [Complex64]>,
+    /// Difference of the state in time and that of the harmonics at a neighbouring point, from which it begins else.
     pub difference: Option<&'a State>,
+    /// Whether shooting ends at its tolerance, and does not go on to round-off.
+    pub quick: bool,
 }
 
 /// Stability of a motion.
@@ -140,14 +144,11 @@ pub(super) fn perturbed(
             ..TimeOptions::default()
         };
         let start = state.try_clone()?;
-        let near = motion.difference.filter(|near| near.len() == state.len());
         let mut found = None;
-        // From the difference found at a neighbouring point first, then from the harmonics as they are.
-        for difference in [near, None].into_iter().skip(usize::from(near.is_none())) {
-            let mut begin = start.try_clone()?;
-            if let Some(difference) = difference {
-                begin.add(1.0, difference);
-            }
+        // From the motion with more harmonics or with the difference found at a neighbouring point first, then from the
+        // harmonics as they are.
+        let near = nearest(subject, &system, motion, &start)?;
+        for begin in near.into_iter().chain([start.try_clone()?]) {
             let in_system = (&mut system, &mut event_loop);
             found = shoot(in_system, subject, motion, (&in_time, hooks), begin)?;
             if found.is_some() {
@@ -201,6 +202,19 @@ pub(super) fn perturbed(
     })
 }
 
+/// A state that is nearer to the motion in time than that of its harmonics; `None` where none is known.
+fn nearest(subject: &Subject<'_>, system: &System<'_>, motion: &Motion<'_>, start: &State) -> Result<Option<State>> {
+    if let Some(fine) = motion.fine {
+        return subject.state(system, fine).map(Some);
+    }
+    let Some(difference) = motion.difference.filter(|near| near.len() == start.len()) else {
+        return Ok(None);
+    };
+    let mut begin = start.try_clone()?;
+    begin.add(1.0, difference);
+    Ok(Some(begin))
+}
+
 /// Shoots from a state: in half the sectors where the others move opposite to them.
 fn shoot(
     (system, event_loop): (&mut System<'_>, &mut EventLoop),
@@ -218,7 +232,11 @@ fn shoot(
         let mut half = system.folded()?;
         let mut in_half = EventLoop::new(&half, options.tolerance)?;
         let start = state.fold(system)?;
-        let found = Search::new(&mut half, &mut in_half, options, hooks, start)?.closest()?;
+        let mut search = Search::new(&mut half, &mut in_half, options, hooks, start)?;
+        if motion.quick {
+            search = search.quick();
+        }
+        let found = search.closest()?;
         return Ok(found.map(|mut steady| {
             state.unfold(&steady.state, system);
             steady.state = state;
@@ -228,6 +246,9 @@ fn shoot(
     let mut search = Search::new(system, event_loop, options, hooks, state)?;
     if motion.autonomous {
         search = search.free_frequency();
+    }
+    if motion.quick {
+        search = search.quick();
     }
     search.closest()
 }

@@ -87,7 +87,8 @@ pub fn smallest_kick(
     if model.structure().sectors() > 1 {
         return fail!(
             Unsupported,
-            "a kick at one sector is no wave: take the whole wheel as a plain model (hbvib_wheel_new)"
+            "no kick leaves a wave: sectors that repeat each other around the wheel move periodically; take the whole wheel as a plain model \
+             (hbvib_wheel_new), and a saddle of it with one unstable direction"
         );
     }
     let interrupt = hooks.interrupt();

@@ -132,6 +132,9 @@ pub struct hbvib_floquet_info {
     /// Largest change of a multiplier above half the radius from half as many modes; NaN where
     /// orbit_change is above 0.2.
     pub modes_change: f64,
+    /// Estimate of the error of the radius that the other modes make, from the changes of those
+    /// multipliers that reach as far from zero; 0 on all degrees of freedom, NaN as modes_change.
+    pub radius_error: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_floquet_info {
@@ -152,6 +155,7 @@ unsafe impl VersionedStruct for hbvib_floquet_info {
             residual: 0.0,
             modes: 0,
             modes_change: 0.0,
+            radius_error: 0.0,
         }
     }
 }
@@ -262,6 +266,7 @@ pub unsafe extern "C" fn hbvib_floquet(
                 residual: found.residual,
                 modes: found.modes as i64,
                 modes_change: found.modes_change,
+                radius_error: found.radius_error,
                 ..hbvib_floquet_info::defaults()
             };
             unsafe { fill_out(out, value) };

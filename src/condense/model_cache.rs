@@ -73,6 +73,12 @@ impl ModelCache {
         self.slots.iter().find_map(|slot| slot.1.get())
     }
 
+    /// The model of the slot of a number of harmonics, if it was made.
+    #[must_use]
+    pub fn made(&self, highest: usize) -> Option<&Resolution> {
+        self.slots.get(self.slot_with(highest))?.1.get()
+    }
+
     /// The model with the most harmonics that was made for a slot below one.
     #[must_use]
     pub fn below(&self, slot: usize) -> Option<&Resolution> {

@@ -33,6 +33,9 @@ pub struct Floquet {
     /// Largest change of a multiplier above half the radius from half as many modes; 0 on all degrees of freedom. NaN where
     /// `orbit_change` is above a fifth: two numbers of modes then bound nothing.
     pub modes_change: f64,
+    /// Estimate of the error of the radius that the other modes make, from the changes of those multipliers that reach as far from
+    /// zero; 0 on all degrees of freedom, NaN as `modes_change`.
+    pub radius_error: f64,
 }
 
 impl Floquet {
@@ -50,6 +53,7 @@ impl Floquet {
             grazing: None,
             modes: 0,
             modes_change: 0.0,
+            radius_error: 0.0,
         }
     }
 
@@ -77,6 +81,7 @@ impl Floquet {
             grazing,
             modes: 0,
             modes_change: 0.0,
+            radius_error: 0.0,
         }
     }
 }

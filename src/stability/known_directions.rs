@@ -9,11 +9,15 @@ use crate::error::{Error, Result, Status};
 use crate::linalg::sparse::Csc;
 use crate::stability::perturbations::Perturbations;
 use crate::stability::ring::Row;
-use nalgebra::{DMatrix, DVector, SVD};
+use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD};
 use num_complex::Complex64;
 
 /// Singular values below this share of the largest are rounding: the displacement strains nothing.
 const NO_STRAIN: f64 = 1e-12;
+
+/// Last pivot over the first one above which no singular value is rounding. Chosen: pivots are larger than singular values by a
+/// few powers of ten at most.
+const NO_DOUBT_OF_RANK: f64 = 1e-8;
 
 /// Iterations of the singular values, far above what converging cases need.
 const KNOWN_DIRECTIONS_MOST_ITERATIONS: usize = 100_000;
@@ -42,6 +46,10 @@ impl Perturbations<'_> {
                 strain[(n + i, dof)] += a;
             }
         }
+        let empty = DMatrix::zeros(ring.states(), 0);
+        if is_regular(&strain) {
+            return Ok(empty);
+        }
         let Some(svd) = SVD::try_new(strain, false, true, f64::EPSILON, KNOWN_DIRECTIONS_MOST_ITERATIONS) else {
             return Err(Error::new(
                 Status::NoConvergence,
@@ -49,7 +57,6 @@ impl Perturbations<'_> {
             ));
         };
         let largest = svd.singular_values.max();
-        let empty = DMatrix::zeros(ring.states(), 0);
         let Some(v) = svd.v_t else { return Ok(empty) };
         let free: Vec<usize> = (0..n)
             .filter(|&i| svd.singular_values[i] <= NO_STRAIN * largest)
@@ -83,6 +90,21 @@ impl Perturbations<'_> {
             }
         }
         rate
+    }
+}
+
+/// Whether the columns are independent beyond doubt, so that singular values, which take longer, need not tell it.
+fn is_regular(strain: &DMatrix<Complex64>) -> bool {
+    fn least<T: ComplexField<RealField = f64>>(a: DMatrix<T>) -> bool {
+        let r = ColPivQR::new(a).unpack_r();
+        let size = |i: usize| r[(i, i)].clone().modulus();
+        let last = r.ncols().min(r.nrows());
+        last > 0 && size(last - 1) > NO_DOUBT_OF_RANK * size(0)
+    }
+    if strain.iter().all(|z| z.im == 0.0) {
+        least(strain.map(|z| z.re))
+    } else {
+        least(strain.clone())
     }
 }
 

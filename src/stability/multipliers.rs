@@ -5,13 +5,14 @@
 //! which is split off by factorisations that reveal the rank, again and again until nothing is left of it. Its
 //! multipliers are exact zeros, which an eigensolver would find as roots of round-off.
 
-use crate::error::{Error, Result, Status, check_memory, try_push};
+use crate::error::{Result, check_memory, try_copy, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::{eigenvalues, general_eigen};
 use crate::model::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;
-use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, Schur};
+use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the Floquet multipliers";
@@ -26,11 +27,11 @@ const MULTIPLIERS_ROUNDING: f64 = 1e-12;
 /// a slider has forgotten is not an exact null space.
 const FORGOTTEN: f64 = f64::EPSILON;
 
+/// Lapses of a period for each slider that moves from which a root of round-off vanishes. Chosen: round-off squared.
+const LAPSES_FOR_EACH_SLIDER: usize = 2;
+
 /// Largest residual of a known perturbation, relative to it; above it is not invariant after all.
 const INVARIANT: f64 = 1e-6;
-
-/// Iterations of the eigensolver, far above what converging cases need.
-const MULTIPLIERS_MOST_ITERATIONS: usize = 100_000;
 
 /// Facts about the motion from which multipliers are known.
 pub(crate) struct Known<'a> {
@@ -56,9 +57,14 @@ pub(crate) fn multipliers_of(
     check_memory::<Complex64>(square.saturating_mul(MULTIPLIERS_COPIES), CONTEXT)?;
     // Velocities are divided by ω, which gives them the unit of displacements.
     let unit = |i: usize| if (n..2 * n).contains(&i) { system.omega } else { 1.0 };
+    let mut sources = Vec::new();
+    for &i in &kept {
+        let (from, factor) = block.source(structure, system, i);
+        try_push(&mut sources, (from, factor / unit(i)), CONTEXT)?;
+    }
     let map = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
-        let (i, j) = (kept[i], kept[j]);
-        block.entry(structure, system, i, j) * (unit(j) / unit(i))
+        let ((from, factor), j) = (sources[i], kept[j]);
+        block.carried(from, j) * (factor * unit(j))
     });
     let keep = |v: &DVector<Complex64>| DVector::from_fn(kept.len(), |i, _| v[kept[i]] / unit(kept[i]));
     let mut directions = Vec::new();
@@ -115,14 +121,14 @@ pub(crate) fn classified(
 ) -> Result<Vec<Multiplier>> {
     // Factors and copies of the map.
     check_memory::<Complex64>(map.len().saturating_mul(MULTIPLIERS_COPIES), CONTEXT)?;
-    let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
-        let (rest, zeros) = without_zeros(map.map(|z| z.re), interrupt)?;
-        (real_eigenvalues(&rest)?, zeros)
-    } else {
-        let (rest, zeros) = without_zeros(map, interrupt)?;
-        (eigenvalues(rest)?, zeros)
-    };
     let moving = counts.moving;
+    let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
+        let (rest, zeros) = without_zeros(map.map(|z| z.re), (moving, lapses), interrupt)?;
+        (real_eigenvalues(&rest, interrupt)?, zeros)
+    } else {
+        let (rest, zeros) = without_zeros(map, (moving, lapses), interrupt)?;
+        (general_eigen::values(rest.as_slice(), rest.nrows(), interrupt)?, zeros)
+    };
     let mut found = Vec::new();
     let mut add = |count: usize, value: Complex64, class| {
         (0..count).try_for_each(|_| try_push(&mut found, Multiplier { value, class }, CONTEXT))
@@ -194,12 +200,30 @@ fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>)
         .into_owned()
 }
 
-/// The map on its lasting range, and the number of its zero multipliers.
+/// Removes the columns that are zero with their rows, each with one zero multiplier, and returns their number: those of
+/// sliders that slip at the begin of the lapse.
+fn without_zero_columns<T: ComplexField<RealField = f64>>(map: &mut DMatrix<T>) -> usize {
+    let mut zeros = 0;
+    while let Some(j) = (0..map.ncols()).find(|&j| map.column(j).iter().all(T::is_zero)) {
+        *map = core::mem::replace(map, DMatrix::zeros(0, 0))
+            .remove_column(j)
+            .remove_row(j);
+        zeros += 1;
+    }
+    zeros
+}
+
+/// The map on its lasting range, and the number of its zero multipliers, but for those that need no care: of k sliders that forget
+/// within a lapse an eigensolver finds no larger numbers than the k-th root of round-off, which vanish as powers of many lapses.
 fn without_zeros<T: ComplexField<RealField = f64>>(
     mut map: DMatrix<T>,
+    (moving, lapses): (usize, usize),
     interrupt: &Interrupt<'_>,
 ) -> Result<(DMatrix<T>, usize)> {
-    let mut zeros = 0;
+    let mut zeros = without_zero_columns(&mut map);
+    if lapses >= LAPSES_FOR_EACH_SLIDER * moving.saturating_sub(zeros) {
+        return Ok((map, zeros));
+    }
     loop {
         interrupt.check()?;
         let order = map.nrows();
@@ -221,36 +245,11 @@ fn without_zeros<T: ComplexField<RealField = f64>>(
     }
 }
 
-fn real_eigenvalues(map: &DMatrix<f64>) -> Result<Vec<Complex64>> {
-    let order = map.nrows();
+fn real_eigenvalues(map: &DMatrix<f64>, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
     let mut found = Vec::new();
-    if order == 0 {
-        return Ok(found);
-    }
-    let Some(schur) = Schur::try_new(map.clone(), f64::EPSILON, MULTIPLIERS_MOST_ITERATIONS) else {
-        return eigenvalues(map.map(Complex64::from));
-    };
-    for value in schur.complex_eigenvalues().iter() {
-        try_push(&mut found, *value, CONTEXT)?;
-    }
-    Ok(found)
-}
-
-fn eigenvalues(map: DMatrix<Complex64>) -> Result<Vec<Complex64>> {
-    let order = map.nrows();
-    let mut found = Vec::new();
-    if order == 0 {
-        return Ok(found);
-    }
-    let Some(schur) = Schur::try_new(map, f64::EPSILON, MULTIPLIERS_MOST_ITERATIONS) else {
-        return Err(Error::new(
-            Status::NoConvergence,
-            format_args!("the eigenvalues of a map of order {order} were not found"),
-        ));
-    };
-    let (_, triangular) = schur.unpack();
-    for i in 0..order {
-        try_push(&mut found, triangular[(i, i)], CONTEXT)?;
-    }
+    let mut copy = try_copy(map.as_slice(), CONTEXT)?;
+    eigenvalues::of_real(&mut copy, map.nrows(), interrupt, |value| {
+        try_push(&mut found, value, CONTEXT)
+    })?;
     Ok(found)
 }

@@ -56,14 +56,14 @@ impl Perturbations<'_> {
         &self.ring.closure
     }
 
-    /// Entry of the map of a lapse: state `i` at the end by state `j` at the begin, sectors exchanged.
-    pub(super) fn entry(&self, structure: &Structure, system: &System<'_>, i: usize, j: usize) -> Complex64 {
+    /// The state that state `i` repeats at the end of a lapse, and the factor with which it does.
+    pub(super) fn source(&self, structure: &Structure, system: &System<'_>, i: usize) -> (usize, Complex64) {
         let (from, turns) = self.shifted(system, i);
-        self.carried(from, j) * self.ring.closure.factor(structure, turns)
+        (from, self.ring.closure.factor(structure, turns))
     }
 
-    /// State `i` at the end of the lapse by state `j` at the begin.
-    fn carried(&self, i: usize, j: usize) -> Complex64 {
+    /// State `i` at the end of the lapse by state `j` at the begin, before sectors are exchanged.
+    pub(super) fn carried(&self, i: usize, j: usize) -> Complex64 {
         let at = j * self.ring.states() + i;
         match &self.basis {
             Basis::Real(basis) => basis.columns[at].into(),

@@ -9,8 +9,11 @@ use crate::time_integration::event_loop::State;
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 
-/// Number of times per period of the highest harmonic at which the sliders of an initial motion are updated.
+/// Number of times per period of the highest harmonic at which the sliders of an initial motion are updated, where that
+/// is not more than `INITIAL_STATE_POINTS` a period; then as few as a quarter of them. Chosen: the largest motion between times is
+/// missed by 5e-6 of it.
 const INITIAL_STATE_POINTS_PER_WAVE: usize = 64;
+const INITIAL_STATE_POINTS: usize = 1024;
 
 const CONTEXT: &str = "the start of the motion in time";
 
@@ -56,7 +59,9 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
         return Ok(());
     }
     let set = HarmonicSet::all(count - 1)?;
-    let mut transform = Transform::new(&set, INITIAL_STATE_POINTS_PER_WAVE * count, false)?;
+    let fine = INITIAL_STATE_POINTS_PER_WAVE * count;
+    let points = fine.min(INITIAL_STATE_POINTS.max(fine / 4));
+    let mut transform = Transform::new(&set, points, false)?;
     let times = transform.held();
     let mut packed = try_vec(set.packed_len(), 0.0, CONTEXT)?;
     let mut motions = try_vec(times.saturating_mul(2), 0.0, CONTEXT)?;

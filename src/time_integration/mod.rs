@@ -11,6 +11,7 @@ mod largest_motion;
 mod linear_step;
 mod periodic_response;
 mod perturbation_basis;
+mod perturbation_products;
 mod sensitivity;
 mod shooting;
 mod smooth_laws;

@@ -90,6 +90,10 @@ pub(crate) struct Search<'a, 'h, 's> {
     free: bool,
     /// Whether the motion that is sought is near the first state.
     near: bool,
+    /// Whether a residual within the tolerance ends the search, which else goes on to round-off.
+    quick: bool,
+    /// Unit of velocities in the equations factorised last.
+    unit: f64,
 }
 
 impl<'a, 'h, 's> Search<'a, 'h, 's> {
@@ -115,6 +119,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             laps: 0,
             free: false,
             near: false,
+            quick: false,
+            unit: 1.0,
         })
     }
 
@@ -122,6 +128,12 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// rate.
     pub fn free_frequency(mut self) -> Self {
         self.free = true;
+        self
+    }
+
+    /// Ends the search as soon as the residual is within the tolerance.
+    pub fn quick(mut self) -> Self {
+        self.quick = true;
         self
     }
 
@@ -286,7 +298,15 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             loop {
                 let residual = self.residual;
                 let converged = residual <= self.options.tolerance;
-                if !self.correction(&sensitivity, &mut equations, &mut step)? {
+                if converged && self.quick {
+                    return Ok(Outcome::Found);
+                }
+                // With the frequency as an unknown the equations change with the rates.
+                let fresh = damped || self.free;
+                if fresh {
+                    self.equations(&sensitivity, &mut equations)?;
+                }
+                if !self.correction(fresh, &mut equations, &mut step)? {
                     return Ok(if converged { Outcome::Found } else { Outcome::Failed });
                 }
                 base.set(&self.state);
@@ -344,57 +364,41 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         }
     }
 
-    /// Solves (I − S ∂G/∂z) step = S G(z) − z, with a free frequency bordered by the rate of the state; `false`: it has
-    /// no solution.
-    fn correction(&mut self, s: &Sensitivity<'_>, equations: &mut LeastSquares, step: &mut [f64]) -> Result<bool> {
+    /// Whether the slider of a stretch rests in all sectors, which then has a fixed place and no equation.
+    fn rests(&self, i: usize) -> bool {
+        let n = self.state.x.len();
+        i >= 2 * n
+            && self
+                .system
+                .elements
+                .iter()
+                .zip(&self.event_loop.moved)
+                .all(|(e, &moved)| {
+                    e.family != self.system.elements[i - 2 * n].family || !(moved && e.slider().is_some())
+                })
+    }
+
+    /// Fills the matrix I − S ∂G/∂z, with a free frequency bordered by the rate of the state.
+    fn equations(&mut self, s: &Sensitivity<'_>, equations: &mut LeastSquares) -> Result<()> {
         let rates = if self.free { Some(self.rates()?) } else { None };
+        // Velocities are scaled to displacements, so that pivots compare.
+        self.unit = self.scale.1 / self.scale.0;
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
         let order = m + usize::from(self.free);
-        // Velocities are scaled to displacements, so that pivots compare.
-        let unit = |i: usize| {
-            if (n..2 * n).contains(&i) {
-                self.scale.1 / self.scale.0
-            } else {
-                1.0
-            }
-        };
-        // A slider that rests in all sectors has a fixed place.
-        let rests = |i: usize| {
-            i >= 2 * n
-                && system.elements.iter().zip(&self.event_loop.moved).all(|(e, &moved)| {
-                    e.family != system.elements[i - 2 * n].family || !(moved && e.slider().is_some())
-                })
-        };
-        let source = |i: usize| {
-            if i < n {
-                shifted_from(system, system.ndof, i)
-            } else if i < 2 * n {
-                let (from, sign) = shifted_from(system, system.ndof, i - n);
-                (n + from, sign)
-            } else {
-                let (from, sign) = shifted_from(system, 1, i - 2 * n);
-                (2 * n + from, sign)
-            }
-        };
+        let unit = |i: usize| if (n..2 * n).contains(&i) { self.unit } else { 1.0 };
         let matrix = equations.matrix();
         matrix.fill(0.0);
         for i in 0..m {
             system.interrupt.check()?;
-            let (void, (from, sign)) = (rests(i), source(i));
+            let (void, (from, sign)) = (self.rests(i), source_of(system, n, i));
             for j in 0..m {
                 let image = if void { 0.0 } else { sign * s.by_initial(j, from) };
                 matrix[j * order + i] = f64::from(u8::from(i == j)) - image * unit(j) / unit(i);
             }
-            step[i] = match i {
-                _ if void => 0.0,
-                i if i < n => self.shifted.x[i] - self.state.x[i],
-                i if i < 2 * n => (self.shifted.v[i - n] - self.state.v[i - n]) / unit(i),
-                i => self.shifted.e[i - 2 * n] - self.state.e[i - 2 * n],
-            };
         }
         // Where the slider rests its spring follows the motion: δe = r·δx.
         for (i, e) in system.elements.iter().enumerate() {
-            if rests(2 * n + i) && e.slider().is_some() {
+            if self.rests(2 * n + i) && e.slider().is_some() {
                 for &(dof, a) in e.rows[0].iter().flatten() {
                     matrix[dof * order + 2 * n + i] -= a;
                 }
@@ -405,7 +409,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             let lapse = system.lapse();
             let size: f64 = (0..m).map(|i| (here[i] / unit(i)).powi(2)).sum::<f64>().sqrt();
             for i in 0..m {
-                let (void, (from, sign)) = (rests(i), source(i));
+                let (void, (from, sign)) = (self.rests(i), source_of(system, n, i));
                 matrix[m * order + i] = if void {
                     0.0
                 } else {
@@ -413,9 +417,29 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
                 };
                 matrix[i * order + m] = if void { 0.0 } else { here[i] / unit(i) / size };
             }
-            step[m] = 0.0;
         }
-        equations.solve(step, NEUTRAL, system.interrupt)?;
+        Ok(())
+    }
+
+    /// Solves (I − S ∂G/∂z) step = S G(z) − z with the matrix of [`Self::equations`], `fresh` or factorised before;
+    /// `false`: it has no solution.
+    fn correction(&mut self, fresh: bool, equations: &mut LeastSquares, step: &mut [f64]) -> Result<bool> {
+        let (m, n) = (self.state.len(), self.state.x.len());
+        let unit = |i: usize| if (n..2 * n).contains(&i) { self.unit } else { 1.0 };
+        step.fill(0.0);
+        for (i, step) in step.iter_mut().enumerate().take(m) {
+            *step = match i {
+                i if self.rests(i) => 0.0,
+                i if i < n => self.shifted.x[i] - self.state.x[i],
+                i if i < 2 * n => (self.shifted.v[i - n] - self.state.v[i - n]) / unit(i),
+                i => self.shifted.e[i - 2 * n] - self.state.e[i - 2 * n],
+            };
+        }
+        if fresh {
+            equations.solve(step, NEUTRAL, self.system.interrupt)?;
+        } else {
+            equations.solve_again(step);
+        }
         for (i, step) in step.iter_mut().take(m).enumerate() {
             *step *= unit(i);
         }
@@ -461,6 +485,17 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             }
         }
     }
+}
+
+/// Source of the entry `i` of a shifted state with `n` displacements, and its sign.
+fn source_of(system: &System<'_>, n: usize, i: usize) -> (usize, f64) {
+    let (first, block) = match i {
+        i if i < n => (0, system.ndof),
+        i if i < 2 * n => (n, system.ndof),
+        _ => (2 * n, 1),
+    };
+    let (from, sign) = shifted_from(system, block, i - first);
+    (first + from, sign)
 }
 
 /// Source of the entry `i` of a shifted vector and its sign, with `block` entries per sector.

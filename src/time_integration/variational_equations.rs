@@ -16,18 +16,8 @@ const CONTEXT: &str = "the equations of perturbations";
 /// Perturbations that are carried together.
 pub(crate) const LANES: usize = 8;
 
-/// One number of each of the perturbations that are carried together.
-pub(super) type Lanes<T> = [T; LANES];
-
-/// Updates each lane of `y` by that of `x`. A plain loop over a fixed number is unrolled in every build.
-#[inline]
-pub(super) fn each_lane<S, T: Copy>(y: &mut Lanes<S>, x: &Lanes<T>, update: impl Fn(&mut S, T)) {
-    let mut k = 0;
-    while k < LANES {
-        update(&mut y[k], x[k]);
-        k += 1;
-    }
-}
+/// One real number of each of the perturbations that are carried together.
+pub(super) type Numbers = [f64; LANES];
 
 /// Numbers of perturbations: real ones, or complex ones.
 pub(crate) trait Number: Entry + Scalar {}
@@ -54,7 +44,7 @@ pub(crate) struct VariationalElement<T> {
 pub(crate) struct VariationalEquations<T> {
     pub(super) order: usize,
     pub(super) mass: Columns<T>,
-    mass_factor: MassFactor<T>,
+    mass_factor: MassFactor,
     pub(super) damping: Columns<T>,
     pub(super) stiffness: Columns<T>,
     pub(super) elements: Vec<VariationalElement<T>>,
@@ -69,9 +59,9 @@ pub(super) struct Columns<T> {
 }
 
 /// Factors of the mass matrix.
-enum MassFactor<T> {
+enum MassFactor {
     /// 1/mᵢᵢ of a diagonal one.
-    Diagonal(Vec<T>),
+    Diagonal(Vec<f64>),
     General {
         factor: Box<Factor>,
         buffer: Vec<Complex64>,
@@ -95,17 +85,6 @@ impl<T: Number> Columns<T> {
     pub fn each(&self) -> impl Iterator<Item = (usize, usize, T)> {
         let columns = self.starts.windows(2).enumerate();
         columns.flat_map(|(j, ends)| self.entries[ends[0]..ends[1]].iter().map(move |&(i, v)| (i, j, v)))
-    }
-
-    /// y −= s·A x for all lanes.
-    pub fn subtract(&self, s: f64, x: &[Lanes<T>], y: &mut [Lanes<T>]) {
-        for (j, x) in x.iter().enumerate() {
-            let mut sx = [T::NONE; LANES];
-            each_lane(&mut sx, x, |sx, x| *sx = x.scaled(s));
-            for &(i, v) in &self.entries[self.starts[j]..self.starts[j + 1]] {
-                each_lane(&mut y[i], &sx, |y, x| *y -= v * x);
-            }
-        }
     }
 
     fn len(&self) -> usize {
@@ -150,28 +129,32 @@ impl<T: Number> VariationalEquations<T> {
         (LANES * (self.stiffness.len() + self.damping.len() + self.order + elements)) as u64
     }
 
-    /// a ← M⁻¹ a
-    pub(super) fn accelerate(&mut self, a: &mut [Lanes<T>], interrupt: &Interrupt<'_>) -> Result<()> {
-        match &mut self.mass_factor {
-            MassFactor::Diagonal(inverse) => {
-                for (a, m) in a.iter_mut().zip(inverse) {
-                    let from = *a;
-                    each_lane(a, &from, |a, from| *a = from * *m);
-                }
+    /// 1/mᵢᵢ of a diagonal mass.
+    pub(super) fn inverse_mass(&self) -> Option<&[f64]> {
+        match &self.mass_factor {
+            MassFactor::Diagonal(inverse) => Some(inverse),
+            MassFactor::General { .. } => None,
+        }
+    }
+
+    /// a ← M⁻¹ a of a mass that is not diagonal, real parts before imaginary ones.
+    pub(super) fn accelerate(&mut self, a: &mut [Numbers], interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.order;
+        let MassFactor::General { factor, buffer } = &mut self.mass_factor else {
+            return Ok(());
+        };
+        for i in 0..n {
+            for k in 0..LANES {
+                let im = a.get(n + i).map_or(0.0, |a| a[k]);
+                buffer[k * n + i] = Complex64::new(a[i][k], im);
             }
-            MassFactor::General { factor, buffer } => {
-                let n = a.len();
-                for (i, a) in a.iter().enumerate() {
-                    for (k, a) in a.iter().enumerate() {
-                        buffer[k * n + i] = a.complex();
-                    }
-                }
-                factor.solve(buffer, false, interrupt)?;
-                for (i, a) in a.iter_mut().enumerate() {
-                    for (k, a) in a.iter_mut().enumerate() {
-                        *a = T::of(buffer[k * n + i]);
-                    }
-                }
+        }
+        factor.solve(buffer, false, interrupt)?;
+        for (i, a) in a.iter_mut().enumerate() {
+            let (within, is_real) = (i % n, i < n);
+            for (k, a) in a.iter_mut().enumerate() {
+                let z = buffer[k * n + within];
+                *a = if is_real { z.re } else { z.im };
             }
         }
         Ok(())
@@ -222,13 +205,13 @@ impl VariationalEquations<f64> {
     }
 }
 
-impl<T: Number> MassFactor<T> {
+impl MassFactor {
     fn new(mass: &Csc, interrupt: &Interrupt<'_>) -> Result<Self> {
         if (0..mass.cols).all(|j| mass.column(j).all(|(i, v)| i == j || v == Complex64::ZERO)) {
             // The structure in time has refused degrees of freedom without mass.
-            let mut inverse = try_vec(mass.cols, T::NONE, CONTEXT)?;
+            let mut inverse = try_vec(mass.cols, 0.0, CONTEXT)?;
             for (i, d) in inverse.iter_mut().enumerate() {
-                *d = T::of((1.0 / mass.get(i, i).re).into());
+                *d = 1.0 / mass.get(i, i).re;
             }
             return Ok(Self::Diagonal(inverse));
         }

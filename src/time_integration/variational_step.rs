@@ -6,12 +6,12 @@
 
 use crate::error::{Result, Status, fail, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::{Lu, Scalar};
+use crate::linalg::lu::Lu;
 use crate::time_integration::gauss::STAGES;
+use crate::time_integration::perturbation_products::Products;
 use crate::time_integration::variation::{Collocation, Interval};
-use crate::time_integration::variational_equations::{
-    LANES, Lanes, Number, VariationalEquations, VariationalRow, each_lane,
-};
+use crate::time_integration::variational_equations::{LANES, Number, Numbers, VariationalEquations};
+use num_complex::Complex64;
 
 const CONTEXT: &str = "a step of perturbations";
 
@@ -32,12 +32,14 @@ const MOST_PARTS: usize = 1 << 20;
 
 /// Memory of the steps.
 pub(super) struct VariationalStep<T> {
+    /// The matrices of an interval; none where a law is smooth.
+    products: Option<Products>,
     /// Three neighbouring terms of the series.
-    terms: [Vec<Lanes<T>>; 3],
+    terms: [Vec<Numbers>; 3],
     /// The perturbations at the begin of a part, and sums of their series.
-    begin: [Vec<Lanes<T>>; 2],
-    sums: [Vec<Lanes<T>>; 2],
-    sliders: Vec<Lanes<T>>,
+    begin: [Vec<Numbers>; 2],
+    sums: [Vec<Numbers>; 2],
+    sliders: Vec<Numbers>,
     /// Largest length of a part so far found short enough.
     part: f64,
     /// Equations of an implicit step, where a law is smooth.
@@ -53,19 +55,20 @@ struct Implicit<T> {
 impl<T: Number> VariationalStep<T> {
     /// Memory for steps of `equations`; `smooth`: some law has no events.
     pub fn new(equations: &VariationalEquations<T>, smooth: bool) -> Result<Self> {
-        let n = if smooth { 0 } else { equations.order };
-        let zeros = |n: usize| try_vec(n, [T::NONE; LANES], CONTEXT);
-        let implicit = if smooth {
-            Some(Implicit::new(equations.order)?)
+        let (products, implicit) = if smooth {
+            (None, Some(Implicit::new(equations.order)?))
         } else {
-            None
+            (Some(Products::new(equations)?), None)
         };
+        let n = products.as_ref().map_or(0, Products::order);
+        let zeros = |n: usize| try_vec(n, [0.0; LANES], CONTEXT);
         Ok(Self {
             terms: [zeros(n)?, zeros(n)?, zeros(n)?],
             begin: [zeros(n)?, zeros(n)?],
             sums: [zeros(n)?, zeros(n)?],
-            sliders: zeros(equations.sliders)?,
+            sliders: zeros(parts::<T>() * equations.sliders)?,
             part: f64::INFINITY,
+            products,
             implicit,
         })
     }
@@ -89,15 +92,20 @@ impl<T: Number> VariationalStep<T> {
             }
             return Ok(());
         }
+        let Some(products) = &mut self.products else {
+            return Ok(());
+        };
+        products.set(&equations.elements, interval.pieces, equations.sliders)?;
         let n = equations.order;
         for columns in columns.chunks_mut(LANES * states.max(1)) {
-            self.load(n, states, columns);
-            self.through(equations, interval, interrupt)?;
+            self.load(equations, columns);
+            self.through(equations, interval.length, interrupt)?;
             for (k, column) in columns.chunks_exact_mut(states).enumerate() {
                 let (x, v) = column.split_at_mut(n);
                 for (to, from) in [(x, &self.begin[0]), (v, &self.begin[1])] {
-                    for (to, from) in to.iter_mut().zip(from) {
-                        *to = from[k];
+                    for (i, to) in to.iter_mut().enumerate().take(n) {
+                        let im = from.get(n + i).map_or(0.0, |lanes| lanes[k]);
+                        *to = T::of(Complex64::new(from[i][k], im));
                     }
                 }
             }
@@ -105,14 +113,17 @@ impl<T: Number> VariationalStep<T> {
         Ok(())
     }
 
-    /// Perturbations as lanes; missing ones are zero.
-    fn load(&mut self, n: usize, states: usize, columns: &[T]) {
+    /// Perturbations as lanes, real parts before imaginary ones; missing ones are zero.
+    fn load(&mut self, equations: &VariationalEquations<T>, columns: &[T]) {
+        let (n, states, sliders) = (equations.order, equations.states(), equations.sliders);
         let [x, v] = &mut self.begin;
-        for (lanes, first) in [(x, 0), (v, n), (&mut self.sliders, 2 * n)] {
+        for (lanes, first, count) in [(x, 0, n), (v, n, n), (&mut self.sliders, 2 * n, sliders)] {
             for (i, lanes) in lanes.iter_mut().enumerate() {
-                *lanes = [T::NONE; LANES];
+                *lanes = [0.0; LANES];
+                let (within, part) = (i % count, i / count);
                 for (lane, column) in lanes.iter_mut().zip(columns.chunks_exact(states)) {
-                    *lane = column[first + i];
+                    let z = column[first + within].complex();
+                    *lane = if part == 0 { z.re } else { z.im };
                 }
             }
         }
@@ -121,18 +132,18 @@ impl<T: Number> VariationalStep<T> {
     fn through(
         &mut self,
         equations: &mut VariationalEquations<T>,
-        interval: &Interval<'_>,
+        length: f64,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let mut done = 0.0;
         let mut tries = 0;
-        while done < interval.length {
-            let rest = interval.length - done;
+        while done < length {
+            let rest = length - done;
             // Equal parts: a short last one would cost as many terms.
             let parts = (rest / self.part).ceil().max(1.0);
             let h = rest / parts;
-            if self.series(equations, interval, h, interrupt)? {
-                done = if parts > 1.0 { done + h } else { interval.length };
+            if self.series(equations, h, interrupt)? {
+                done = if parts > 1.0 { done + h } else { length };
             } else {
                 self.part = 0.5 * h;
                 tries += 1;
@@ -145,13 +156,10 @@ impl<T: Number> VariationalStep<T> {
     }
 
     /// One part by the Taylor series; `false`: it is too long, and nothing has changed.
-    fn series(
-        &mut self,
-        equations: &mut VariationalEquations<T>,
-        interval: &Interval<'_>,
-        h: f64,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<bool> {
+    fn series(&mut self, equations: &mut VariationalEquations<T>, h: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let Some(products) = &self.products else {
+            return Ok(true);
+        };
         let operations = equations.operations();
         let [x0, v0] = &mut self.begin;
         let [x, v] = &mut self.sums;
@@ -160,55 +168,32 @@ impl<T: Number> VariationalStep<T> {
         v.copy_from_slice(v0);
         this.copy_from_slice(x0);
         for ((next, v), x) in next.iter_mut().zip(v0.iter()).zip(x.iter_mut()) {
-            each_lane(next, v, |next, v| *next = v.scaled(h));
-            each_lane(x, next, |x, next| *x += next);
+            for ((next, v), x) in next.iter_mut().zip(v).zip(x) {
+                *next = v * h;
+                *x += *next;
+            }
         }
         let begin = larger(sizes(this, 1.0), sizes(next, 1.0));
         let (mut largest, mut small) = (begin, 0);
         for k in 0..VARIATIONAL_STEP_MOST_TERMS {
             interrupt.check_before(operations)?;
-            new.fill([T::NONE; LANES]);
-            equations.stiffness.subtract(1.0, this, new);
-            equations.damping.subtract((k + 1) as f64 / h, next, new);
-            for element in &equations.elements {
-                let piece = &interval.pieces[element.source];
-                let mut y = [[T::NONE; LANES]; 2];
-                for (y, row) in y.iter_mut().zip(&element.rows) {
-                    along(row, this, y);
-                }
-                for (i, (row, slope)) in element.rows.iter().zip(&piece.slope).enumerate() {
-                    let memory = match (k, i, element.slider) {
-                        (0, 0, Some(slider)) if piece.memory != 0.0 => Some((slider, piece.memory)),
-                        _ => None,
-                    };
-                    if memory.is_none() && slope.iter().all(|s| *s == 0.0) {
-                        continue;
-                    }
-                    let mut force = [T::NONE; LANES];
-                    each_lane(&mut force, &y[0], |f, y| *f = y.scaled(slope[0]));
-                    if slope[1] != 0.0 {
-                        each_lane(&mut force, &y[1], |f, y| *f += y.scaled(slope[1]));
-                    }
-                    if let Some((slider, memory)) = memory {
-                        each_lane(&mut force, &self.sliders[slider], |f, w| *f -= w.scaled(memory));
-                    }
-                    pull(row, &force, new);
-                }
+            products.multiply(this, ((k + 1) as f64 / h, next), new);
+            if k == 0 {
+                products.add_memory(&self.sliders, new);
             }
-            // A part that is too long overflows; factors of a mass matrix take finite numbers only.
-            if !equations.has_diagonal_mass() && !sizes(new, 1.0).iter().all(|a| *a < OVERFLOW) {
-                return Ok(false);
+            if !equations.has_diagonal_mass() {
+                // A part that is too long overflows; factors of a mass matrix take finite numbers only.
+                if !sizes(new, 1.0).iter().all(|a| *a < OVERFLOW) {
+                    return Ok(false);
+                }
+                equations.accelerate(new, interrupt)?;
             }
-            equations.accelerate(new, interrupt)?;
             let scale = h * h / ((k + 1) * (k + 2)) as f64;
             let rate = (k + 2) as f64 / h;
-            for ((new, x), v) in new.iter_mut().zip(x.iter_mut()).zip(v.iter_mut()) {
-                let unscaled = *new;
-                each_lane(new, &unscaled, |new, a| *new = a.scaled(scale));
-                each_lane(x, new, |x, new| *x += new);
-                each_lane(v, new, |v, new| *v += new.scaled(rate));
+            let mut term = products.add_term(new, (x, v), (scale, rate));
+            for term in &mut term {
+                *term *= (k + 2) as f64;
             }
-            let term = sizes(new, (k + 2) as f64);
             if !term.iter().copied().all(f64::is_finite) {
                 return Ok(false);
             }
@@ -230,45 +215,35 @@ impl<T: Number> VariationalStep<T> {
     }
 }
 
-/// Largest |re| + |im| of each lane, times a factor.
-fn sizes<T: Number>(x: &[Lanes<T>], factor: f64) -> [f64; LANES] {
+/// Real numbers of a number.
+fn parts<T: Number>() -> usize {
+    if T::IS_COMPLEX { 2 } else { 1 }
+}
+
+/// Largest modulus of each lane, times a factor.
+fn sizes(x: &[Numbers], factor: f64) -> Numbers {
     let mut largest = [0.0_f64; LANES];
     for x in x {
-        each_lane(&mut largest, x, |m, x| {
-            let size = Scalar::size(x);
+        for (m, x) in largest.iter_mut().zip(x) {
+            let size = x.abs();
             // Stays NaN once it is.
             *m = if size <= *m || m.is_nan() { *m } else { size };
-        });
+        }
     }
-    let all = largest;
-    each_lane(&mut largest, &all, |m, a| *m = a * factor);
-    largest
+    largest.map(|m| m * factor)
 }
 
 /// The larger one in each lane.
-fn larger(mut a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
-    each_lane(&mut a, &b, |a, b| *a = a.max(b));
+fn larger(mut a: Numbers, b: Numbers) -> Numbers {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a = a.max(b);
+    }
     a
 }
 
 /// Whether a ≤ factor·b in each lane.
-fn below(a: &[f64; LANES], factor: f64, b: &[f64; LANES]) -> bool {
+fn below(a: &Numbers, factor: f64, b: &Numbers) -> bool {
     a.iter().zip(b).all(|(a, b)| *a <= factor * b)
-}
-
-/// y += r·x
-fn along<T: Number>(row: &VariationalRow<T>, x: &[Lanes<T>], y: &mut Lanes<T>) {
-    for &(dof, a) in row.iter().flatten() {
-        each_lane(y, &x[dof], |y, x| *y += a * x);
-    }
-}
-
-/// f −= rᴴ g
-fn pull<T: Number>(row: &VariationalRow<T>, g: &Lanes<T>, f: &mut [Lanes<T>]) {
-    for &(dof, a) in row.iter().flatten() {
-        let a = a.conjugate();
-        each_lane(&mut f[dof], g, |f, g| *f -= a * g);
-    }
 }
 
 impl<T: Number> Implicit<T> {

@@ -69,7 +69,7 @@ fn in_rust() -> String {
         hbvib_verify_options { struct_size, method, tolerance, max_periods, same_within }
         hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events, worst_response, worst_response_error }
         hbvib_floquet_options { struct_size, waves, refine, modes, tolerance, max_periods }
-        hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual, modes, modes_change }
+        hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual, modes, modes_change, radius_error }
         hbvib_kick { struct_size, verified, impulse, returning, phase, estimate, estimate_phase, velocity, multiplier }
         hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
         hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop, response }

@@ -141,6 +141,40 @@ fn compare(n: usize, modes: usize) {
     }
 }
 
+/// Over laws, frequencies and numbers of modes the radius on all degrees of freedom lies within the error that is told, which says
+/// more than that something is small.
+#[test]
+fn the_error_of_the_radius_holds() {
+    let n = 16;
+    let (mut compared, mut told, mut off) = (0, 0.0_f64, 0.0_f64);
+    for (name, contacts) in laws(n) {
+        for (omega, force) in [(1.7, 0.4), (3.0, 0.4), (4.1, 0.5)] {
+            let model = held_bar(n, &contacts, force);
+            let branch = solve_at(&model, &harmonics(25), omega);
+            let all = on(&model, &branch, Some(0), Waves::Wave);
+            for modes in [4, 8] {
+                let Ok(few) = try_on(&model, &branch, Some(modes), Waves::Wave) else {
+                    continue;
+                };
+                if few.radius_error.is_nan() || all.radius.is_nan() {
+                    continue;
+                }
+                let gap = (few.radius - all.radius).abs();
+                println!(
+                    "{name} at {omega}, {modes} modes: {gap:.1e} off, {:.1e} told, {:.1e} of any multiplier",
+                    few.radius_error, few.modes_change
+                );
+                assert!(gap <= few.radius_error.max(1e-10), "{name}: {gap:.1e}");
+                assert!(few.radius_error <= 2.0 * few.modes_change);
+                compared += 1;
+                (told, off) = (told.max(few.radius_error), off.max(gap));
+            }
+        }
+    }
+    assert!(compared > 45, "{compared}");
+    assert!(told < 0.05 && off > 1e-7, "{told:.1e} {off:.1e}");
+}
+
 /// Few harmonics: the motion in time is another one, and the change between two numbers of modes bounds nothing.
 #[test]
 fn a_motion_far_from_its_point_has_no_bound() {

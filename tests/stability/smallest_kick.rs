@@ -5,8 +5,8 @@ use crate::common::{harmonics, one_mass};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::options::ForcedOptions;
 use hbvib::{
-    Branch, Hooks, Kick, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Status, forced_response,
-    smallest_kick,
+    Branch, FloquetOptions, Hooks, Kick, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Status, Waves,
+    floquet, forced_response, smallest_kick,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -210,4 +210,98 @@ fn a_saddle_with_two_unstable_directions_is_refused() {
     assert!(kick(&one).unwrap().multiplier > 1.1);
     let e = kick(&two).unwrap_err();
     assert!(e.message().contains("another one has the modulus"), "{}", e.message());
+}
+
+const SECTORS: usize = 4;
+
+/// Hardening oscillators in a ring, whose forces travel as a wave of one diameter: x_s″ = −x_s − 0.1 x_s′ − 0.1 x_s³ + 0.05 (x_{s−1} −
+/// 2 x_s + x_{s+1}) + F cos(ωt − 2πs/N). Kicks each of them when its own forces have the phase 0, in the hundredth period of the motion
+/// that attracts from `near`, and returns the largest motion of each sector in some periods after it.
+fn amplitudes_after_kicks((force, omega): (f64, f64), near: Complex64, impulse: f64) -> [f64; SECTORS] {
+    const STEPS: usize = 80;
+    type Ring = [[f64; 2]; SECTORS];
+    let h = TAU / omega / STEPS as f64;
+    let lag = |s: usize| TAU * s as f64 / SECTORS as f64;
+    let rate = |t: f64, z: &Ring| -> Ring {
+        std::array::from_fn(|s| {
+            let [x, v] = z[s];
+            let sides = z[(s + SECTORS - 1) % SECTORS][0] + z[(s + 1) % SECTORS][0];
+            let spring = x + 0.1 * x.powi(3) - 0.05 * (sides - 2.0 * x);
+            [v, force * (omega * t - lag(s)).cos() - spring - 0.1 * v]
+        })
+    };
+    let plus = |z: &Ring, k: &Ring, h: f64| -> Ring {
+        std::array::from_fn(|s| [z[s][0] + h * k[s][0], z[s][1] + h * k[s][1]])
+    };
+    let mut z: Ring = std::array::from_fn(|s| {
+        let turned = near * Complex64::cis(-lag(s));
+        [turned.re, -omega * turned.im]
+    });
+    let mut largest = [0.0_f64; SECTORS];
+    for step in 0..120 * STEPS {
+        for (s, z) in z.iter_mut().enumerate() {
+            if step == 100 * STEPS + s * STEPS / SECTORS {
+                z[1] += impulse;
+            }
+        }
+        let t = step as f64 * h;
+        let k1 = rate(t, &z);
+        let k2 = rate(t + 0.5 * h, &plus(&z, &k1, 0.5 * h));
+        let k3 = rate(t + 0.5 * h, &plus(&z, &k2, 0.5 * h));
+        let k4 = rate(t + h, &plus(&z, &k3, h));
+        for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
+            z = plus(&z, &k, weight * h / 6.0);
+        }
+        if step >= 110 * STEPS {
+            for (largest, z) in largest.iter_mut().zip(&z) {
+                *largest = largest.max(z[0].abs());
+            }
+        }
+    }
+    largest
+}
+
+/// Why kicks of waves are refused: even one that strikes each sector in its turn, at the same phase of its own forces, leaves a motion
+/// that is no wave, and the saddle of the wave has unstable directions that are none.
+#[test]
+fn a_kicked_wave_is_no_wave_any_more() {
+    let (force, omega) = (0.25, 1.185);
+    let mut model = Model::cyclic(1, SECTORS).unwrap();
+    for (kind, value) in [
+        (MatrixKind::Mass, 1.0),
+        (MatrixKind::Stiffness, 1.1),
+        (MatrixKind::Damping, 0.1),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model
+        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(1, &[-0.05]))
+        .unwrap();
+    model.add_contact(&Contact::cubic(0, None, 0.0, 0.1)).unwrap();
+    model.set_wave(1);
+    model.add_force(0, 1, force.into()).unwrap();
+    let found = all(&model, &harmonics(7), (0.9, 1.5), omega, 0);
+    let mut at: Vec<_> = found.at(0).to_vec();
+    at.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    let (lower, saddle) = (at[0].point, at[1].point);
+    let points = ((&found, lower), (&found, saddle));
+    let e = smallest_kick(&model, points.0, points.1, (0, 8), &mut Hooks::default()).unwrap_err();
+    assert!(e.message().contains("no kick leaves a wave"), "{}", e.message());
+    let mut x = vec![Complex64::ZERO; found.harmonics() + 1];
+    found.harmonics_at(lower, &mut x).unwrap();
+    let spread = |impulse: f64| {
+        let sectors = amplitudes_after_kicks((force, omega), x[1], impulse);
+        let [least, most] = [f64::min, f64::max].map(|f| sectors.into_iter().reduce(f).unwrap());
+        println!("impulse {impulse}: {sectors:.4?}");
+        most / least - 1.0
+    };
+    // Without a kick the integration is a wave, but for the times at which motions are sampled.
+    assert!(spread(0.0) < 2e-3);
+    assert!(spread(1.07) > 0.05);
+    let options = FloquetOptions {
+        waves: Waves::Wheel,
+        ..FloquetOptions::default()
+    };
+    let stability = floquet(&model, &found, saddle, &options, &mut Hooks::default()).unwrap();
+    assert_eq!(stability.unstable, 4);
 }

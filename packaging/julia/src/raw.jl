@@ -816,6 +816,7 @@ struct hbvib_floquet_info
     residual::Float64
     modes::Int64
     modes_change::Float64
+    radius_error::Float64
 end
 hbvib_floquet_info() = initialised(hbvib_floquet_info, dlsym_(:hbvib_floquet_info_init))
 

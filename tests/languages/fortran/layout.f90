@@ -663,6 +663,7 @@ contains
       call field('residual', c_loc(s), c_loc(s%residual), c_sizeof(s%residual))
       call field('modes', c_loc(s), c_loc(s%modes), c_sizeof(s%modes))
       call field('modes_change', c_loc(s), c_loc(s%modes_change), c_sizeof(s%modes_change))
+      call field('radius_error', c_loc(s), c_loc(s%radius_error), c_sizeof(s%radius_error))
    end subroutine floquet_info
 
    subroutine kick()

@@ -58,6 +58,33 @@ pub fn eigen(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Pai
     Ok(found)
 }
 
+/// The eigenvalues alone. The interrupt is checked before, not within.
+///
+/// # Errors
+/// As [`eigen`].
+pub fn values(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
+    interrupt.check()?;
+    let mut values = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    if n == 0 {
+        return Ok(values);
+    }
+    let (no, by_default) = (ComputeEigenvectors::No, Spec::default());
+    let mut scratch = memory(evd_scratch::<Complex64>(n, no, no, Par::Seq, by_default))?;
+    let done = evd_cplx(
+        MatRef::from_column_major_slice(a, n, n),
+        DiagMut::from_slice_mut(&mut values),
+        None,
+        None,
+        Par::Seq,
+        MemStack::new(&mut scratch),
+        by_default,
+    );
+    if done.is_err() || a.iter().any(|z| !z.is_finite()) {
+        return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
+    }
+    Ok(values)
+}
+
 /// Largest entry of A X − X Λ, for vectors of size 1, over that of A.
 fn error(a: &[Complex64], n: usize, pairs: &Pairs) -> Result<f64> {
     let mut product = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
@@ -163,6 +190,11 @@ mod tests {
                 let pairs = eigen(&a, n, &Interrupt::none()).unwrap();
                 let trace: Complex64 = (0..n).map(|k| a[k * n + k]).sum();
                 let sum: Complex64 = pairs.values.iter().sum();
+                let alone = values(&a, n, &Interrupt::none()).unwrap();
+                for value in &pairs.values {
+                    let nearest = alone.iter().map(|z| (z - value).norm()).fold(f64::INFINITY, f64::min);
+                    assert!(nearest < 1e-11 * n as f64, "{n} {is_complex}: {nearest:e}");
+                }
                 assert!((sum - trace).norm() < 1e-12 * n as f64, "{n}: {sum} {trace}");
                 for (value, x) in pairs.values.iter().zip(pairs.vectors.chunks_exact(n)) {
                     let size: f64 = x.iter().map(Complex64::norm_sqr).sum();

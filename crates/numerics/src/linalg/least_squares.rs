@@ -12,6 +12,9 @@ pub struct LeastSquares {
     n: usize,
     a: Vec<f64>,
     order: Vec<usize>,
+    /// First entries of the reflections, and the rank, of the matrix factorised last.
+    heads: Vec<f64>,
+    rank: usize,
     /// Squared lengths of the remaining parts of the columns.
     lengths: Vec<f64>,
     solution: Vec<f64>,
@@ -28,6 +31,8 @@ impl LeastSquares {
             n,
             a: interrupt.zeros(n.saturating_mul(n), CONTEXT)?,
             order: try_vec(n, 0, CONTEXT)?,
+            heads: try_vec(n, 0.0, CONTEXT)?,
+            rank: 0,
             lengths: try_vec(n, 0.0, CONTEXT)?,
             solution: try_vec(n, 0.0, CONTEXT)?,
         })
@@ -44,10 +49,16 @@ impl LeastSquares {
     /// # Errors
     /// `StoppedByCaller`.
     pub fn solve(&mut self, b: &mut [f64], threshold: f64, interrupt: &Interrupt<'_>) -> Result<usize> {
+        self.factor(threshold, interrupt)?;
+        self.solve_again(b);
+        Ok(self.rank)
+    }
+
+    fn factor(&mut self, threshold: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let a = &mut self.a;
-        let mut rank = 0;
         let mut longest = 0.0_f64;
+        self.rank = 0;
         for (j, p) in self.order.iter_mut().enumerate() {
             *p = j;
         }
@@ -75,25 +86,17 @@ impl LeastSquares {
             let head = column[0];
             let pivot = if head > 0.0 { -length } else { length };
             // The reflection I − v vᵀ/s with v = column − pivot e₁ and s = −pivot·v₁.
-            column[0] = head - pivot;
-            let s = -pivot * column[0];
-            let reflect = |y: &mut [f64]| {
-                let share = column.iter().zip(y.iter()).map(|(v, y)| v * y).sum::<f64>() / s;
-                for (y, v) in y.iter_mut().zip(column.iter()) {
-                    *y -= share * v;
-                }
-            };
+            let first = head - pivot;
             for y in rest.chunks_exact_mut(n) {
-                reflect(&mut y[k..]);
+                reflect(column, (first, pivot), &mut y[k..]);
             }
-            reflect(&mut b[k..]);
             column[0] = pivot;
-            rank = k + 1;
+            self.heads[k] = first;
+            self.rank = k + 1;
         }
+        let rank = self.rank;
         let (r, open) = a.split_at_mut(rank * n);
-        back(r, n, rank, b);
-        b[rank..].fill(0.0);
-        // Columns (−R₁⁻¹R₂, 1) span the null space; they are made orthonormal, and their component of b is removed.
+        // Columns (−R₁⁻¹R₂, 1) span the null space; they are made orthonormal.
         for k in 0..n - rank {
             interrupt.check()?;
             let (before, this) = open.split_at_mut(k * n);
@@ -108,13 +111,38 @@ impl LeastSquares {
             for x in this.iter_mut() {
                 *x /= length;
             }
-            remove(this, b);
+        }
+        Ok(())
+    }
+
+    /// The same with the matrix of the last [`Self::solve`].
+    pub fn solve_again(&mut self, b: &mut [f64]) {
+        let (n, rank) = (self.n, self.rank);
+        let (r, open) = self.a.split_at(rank * n);
+        for (k, column) in r.chunks_exact(n).enumerate() {
+            reflect(&column[k..], (self.heads[k], column[k]), &mut b[k..]);
+        }
+        back(r, n, rank, b);
+        b[rank..].fill(0.0);
+        // Nothing along the null space.
+        for other in open.chunks_exact(n) {
+            remove(other, b);
         }
         for (&to, x) in self.order.iter().zip(b.iter()) {
             self.solution[to] = *x;
         }
         b.copy_from_slice(&self.solution);
-        Ok(rank)
+    }
+}
+
+/// y − v (vᵀy)/s with s = −pivot·v₁; v is a column but for its first entry.
+fn reflect(column: &[f64], (first, pivot): (f64, f64), y: &mut [f64]) {
+    let (v, (head, rest)) = (&column[1..], y.split_at_mut(1));
+    let along: f64 = first * head[0] + v.iter().zip(rest.iter()).map(|(v, y)| v * y).sum::<f64>();
+    let share = along / (-pivot * first);
+    head[0] -= share * first;
+    for (y, v) in rest.iter_mut().zip(v) {
+        *y -= share * v;
     }
 }
 
@@ -169,5 +197,9 @@ mod tests {
         for (a, b) in times(&singular, &found).iter().zip(&right) {
             assert!((a - b).abs() < 1e-12);
         }
+        // With the factors of before.
+        let mut again = right.clone();
+        system.solve_again(&mut again);
+        assert_eq!(again, found);
     }
 }

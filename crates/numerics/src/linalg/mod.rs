@@ -9,6 +9,7 @@ pub mod complex_columns;
 pub mod complex_products;
 pub mod definite;
 pub mod eigen;
+pub mod eigenvalues;
 pub mod factor;
 pub mod fallible_matrix;
 pub mod general_eigen;
