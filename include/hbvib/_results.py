@@ -241,7 +241,7 @@ class Synthesis(NamedTuple):
     >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
     >>> model.add_force(0, 0.2)
     >>> mode = model.nonlinear_mode((-2, 1))
-    >>> found = mode.synthesis(model, model_damping=1)
+    >>> found = mode.synthesis(model)
     >>> found.omega.shape == found.response.shape
     True
     """
@@ -258,7 +258,7 @@ class SynthesisPeaks(NamedTuple):
     >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
     >>> model.add_force(0, 0.2)
     >>> mode = model.nonlinear_mode((-2, 1))
-    >>> peaks = mode.synthesis_peaks(model, model_damping=1)
+    >>> peaks = mode.synthesis_peaks(model)
     >>> peaks.flags.tolist()  # no SynthesisFlag: the resonance is that of the response
     [0]
     """

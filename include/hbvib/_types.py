@@ -163,7 +163,7 @@ class SynthesisOptions(TypedDict, total=False):
     >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
     >>> model.add_force(0, 0.2)
     >>> mode = model.nonlinear_mode((-2, 1))
-    >>> options: hbvib.SynthesisOptions = dict(model_damping=1)
+    >>> options: hbvib.SynthesisOptions = dict(force_factor=1.5)
     >>> len(mode.synthesis_peaks(model, **options).omega)
     1
     """

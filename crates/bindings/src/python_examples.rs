@@ -55,7 +55,7 @@ True
     (
         "SynthesisOptions",
         &[MODEL, CONTACT, MODE],
-        ">>> options: hbvib.SynthesisOptions = dict(model_damping=1)
+        ">>> options: hbvib.SynthesisOptions = dict(force_factor=1.5)
 >>> len(mode.synthesis_peaks(model, **options).omega)
 1
 ",
