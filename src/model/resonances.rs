@@ -10,7 +10,7 @@ use crate::linalg::quadratic::about_quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::quadratic_modes::Quadratic;
+use crate::model::quadratic_problem::Quadratic;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::{DMatrix, Schur};
