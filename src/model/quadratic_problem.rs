@@ -48,6 +48,7 @@ impl Quadratic<'_> {
 
     /// The eigenvalue of a mode: one that oscillates, or one that grows, which is then real; `None` for a motion that is rigid or damped
     /// beyond vibration.
+    #[must_use]
     pub fn as_mode(&self, mut eigenvalue: Complex64, shape: &[Complex64]) -> Option<Complex64> {
         if eigenvalue.im > REAL * eigenvalue.norm() {
             return (!self.is_rigid(eigenvalue, shape)).then_some(eigenvalue);
@@ -99,6 +100,7 @@ impl Quadratic<'_> {
 }
 
 /// Whether two pairs are one mode.
+#[must_use]
 pub fn is_one(a: &Pair, b: &Pair) -> bool {
     if (a.0 - b.0).norm() > ONE_VALUE * a.0.norm() {
         return false;

@@ -15,6 +15,17 @@ const WIDE_CORNERS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 /// without damping.
 const BESIDE_SURFACE: [f64; 3] = [1e-6, 1e-5, 1e-4];
 
+/// Sense of the changes of the parameter that are tried to leave such a corner, and how far along the branch, over the change, the search
+/// for the solution starts: where the branch turns back in the parameter, that it came from lies at the same parameter.
+const SIDES_AND_DEPTHS: [(f64, f64); 6] = [
+    (1.0, 0.0),
+    (1.0, 1.0),
+    (1.0, 10.0),
+    (-1.0, 0.0),
+    (-1.0, 1.0),
+    (-1.0, 10.0),
+];
+
 /// Length of the chord from such a corner to the next point, above which that is another solution.
 const FARTHEST_BESIDE: f64 = 1e-2;
 
@@ -169,7 +180,7 @@ impl Continuation {
         let n = self.row.len() - 1;
         let sense = (self.settings.end - self.settings.start).signum() * metric.p;
         for length in BESIDE_SURFACE {
-            for (change, depth) in [(length, 0.0), (length, length), (-length, 0.0), (-length, length)] {
+            for (change, depth) in SIDES_AND_DEPTHS.map(|(side, depth)| (side * length, depth * length)) {
                 let mut v = try_copy(&self.current.v, CONTEXT)?;
                 metric.unit(&self.current.tangent, &mut self.row);
                 metric.add(&mut v, depth, &self.row);

@@ -238,7 +238,11 @@ impl<'a> NearShift<'a> {
         let mut chosen: Vec<Vec<Complex64>> = Vec::new();
         for (i, (mu, residual, coefficients)) in ritz.iter().enumerate() {
             let modulus = mu.norm();
-            let is_wanted = if level > 0.0 { modulus > level * (1.0 + ALIKE) } else { i < wanted };
+            let is_wanted = if level > 0.0 {
+                modulus > level * (1.0 + ALIKE)
+            } else {
+                i < wanted
+            };
             if !is_wanted || modulus == 0.0 {
                 break;
             }
@@ -425,3 +429,7 @@ fn without_structure(n: usize, run: usize) -> Result<Vec<Complex64>> {
     }
     Ok(v)
 }
+
+#[cfg(test)]
+#[path = "near_shift_tests.rs"]
+mod tests;
