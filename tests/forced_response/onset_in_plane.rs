@@ -102,7 +102,6 @@ fn sweep(model: &Model, (omega_start, omega_stop): (f64, f64), at: &[f64]) -> Br
     let range = ForcedOptions {
         omega_start,
         omega_stop,
-        response_dof: 0,
         at,
         ..ForcedOptions::default()
     };

@@ -16,7 +16,7 @@ use crate::linalg::{general_eigen, inner, remove};
 use num_complex::Complex64;
 
 /// Residual of an eigenvalue of the operator, relative to it, that counts as converged.
-const CONVERGED: f64 = 1e-12;
+const NEAR_SHIFT_CONVERGED: f64 = 1e-12;
 
 /// Multiple of the residual by which an eigenvalue that is not wanted must be away from those that are.
 const CLEAR: f64 = 10.0;
@@ -34,7 +34,7 @@ const MORE_STEPS: usize = 50;
 const RUNS: usize = 80;
 
 /// Two moduli that count as one, relatively.
-const ALIKE: f64 = 1e-9;
+const NEAR_SHIFT_ALIKE: f64 = 1e-9;
 
 /// Error of an eigenvalue of the operator, relative to it, from which on those farther away do not count as found.
 const POOR: f64 = 1e-7;
@@ -146,8 +146,8 @@ impl<'a> NearShift<'a> {
             if end.is_empty && is_new {
                 return self.near(f64::INFINITY);
             }
-            if end.is_settled && is_full && is_new && end.largest <= level * (1.0 + ALIKE) {
-                return self.near((1.0 - ALIKE) / level);
+            if end.is_settled && is_full && is_new && end.largest <= level * (1.0 + NEAR_SHIFT_ALIKE) {
+                return self.near((1.0 - NEAR_SHIFT_ALIKE) / level);
             }
             start = end.rest.filter(|_| !end.is_settled);
         }
@@ -239,7 +239,7 @@ impl<'a> NearShift<'a> {
         for (i, (mu, residual, coefficients)) in ritz.iter().enumerate() {
             let modulus = mu.norm();
             let is_wanted = if level > 0.0 {
-                modulus > level * (1.0 + ALIKE)
+                modulus > level * (1.0 + NEAR_SHIFT_ALIKE)
             } else {
                 i < wanted
             };
@@ -247,7 +247,7 @@ impl<'a> NearShift<'a> {
                 break;
             }
             self.interrupt.check()?;
-            if *residual > CONVERGED * modulus {
+            if *residual > NEAR_SHIFT_CONVERGED * modulus {
                 let part = run.combined(coefficients)?;
                 if rest.is_empty() {
                     rest = part;
@@ -317,7 +317,7 @@ impl<'a> NearShift<'a> {
             remove(&mut off, &state, *mu);
             let distance = mu.norm().recip();
             if size(&off) > POOR * mu.norm() * size(&state) {
-                radius = radius.min(distance * (1.0 - ALIKE));
+                radius = radius.min(distance * (1.0 - NEAR_SHIFT_ALIKE));
             }
             state.truncate(n);
             try_push(&mut pairs, (self.shift + mu.inv(), state), CONTEXT)?;
@@ -391,7 +391,8 @@ impl Run {
 
 /// Whether the wanted ones have converged: those above a level with one that is clearly below, or the first ones where there is no level.
 fn are_settled(ritz: &Ritz, level: f64, wanted: usize) -> bool {
-    let converged = |(mu, residual, _): &(Complex64, f64, Vec<Complex64>)| *residual <= CONVERGED * mu.norm();
+    let converged =
+        |(mu, residual, _): &(Complex64, f64, Vec<Complex64>)| *residual <= NEAR_SHIFT_CONVERGED * mu.norm();
     if level == 0.0 {
         return ritz.iter().take(wanted).all(converged);
     }
