@@ -2,7 +2,7 @@
 
 use crate::analysis::damped_modes::{self, DampedModes, GROWS, has_equal_senses};
 use crate::analysis::linear_contacts::LinearContacts;
-use crate::error::{Result, fail, try_copy, try_push};
+use crate::error::{Error, Result, Status, fail, try_copy, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
@@ -31,7 +31,8 @@ pub struct Campbell {
     pub count: usize,
     /// Signed nodal diameter of the modes, −N/2 < d ≤ N/2.
     pub diameter: i64,
-    /// Damped angular frequencies, rising at each speed; NaN where fewer motions oscillate.
+    /// Damped angular frequencies, rising at each speed; NaN where fewer motions oscillate, and at a speed whose modes were not found,
+    /// which is told to the log.
     pub omega: Vec<f64>,
     /// Damping ratios.
     pub damping_ratio: Vec<f64>,
@@ -79,18 +80,21 @@ pub fn campbell(
         rotating: model.try_clone()?,
         contacts,
         count,
+        failed: Vec::new(),
         interrupt: &interrupt,
     };
     let is_wheel = structure.sectors() > 1;
     let own = structure.signed_diameter(diameter);
     let other = structure.signed_diameter(-own);
     let mut found = modes.lines(own, speeds)?;
+    modes.tell_failures(hooks);
     tell_growth(&found, is_wheel, hooks);
     let stretches = modes.stretches(&found)?;
     let is_other = |order: i64| structure.signed_diameter(order) == other;
     let mut opposite = None;
     if other != own && engine_orders.iter().any(|&order| is_other(order)) && !modes.has_equal_senses(own, speeds)? {
         let lines = modes.lines(other, speeds)?;
+        modes.tell_failures(hooks);
         tell_growth(&lines, is_wheel, hooks);
         opposite = Some(modes.stretches(&lines)?);
     }
@@ -111,13 +115,20 @@ pub fn campbell(
         };
         let first = found.crossings.len();
         for stretch in stretches {
-            meetings(
+            let met = meetings(
                 &mut |speed| modes.at(of, speed),
                 stretch,
                 engine_order,
                 &mut found.crossings,
                 &interrupt,
-            )?;
+            );
+            if let Err(error) = met {
+                let text = format!(
+                    "crossings of engine order {engine_order} between the speeds {} and {} may be missing",
+                    stretch.low.speed, stretch.high.speed
+                );
+                hooks.log(LogLevel::Warn, &reason_of_one_speed(error, &text)?);
+            }
         }
         for crossing in &mut found.crossings[first..] {
             crossing.diameter = wave;
@@ -133,6 +144,8 @@ struct ModesAtSpeed<'a> {
     rotating: Model,
     contacts: LinearContacts,
     count: usize,
+    /// Speeds of the last lines whose modes were not found, with a sentence.
+    failed: Vec<(usize, String)>,
     interrupt: &'a Interrupt<'a>,
 }
 
@@ -144,16 +157,24 @@ impl ModesAtSpeed<'_> {
         damped_modes::of_wave(&self.rotating, diameter, contacts.state(), self.count, self.interrupt)
     }
 
-    /// The diagram of a wave without crossings.
+    /// The diagram of a wave without crossings. A speed whose modes are not found is left out, unless there is no other.
     fn lines(&mut self, diameter: i64, speeds: &[f64]) -> Result<Campbell> {
         let mut found = Campbell {
             count: self.count,
             diameter,
             ..Campbell::default()
         };
+        self.failed.clear();
         for (i, &speed) in speeds.iter().enumerate() {
             self.interrupt.part(Phase::Modes, i, speeds.len())?;
-            let modes = self.at(diameter, speed)?;
+            let modes = match self.at(diameter, speed) {
+                Err(error) if self.failed.len() + 1 < speeds.len() => {
+                    let text = reason_of_one_speed(error, &format!("the modes at the speed {speed} are left out"))?;
+                    try_push(&mut self.failed, (i, text), CONTEXT)?;
+                    DampedModes::default()
+                }
+                modes => modes?,
+            };
             try_push(&mut found.speeds, speed, CONTEXT)?;
             for k in 0..self.count {
                 let known = k < modes.count();
@@ -168,22 +189,40 @@ impl ModesAtSpeed<'_> {
         Ok(found)
     }
 
-    /// The parts between the speeds of a diagram in which equally many motions oscillate.
+    /// Tells the speeds that are left out.
+    fn tell_failures(&self, hooks: &mut Hooks<'_>) {
+        for (_, text) in &self.failed {
+            hooks.log(LogLevel::Warn, text);
+        }
+    }
+
+    /// The parts between the speeds of a diagram in which equally many motions oscillate, but for those that are left out.
     fn stretches(&mut self, lines: &Campbell) -> Result<Vec<Stretch>> {
         let mut stretches = Vec::new();
-        for i in 1..lines.speeds.len() {
+        let mut before = None;
+        let mut is_first = true;
+        for i in 0..lines.speeds.len() {
+            if self.failed.iter().any(|(failed, _)| *failed == i) {
+                continue;
+            }
+            let Some(low) = before.replace(i) else { continue };
             let whole = Stretch {
-                low: known(lines, i - 1)?,
+                low: known(lines, low)?,
                 high: known(lines, i)?,
-                is_first: i == 1,
+                is_first,
             };
+            is_first = false;
             let interrupt = self.interrupt;
-            divide(
+            let divided = divide(
                 &mut |speed| self.at(lines.diameter, speed),
                 whole,
                 &mut stretches,
                 interrupt,
-            )?;
+            );
+            if let Err(error) = divided {
+                // The crossings of the parts that are known are still found.
+                reason_of_one_speed(error, "")?;
+            }
         }
         Ok(stretches)
     }
@@ -199,6 +238,14 @@ impl ModesAtSpeed<'_> {
         }
         Ok(true)
     }
+}
+
+/// The sentence for an error that concerns one speed, as modes that are not found; other errors are returned.
+fn reason_of_one_speed(error: Error, text: &str) -> Result<String> {
+    if matches!(error.status, Status::NoConvergence | Status::Singular) {
+        return Ok(format!("{text}: {error}"));
+    }
+    Err(error)
 }
 
 fn check(speeds: &[f64], engine_orders: &[i64]) -> Result<()> {

@@ -9,7 +9,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::quadratic_modes::Quadratic;
+use crate::model::quadratic_problem::Quadratic;
 use crate::model::speed::Speed;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;

@@ -6,7 +6,7 @@ use crate::error::{Result, Status, try_copy, try_extend};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::quadratic_modes::Quadratic;
+use crate::model::quadratic_problem::Quadratic;
 use crate::model::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};
 use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;

@@ -12,7 +12,7 @@ use crate::linalg::lanczos;
 use crate::linalg::quadratic::{ROUNDING, form, quadratic, terms};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::quadratic_modes::Quadratic;
+use crate::model::quadratic_problem::Quadratic;
 use crate::model::spring_stiffness::Wave;
 use crate::model::static_tangents::StaticTangents;
 use crate::model::structure::MatrixKind;

@@ -25,6 +25,8 @@ pub(crate) mod on_modes;
 mod parameter_changes;
 mod part_of_turn;
 pub mod quadratic_modes;
+pub mod quadratic_problem;
+pub mod quadratic_search;
 pub mod reduced_wave;
 pub mod repeated_modes;
 pub mod resonances;

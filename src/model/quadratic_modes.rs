@@ -1,36 +1,31 @@
 //! Eigenvalues λ in the upper half plane of (λ²M + λC + K) x = 0, with damping and gyroscopic forces in C and structural
 //! damping in K.
 //!
-//! The problem is projected on the modes of M and the Hermitian part of K, all of them for a small structure, and solved
-//! as λ (x, λx) = (λx, −Kx − λCx) by Schur's form (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). In a large
-//! structure each eigenvalue is then corrected by inverse iteration with the whole matrices (Neumaier 1985,
-//! doi:10.1137/0722055).
+//! A small structure is projected on all modes of M and the Hermitian part of K, and solved as λ (x, λx) = (λx, −Kx − λCx) by Schur's
+//! form (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). The modes of a large one are found by the search of
+//! [`quadratic_search`](crate::model::quadratic_search). Each eigenvalue is then corrected by inverse iteration with the whole matrices
+//! (Neumaier 1985, doi:10.1137/0722055), which may not lead to another one.
 
-use crate::error::{Result, check_memory, fail, try_copy, try_extend, try_push, try_vec};
+use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
 use crate::linalg::factor::Factor;
 use crate::linalg::held_rows::MovingRows;
-use crate::linalg::lanczos;
-use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::quadratic::quadratic;
+use crate::linalg::sparse::Csc;
+use crate::model::quadratic_problem::{Pair, Quadratic, REAL, is_one};
+use crate::model::quadratic_search::lowest_by_search;
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
-/// Degrees of freedom up to which the projection is complete.
+/// Degrees of freedom up to which all modes are found by dense algebra: 0.1 s for a mode or for all; the search takes less above.
 const QUADRATIC_MODES_DENSE_UP_TO: usize = 100;
 
-/// Modes of the projection beyond twice the number that is requested.
-const SPARE: usize = 12;
-
-/// Most modes of the projection of a large structure.
-const QUADRATIC_MODES_MOST: usize = 200;
+/// Degrees of freedom for each mode that is requested, below which dense algebra is used as well.
+const FEW_FOR_EACH: usize = 4;
 
 /// Iterations of Schur's form for each eigenvalue.
 const QUADRATIC_MODES_ITERATIONS: usize = 200;
-
-/// Imaginary part over the modulus below which an eigenvalue is no vibration.
-const REAL: f64 = 1e-9;
 
 /// Relative distance of the shift from an eigenvalue in its correction.
 const QUADRATIC_MODES_OFFSET: f64 = 1e-7;
@@ -38,23 +33,13 @@ const QUADRATIC_MODES_OFFSET: f64 = 1e-7;
 /// Largest number of corrections of an eigenvalue.
 const QUADRATIC_MODES_CORRECTIONS: usize = 20;
 
+/// Change of an eigenvalue by its correction, relative to it and to the distance of the next one, beyond which it has become another.
+const BECOMES_OTHER: (f64, f64) = (1e-7, 0.1);
+
 /// Square matrices of the order 2r that Schur's form holds at a time.
 const QUADRATIC_MODES_COPIES: usize = 6;
 
 const CONTEXT: &str = "the damped modes";
-
-/// M, C and K.
-pub struct Quadratic<'a> {
-    /// M
-    pub mass: &'a Csc,
-    /// C, with gyroscopic forces
-    pub damping: &'a Csc,
-    /// K, with structural damping
-    pub stiffness: &'a Csc,
-}
-
-/// An eigenvalue with its shape, xᴴ M x = 1.
-pub type Pair = (Complex64, Vec<Complex64>);
 
 impl Quadratic<'_> {
     /// The `count` eigenvalues of lowest imaginary part, fewer if there are not so many. Motions that do not oscillate, rigid or
@@ -79,53 +64,60 @@ impl Quadratic<'_> {
             return Ok(pairs);
         }
         let n = self.mass.rows;
-        let complete = n <= QUADRATIC_MODES_DENSE_UP_TO;
-        let basis = self.basis(
-            &hermitian,
-            if complete {
-                n
-            } else {
-                (2 * count + SPARE).min(QUADRATIC_MODES_MOST).min(n)
-            },
-            interrupt,
-        )?;
-        let mut pairs = self.projected(&basis, interrupt)?;
+        let is_small = n <= QUADRATIC_MODES_DENSE_UP_TO;
+        let searched = if is_small || count > n / FEW_FOR_EACH {
+            None
+        } else {
+            lowest_by_search(self, &hermitian, count, interrupt)?
+        };
+        let mut pairs = match searched {
+            Some(pairs) => pairs,
+            None => self.projected(&self.basis(&hermitian, interrupt)?, interrupt)?,
+        };
         pairs.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
-        pairs.truncate(count);
-        for pair in &mut pairs {
-            interrupt.check()?;
-            if !complete {
-                *pair = self.corrected(pair, interrupt)?;
+        let mut found: Vec<Pair> = Vec::new();
+        for (k, pair) in pairs.iter().enumerate() {
+            if found.len() >= count {
+                break;
             }
-            let norm = quadratic(self.mass, &pair.1).sqrt();
-            for x in &mut pair.1 {
+            interrupt.check()?;
+            let better = if is_small {
+                (pair.0, try_copy(&pair.1, CONTEXT)?)
+            } else {
+                self.improved(&pairs, k, &found, interrupt)?
+            };
+            let Some(eigenvalue) = self.as_mode(better.0, &better.1) else {
+                continue;
+            };
+            let mut shape = better.1;
+            let norm = quadratic(self.mass, &shape).sqrt();
+            for x in &mut shape {
                 *x /= norm;
             }
+            try_push(&mut found, (eigenvalue, shape), CONTEXT)?;
         }
-        pairs.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
-        Ok(pairs)
+        found.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
+        Ok(found)
     }
 
-    /// The Hermitian part of K.
-    fn hermitian_stiffness(&self) -> Result<Csc> {
-        let n = self.mass.rows;
-        let half = Complex64::new(0.5, 0.0);
-        let transposed = Csc::sum(n, &[(Complex64::ONE, self.stiffness, Form::Transposed)])?;
-        Csc::sum(
-            n,
-            &[
-                (half, self.stiffness, Form::Plain),
-                (half, &transposed, Form::Conjugated),
-            ],
-        )
+    /// The k-th pair after its correction, or as it was found where that leads to another one.
+    fn improved(&self, pairs: &[Pair], k: usize, found: &[Pair], interrupt: &Interrupt<'_>) -> Result<Pair> {
+        let pair = &pairs[k];
+        let others = pairs.iter().enumerate().filter(|(l, _)| *l != k);
+        let gap = others.fold(f64::INFINITY, |least, (_, other)| least.min((other.0 - pair.0).norm()));
+        let most = (BECOMES_OTHER.0 * pair.0.norm()).max(BECOMES_OTHER.1 * gap);
+        match self.corrected(pair, interrupt) {
+            Err(e) if !matches!(e.status, Status::NoConvergence | Status::Singular) => Err(e),
+            Ok(better) if (better.0 - pair.0).norm() <= most && !found.iter().any(|other| is_one(other, &better)) => {
+                Ok(better)
+            }
+            _ => Ok((pair.0, try_copy(&pair.1, CONTEXT)?)),
+        }
     }
 
-    /// The lowest undamped modes, column by column.
-    fn basis(&self, hermitian: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
+    /// The undamped modes, column by column.
+    fn basis(&self, hermitian: &Csc, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
         let n = self.mass.rows;
-        if count < n && count <= n / 2 {
-            return Ok(lanczos::lowest(hermitian, self.mass, count, interrupt)?.vectors);
-        }
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * QUADRATIC_MODES_COPIES), CONTEXT)?;
         Ok(eigen::generalised(&dense(hermitian), &dense(self.mass), interrupt)?.vectors)
     }
@@ -188,57 +180,11 @@ impl Quadratic<'_> {
                     *x += part * phi;
                 }
             }
-            let mut eigenvalue = value * unit;
-            if oscillates && self.is_rigid(eigenvalue, &shape) {
-                continue;
+            if let Some(eigenvalue) = self.as_mode(value * unit, &shape) {
+                try_push(&mut pairs, (eigenvalue, shape), CONTEXT)?;
             }
-            if !oscillates {
-                eigenvalue.im = 0.0;
-                if !self.grows(eigenvalue.re, &shape) {
-                    continue;
-                }
-            }
-            try_push(&mut pairs, (eigenvalue, shape), CONTEXT)?;
         }
         Ok(pairs)
-    }
-
-    /// Whether a motion of a real eigenvalue λ > 0 is no rigid one up to rounding: xᴴ(K + λC)x, which is −λ² xᴴMx.
-    fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
-        let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
-        force < -ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
-    }
-
-    /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below that of the forces. The two eigenvalues zero of a motion
-    /// that nothing holds lie apart by the root of rounding, in any direction.
-    fn is_rigid(&self, eigenvalue: Complex64, x: &[Complex64]) -> bool {
-        let forces = terms(self.stiffness, x) + eigenvalue.norm() * terms(self.damping, x);
-        eigenvalue.norm_sqr() * quadratic(self.mass, x) <= ROUNDING * forces
-    }
-
-    /// λ²M + λC + K
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
-        Csc::sum(
-            self.mass.rows,
-            &[
-                (Complex64::ONE, self.stiffness, Form::Plain),
-                (eigenvalue, self.damping, Form::Plain),
-                (eigenvalue * eigenvalue, self.mass, Form::Plain),
-            ],
-        )
-    }
-
-    /// (2λM + C) x
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
-        let mut y = self.damping.times(x, CONTEXT)?;
-        self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
-        Ok(y)
     }
 
     /// Newton's method on A(λ) x = 0, vᴴ x = 1 with v = M x₀, with the factors at a shift nearby.

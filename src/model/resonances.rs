@@ -10,7 +10,7 @@ use crate::linalg::quadratic::about_quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::quadratic_modes::Quadratic;
+use crate::model::quadratic_problem::Quadratic;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::{DMatrix, Schur};
@@ -51,8 +51,7 @@ const AT_END: f64 = 1e-9;
 /// Largest number of modes of a search in the range.
 const RESONANCES_MOST_MODES: usize = 500;
 
-/// The same with gyroscopic forces, counted from zero. A cap: the projection of the quadratic problem has at most 200 modes, and takes two
-/// and some more for each that is asked for.
+/// The same with gyroscopic forces, counted from zero. A cap: the work of the search grows with the square of the number.
 const RESONANCES_MOST_GYROSCOPIC: usize = 90;
 
 /// Largest number of square matrices that the dense eigensolver holds at a time.

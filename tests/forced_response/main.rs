@@ -22,6 +22,7 @@ mod load_history;
 mod many_contacts;
 mod many_sliders_in_time;
 mod mean_friction;
+mod onset_in_plane;
 mod preload;
 mod reduced_structures;
 mod reference_point;

@@ -12,5 +12,6 @@ mod rotating_wheel;
 mod senses_of_crossings;
 mod signed_diameters;
 mod start_mode;
+mod strong_dampers;
 mod units;
 mod unstable_and_held;

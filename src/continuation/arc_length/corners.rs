@@ -15,6 +15,20 @@ const WIDE_CORNERS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 /// without damping.
 const BESIDE_SURFACE: [f64; 3] = [1e-6, 1e-5, 1e-4];
 
+/// Sense of the changes of the parameter that are tried to leave such a corner, and how far along the branch, over the change, the search
+/// for the solution starts: where the branch turns back in the parameter, that it came from lies at the same parameter.
+const SIDES_AND_DEPTHS: [(f64, f64); 6] = [
+    (1.0, 0.0),
+    (1.0, 1.0),
+    (1.0, 10.0),
+    (-1.0, 0.0),
+    (-1.0, 1.0),
+    (-1.0, 10.0),
+];
+
+/// Length of the chord from such a corner to the next point, above which that is another solution.
+const FARTHEST_BESIDE: f64 = 1e-2;
+
 const CONTEXT: &str = "the continuation";
 
 impl Continuation {
@@ -151,6 +165,59 @@ impl Continuation {
         Ok(None)
     }
 
+    /// The next point beyond a corner at which the branch has a direction on one side only near the corner itself: where circles that hold
+    /// a slider at rest cease to meet, its place goes with the root of the distance in the parameter, and the linearisation beside the
+    /// corner, on either side, tells the direction from which the branch came.
+    ///
+    /// A point at another parameter, solved for from the corner, is on the branch beyond if the branch there leads straight away from the
+    /// corner, and not back to where it came from.
+    fn leave_at_parameter(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let n = self.row.len() - 1;
+        let sense = (self.settings.end - self.settings.start).signum() * metric.p;
+        for length in BESIDE_SURFACE {
+            for (change, depth) in SIDES_AND_DEPTHS.map(|(side, depth)| (side * length, depth * length)) {
+                let mut v = try_copy(&self.current.v, CONTEXT)?;
+                metric.unit(&self.current.tangent, &mut self.row);
+                metric.add(&mut v, depth, &self.row);
+                let at = self.current.v[n] + sense * change;
+                v[n] = at;
+                if self.overshoot(at).is_some() {
+                    continue;
+                }
+                self.row.fill(0.0);
+                self.row[n] = 1.0;
+                let outcome = self
+                    .corrector
+                    .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
+                let Outcome::Converged(corrected) = outcome else {
+                    continue;
+                };
+                v[n] = at;
+                let mut point = Point::new(v, corrected, length);
+                let chord = metric.distance(&point.v, &self.current.v);
+                let along_chord = |tangent: &[f64]| -> f64 {
+                    let difference = metric.dot(&point.v, tangent) - metric.dot(&self.current.v, tangent);
+                    difference / (chord * metric.norm(tangent))
+                };
+                let (onwards, along) = (along_chord(&self.current.tangent), along_chord(&point.tangent));
+                if chord <= FARTHEST_BESIDE && onwards > -ALONG && along.abs() >= ALONG {
+                    if along < 0.0 {
+                        point.reverse();
+                    }
+                    self.steps.restart(length);
+                    self.left_surface = true;
+                    return Ok(Some(point));
+                }
+            }
+        }
+        Ok(None)
+    }
+
     /// Cosine between the row of the plane and the direction at the current point.
     fn onwards(&self, metric: Metric) -> Result<f64> {
         let row = self.unscaled_row(metric)?;
@@ -181,7 +248,10 @@ impl Continuation {
             }
         }
         if self.leaves_surfaces && !self.left_surface {
-            return self.leave_along_surface(problem, metric, interrupt);
+            if let Some(point) = self.leave_along_surface(problem, metric, interrupt)? {
+                return Ok(Some(point));
+            }
+            return self.leave_at_parameter(problem, metric, interrupt);
         }
         Ok(None)
     }

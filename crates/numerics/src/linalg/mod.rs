@@ -24,6 +24,7 @@ pub mod least_squares;
 pub mod linear_system;
 pub mod lu;
 pub mod matrix_view;
+pub mod near_shift;
 mod nested_dissection;
 pub mod orthonormal_block;
 pub mod quadratic;
