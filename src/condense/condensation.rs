@@ -15,12 +15,13 @@ use crate::condense::exchanged_motions::{check_rigid, select_exchanged};
 use crate::condense::flexibility::Workspace;
 use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
-use crate::condense::memory_limit::{within_directly, within_for_contacts};
+use crate::condense::memory_limit::{within_directly, within_for_contacts, within_matrices};
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
-use crate::condense::wave_cache::WaveCache;
+use crate::condense::tuned_plan::TunedPlan;
+use crate::condense::wave_cache::{ALL_UP_TO, WaveCache};
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
@@ -114,6 +115,10 @@ impl Condensed {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
         let is_near_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
         for i in 0..self.blocks.len() {
+            if self.tuned.is_some() {
+                self.blocks[i].without_source = FlexibilityWay::TunedWheel;
+                continue;
+            }
             if is_near_rigid {
                 self.blocks[i].without_source = FlexibilityWay::NearRigid;
                 continue;
@@ -234,6 +239,7 @@ impl Condensed {
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
             wheel: model.structure().whole_wheel(),
+            tuned: None,
             refinement: 1,
         })
     }
@@ -308,17 +314,23 @@ impl Condensed {
             sweep,
             loss_factor: model.structure().whole_loss_factor()?,
         };
-        let on_bases = match mode {
-            None => reduced_blocks(&request, kappa, interrupt)?,
+        let tuned = match mode {
+            None => tuned_blocks(&request, kappa, interrupt)?,
             Some(_) => None,
         };
+        let on_bases = match mode {
+            None if tuned.is_none() => reduced_blocks(&request, kappa, interrupt)?,
+            _ => None,
+        };
         let is_reduced = on_bases.is_some();
-        let (blocks, certificate) = match on_bases {
-            Some(found) => found,
-            None => (
-                direct_blocks(&request, mode.map(|(form, _)| form), kappa, interrupt)?,
-                0.0,
-            ),
+        let (blocks, certificate, tuned) = match (tuned, on_bases) {
+            (Some((blocks, plan)), _) => (blocks, 0.0, Some(plan)),
+            (None, Some((blocks, certificate))) => (blocks, certificate, None),
+            (None, None) => {
+                within_directly(options.memory_limit, model, set.numbers())?;
+                let form = mode.map(|(form, _)| form);
+                (direct_blocks(&request, form, kappa, interrupt)?, 0.0, None)
+            }
         };
         let condensed = Self {
             set,
@@ -343,6 +355,7 @@ impl Condensed {
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
             wheel: model.structure().whole_wheel(),
+            tuned,
             refinement: options.refinement,
         };
         Ok((condensed, assembled))
@@ -432,6 +445,26 @@ pub(super) fn quicker_reference(model: &Model, unknowns: usize) -> Reference {
     }
 }
 
+/// The blocks of a wheel that is tuned but for terms of low rank, where it has so many degrees of freedom that all of its modes are no
+/// alternative; `None` for others.
+fn tuned_blocks(
+    request: &Request<'_>,
+    kappa: impl Fn(usize, usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Vec<HarmonicBlock>, Arc<TunedPlan>)>> {
+    let structure = request.model.structure();
+    let Some((sectors, _)) = structure.whole_wheel() else {
+        return Ok(None);
+    };
+    if request.options.flexibility != Flexibility::Automatic || structure.ndof() <= ALL_UP_TO {
+        return Ok(None);
+    }
+    within_matrices(request.options.memory_limit, request.model, request.numbers)?;
+    let blocks = direct_blocks(request, None, kappa, interrupt)?;
+    let plan = TunedPlan::new(&blocks, sectors, interrupt)?;
+    Ok(plan.map(|plan| (blocks, Arc::new(plan))))
+}
+
 /// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
 fn direct_blocks(
     request: &Request<'_>,
@@ -440,7 +473,6 @@ fn direct_blocks(
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<HarmonicBlock>> {
     let (model, numbers) = (request.model, request.numbers);
-    within_directly(request.options.memory_limit, model, numbers)?;
     let mut blocks = Vec::new();
     for (i, &number) in numbers.iter().enumerate() {
         interrupt.part(Phase::Condensation, i, numbers.len())?;

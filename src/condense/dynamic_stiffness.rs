@@ -4,8 +4,10 @@
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
 //! −2ihDK.
 
+use crate::condense::tuned_factors::TunedFactors;
+use crate::condense::tuned_plan::TERMS;
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
-use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::{self, ComplexSum};
@@ -21,7 +23,11 @@ pub(super) enum Variable {
 
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct DynamicStiffness {
-    factor: Factor,
+    factor: Option<Factor>,
+    /// Those of a wheel that is tuned but for terms of low rank, and the harmonic, frequency and damping of which they are.
+    tuned: Option<Box<TunedFactors>>,
+    tuned_at: Option<(usize, Complex64, f64)>,
+    columns: usize,
     /// Z_κ on each pattern, and the index of that of each harmonic.
     z: Vec<Csc>,
     patterns: Vec<usize>,
@@ -66,8 +72,16 @@ impl DynamicStiffness {
             return fail!(Internal, "no harmonic is carried");
         };
         let n = condensed.ndof();
+        let plan = condensed.tuned().filter(|plan| z.iter().all(|z| plan.ring(z).is_some()));
+        let tuned = plan.map(|plan| boxed(|| TunedFactors::new(plan, columns))).transpose()?;
         Ok(Self {
-            factor: Factor::new(&first.reference, columns)?,
+            factor: match tuned {
+                None => Some(Factor::new(&first.reference, columns)?),
+                Some(_) => None,
+            },
+            tuned,
+            tuned_at: None,
+            columns,
             z,
             patterns,
             largest: 0.0,
@@ -90,6 +104,10 @@ impl DynamicStiffness {
         damping: f64,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
+        if self.tuned_at == Some((i, omega, damping)) {
+            return Ok(());
+        }
+        self.tuned_at = None;
         let block = &condensed.blocks()[i];
         let z = &mut self.z[self.patterns[i]];
         let sum = Combination::value(block, omega, damping);
@@ -98,8 +116,39 @@ impl DynamicStiffness {
             *z = sum.at(block, at);
             self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
         }
-        let factored = self.factor.factor(z, interrupt);
+        if let (Some(tuned), Some(plan)) = (&mut self.tuned, condensed.tuned())
+            && let Some(ring) = plan.ring(z)
+        {
+            match tuned.factor((ring, z), (i, &sum.factors()), interrupt) {
+                // The tuned wheel may be singular where the wheel is not.
+                Err(e) if e.status == Status::Singular => {}
+                Err(e) => return Err(at_harmonic(e, block, omega.re)),
+                Ok(()) => {
+                    self.tuned_at = Some((i, omega, damping));
+                    return Ok(());
+                }
+            }
+        }
+        let known = match self.factor.take() {
+            Some(known) => known,
+            None => Factor::new(z, self.columns)?,
+        };
+        let factored = self.factor.insert(known).factor(z, interrupt);
         factored.map_err(|e| at_harmonic(e, block, omega.re))
+    }
+
+    /// The factors of a wheel, if the current ones are such.
+    pub(super) fn tuned(&mut self) -> Option<&mut TunedFactors> {
+        self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
+    }
+
+    /// Solves with the current factors.
+    fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
+        match (&mut self.tuned, &mut self.factor) {
+            (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
+            (_, Some(factor)) => factor.solve(b, transposed, interrupt),
+            _ => fail!(Internal, "a dynamic stiffness was not factored"),
+        }
     }
 
     /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
@@ -124,8 +173,7 @@ impl DynamicStiffness {
         transposed: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.factor
-            .solve(b, transposed, interrupt)
+        self.solve_columns(b, transposed, interrupt)
             .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
     }
 
@@ -183,7 +231,9 @@ impl DynamicStiffness {
                 }
             }
         }
-        let solved = self.factor.solve(&mut self.remainder, false, interrupt);
+        let mut remainder = core::mem::take(&mut self.remainder);
+        let solved = self.solve_columns(&mut remainder, false, interrupt);
+        self.remainder = remainder;
         solved.map_err(|e| at_harmonic(e, block, at.0))?;
         let mut change = (0.0_f64, 0.0_f64);
         for row in &block.rows {
@@ -277,6 +327,18 @@ impl Combination {
                 sum.add_multiple(*part, factor);
             }
         }
+    }
+
+    /// The factors of the matrices, in the order of a [`crate::condense::tuned_plan::TunedPlan`].
+    fn factors(&self) -> [Complex64; TERMS] {
+        [
+            self.reference.into(),
+            self.damping,
+            self.mass,
+            self.tied[0],
+            self.tied[1],
+            self.own,
+        ]
     }
 
     #[inline]
