@@ -23,14 +23,12 @@ pub(super) enum Variable {
 
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct DynamicStiffness {
-    factor: Option<Factor>,
+    /// Factors of all degrees of freedom, made when they are first needed.
+    plain: Option<Plain>,
     /// Those of a wheel that is tuned but for terms of low rank, and the harmonic, frequency and damping of which they are.
     tuned: Option<Box<TunedFactors>>,
     tuned_at: Option<(usize, Complex64, f64)>,
     columns: usize,
-    /// Z_κ on each pattern, and the index of that of each harmonic.
-    z: Vec<Csc>,
-    patterns: Vec<usize>,
     /// Largest entry of the matrix that was factorised.
     largest: f64,
     /// b − Z x, and memory for its exact sum.
@@ -38,6 +36,38 @@ pub struct DynamicStiffness {
     sums: Vec<ComplexSum>,
     part: Vec<ComplexSum>,
 }
+
+/// Factors of all degrees of freedom.
+struct Plain {
+    factor: Factor,
+    /// Z_κ on each pattern, and the index of that of each harmonic.
+    z: Vec<Csc>,
+    patterns: Vec<usize>,
+}
+
+impl Plain {
+    fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
+        let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
+        for block in condensed.blocks() {
+            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
+            let known = z.iter().position(of_block);
+            try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
+            if known.is_none() {
+                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+            }
+        }
+        let Some(first) = condensed.blocks().first() else {
+            return fail!(Internal, "no harmonic is carried");
+        };
+        Ok(Self {
+            factor: Factor::new(&first.reference, columns)?,
+            z,
+            patterns,
+        })
+    }
+}
+
+const CONTEXT: &str = "the dynamic stiffness";
 
 /// Relative error of the relative motions above which a residual summed with its rounding errors is worth its cost.
 const NOISE: f64 = 1e-12;
@@ -58,32 +88,17 @@ impl DynamicStiffness {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
-        const CONTEXT: &str = "the dynamic stiffness";
-        let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
-        for block in condensed.blocks() {
-            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
-            let known = z.iter().position(of_block);
-            try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
-            if known.is_none() {
-                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
-            }
-        }
-        let Some(first) = condensed.blocks().first() else {
-            return fail!(Internal, "no harmonic is carried");
-        };
         let n = condensed.ndof();
-        let plan = condensed.tuned().filter(|plan| z.iter().all(|z| plan.ring(z).is_some()));
-        let tuned = plan.map(|plan| boxed(|| TunedFactors::new(plan, columns))).transpose()?;
+        let tuned = condensed.tuned().map(|plan| boxed(|| TunedFactors::new(plan, columns)));
+        let tuned = tuned.transpose()?;
         Ok(Self {
-            factor: match tuned {
-                None => Some(Factor::new(&first.reference, columns)?),
+            plain: match tuned {
+                None => Some(Plain::new(condensed, columns)?),
                 Some(_) => None,
             },
             tuned,
             tuned_at: None,
             columns,
-            z,
-            patterns,
             largest: 0.0,
             remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
             sums: try_vec(n, ComplexSum::default(), CONTEXT)?,
@@ -109,31 +124,30 @@ impl DynamicStiffness {
         }
         self.tuned_at = None;
         let block = &condensed.blocks()[i];
-        let z = &mut self.z[self.patterns[i]];
         let sum = Combination::value(block, omega, damping);
         self.largest = 0.0;
-        for (at, z) in z.values.iter_mut().enumerate() {
-            *z = sum.at(block, at);
-            self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
-        }
-        if let (Some(tuned), Some(plan)) = (&mut self.tuned, condensed.tuned())
-            && let Some(ring) = plan.ring(z)
-        {
-            match tuned.factor((ring, z), (i, &sum.factors()), interrupt) {
+        if let Some(tuned) = &mut self.tuned {
+            match tuned.factor(i, &sum.factors(), interrupt) {
                 // The tuned wheel may be singular where the wheel is not.
                 Err(e) if e.status == Status::Singular => {}
-                Err(e) => return Err(at_harmonic(e, block, omega.re)),
-                Ok(()) => {
+                factored => {
+                    self.largest = factored.map_err(|e| at_harmonic(e, block, omega.re))?;
                     self.tuned_at = Some((i, omega, damping));
                     return Ok(());
                 }
             }
         }
-        let known = match self.factor.take() {
+        let known = match self.plain.take() {
             Some(known) => known,
-            None => Factor::new(z, self.columns)?,
+            None => Plain::new(condensed, self.columns)?,
         };
-        let factored = self.factor.insert(known).factor(z, interrupt);
+        let plain = self.plain.insert(known);
+        let z = &mut plain.z[plain.patterns[i]];
+        for (at, z) in z.values.iter_mut().enumerate() {
+            *z = sum.at(block, at);
+            self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
+        }
+        let factored = plain.factor.factor(z, interrupt);
         factored.map_err(|e| at_harmonic(e, block, omega.re))
     }
 
@@ -144,9 +158,9 @@ impl DynamicStiffness {
 
     /// Solves with the current factors.
     fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
-        match (&mut self.tuned, &mut self.factor) {
+        match (&mut self.tuned, &mut self.plain) {
             (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
-            (_, Some(factor)) => factor.solve(b, transposed, interrupt),
+            (_, Some(plain)) => plain.factor.solve(b, transposed, interrupt),
             _ => fail!(Internal, "a dynamic stiffness was not factored"),
         }
     }

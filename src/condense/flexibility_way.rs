@@ -42,7 +42,9 @@ impl fmt::Display for FlexibilityWay {
             Self::Unsuitable => {
                 "factors at each frequency: the reference stiffness is not definite, or poles are badly conditioned"
             }
-            Self::TunedWheel => "factors of the waves of a tuned wheel, and a correction of low rank for its differences",
+            Self::TunedWheel => {
+                "factors of the waves of a tuned wheel, and a correction of low rank for its differences"
+            }
             Self::Disagreement => "factors at each frequency: sums did not agree with them at an end of the range",
         })
     }

@@ -62,3 +62,6 @@ pub use tied_load::{LoadedLaw, TiedLoad};
 
 #[cfg(test)]
 pub(crate) mod test_chains;
+
+#[cfg(test)]
+mod tuned_tests;

@@ -57,10 +57,10 @@ impl TunedBasis {
             let mut without_gain = 0;
             while without_gain < CONVINCED {
                 interrupt.check_before((a.values.len() + sectors * sectors * order) as u64)?;
-                let parts = random_product(a, scale, &mut random)?;
+                let (parts, size) = random_product(a, scale, &mut random)?;
                 without_gain += 1;
                 for part in parts {
-                    if add_waves(&part, &roots, (order, &mut found))? {
+                    if add_waves((&part, FELT * size), &roots, (order, &mut found))? {
                         without_gain = 0;
                     }
                 }
@@ -169,8 +169,8 @@ fn multiply_few(a: &Csc, x: &[Few], y: &mut [Few]) {
     }
 }
 
-/// The real and the imaginary part, where it has them, of S^−½ Δ S^−½ g with a random g.
-fn random_product(a: &Csc, scale: &[f64], random: &mut Random) -> Result<Vec<Vec<f64>>> {
+/// The real and the imaginary part of S^−½ Δ S^−½ g with a random g, and the size of both: the smaller one may be rounding.
+fn random_product(a: &Csc, scale: &[f64], random: &mut Random) -> Result<(Vec<Vec<f64>>, f64)> {
     let n = scale.len();
     let mut x = try_vec(a.rows, Complex64::ZERO, CONTEXT)?;
     for (k, x) in x.iter_mut().enumerate() {
@@ -181,22 +181,23 @@ fn random_product(a: &Csc, scale: &[f64], random: &mut Random) -> Result<Vec<Vec
     let mut parts = Vec::new();
     let takes: [fn(&Complex64) -> f64; 2] = [|z| z.re, |z| z.im];
     for take in takes {
-        if y.iter().all(|y| take(y) == 0.0) {
-            continue;
-        }
         let mut part = try_vec(a.rows, 0.0, CONTEXT)?;
         for (k, (part, y)) in part.iter_mut().zip(&y).enumerate() {
             *part = take(y) / scale[k % n].sqrt();
         }
         try_push(&mut parts, part, CONTEXT)?;
     }
-    Ok(parts)
+    let size = parts.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+    Ok((parts, size))
 }
 
-/// Adds the waves of a motion to the columns of each, where they are beyond them; whether one was.
-fn add_waves(motion: &[f64], roots: &[Complex64], (n, found): (usize, &mut [Vec<Complex64>])) -> Result<bool> {
+/// Adds the waves of a motion to the columns of each, where they are beyond them by more than rounding; whether one was.
+fn add_waves(
+    (motion, rounding): (&[f64], f64),
+    roots: &[Complex64],
+    (n, found): (usize, &mut [Vec<Complex64>]),
+) -> Result<bool> {
     let norm = |x: &[Complex64]| x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
-    let size = motion.iter().map(|x| x * x).sum::<f64>().sqrt();
     let mut gains = false;
     for (p, q) in found.iter_mut().enumerate() {
         let mut wave = try_vec(n, Complex64::ZERO, CONTEXT)?;
@@ -214,7 +215,7 @@ fn add_waves(motion: &[f64], roots: &[Complex64], (n, found): (usize, &mut [Vec<
             }
         }
         let rest = norm(&wave);
-        if rest <= FELT * size || rest.is_nan() {
+        if rest <= rounding || rest.is_nan() {
             continue;
         }
         gains = true;

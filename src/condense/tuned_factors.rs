@@ -8,14 +8,12 @@
 //! other way. The matrix in the middle has N times the rank of a sector's differences.
 
 use crate::condense::tuned_plan::{TERMS, TunedPlan};
-use crate::condense::tuned_ring::TunedRing;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::multiply;
 use crate::linalg::factor::Factor;
 use crate::linalg::inner;
 use crate::linalg::lu::Lu;
-use crate::linalg::sparse::Csc;
 use core::f64::consts::TAU;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -59,25 +57,26 @@ impl TunedFactors {
             waves: Vec::new(),
             flexible: try_vec(sectors * n * r, Complex64::ZERO, CONTEXT)?,
             differences: try_vec((sectors * r).saturating_mul(sectors * r), Complex64::ZERO, CONTEXT)?,
-            middle: if r == 0 { None } else { Some(Lu::new(sectors * r, columns)?) },
+            middle: if r == 0 {
+                None
+            } else {
+                Some(Lu::new(sectors * r, columns)?)
+            },
             roots,
             spectrum: Vec::new(),
             columns,
         })
     }
 
-    /// Factors the i-th block on a pattern of the plan, the sum of its terms with these factors.
+    /// Factors the i-th block, the sum of its terms with these factors; returns the largest entry of the tuned wheel.
     ///
     /// # Errors
     /// `Singular` where the tuned wheel or the wheel is; `OutOfMemory`; `StoppedByCaller`.
-    pub fn factor(
-        &mut self,
-        (ring, z): (&TunedRing, &Csc),
-        (i, factors): (usize, &[Complex64; TERMS]),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
-        let sectors = self.plan.basis.sectors;
-        let means = ring.means(&z.values)?;
+    pub fn factor(&mut self, i: usize, factors: &[Complex64; TERMS], interrupt: &Interrupt<'_>) -> Result<f64> {
+        let plan = Arc::clone(&self.plan);
+        let (sectors, ring) = (plan.basis.sectors, plan.ring(i));
+        let means = plan.means(i, factors)?;
+        let largest = means.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
         let mut wave = ring.wave()?;
         for p in 0..=sectors / 2 {
             interrupt.check_before(means.len() as u64)?;
@@ -87,11 +86,11 @@ impl TunedFactors {
             }
             self.waves[p].factor(&wave, interrupt)?;
         }
-        if self.plan.basis.rank == 0 {
-            return Ok(());
+        if plan.basis.rank > 0 {
+            plan.differences(i, factors, &mut self.differences);
+            self.factor_middle(interrupt)?;
         }
-        self.plan.differences(i, factors, &mut self.differences);
-        self.factor_middle(interrupt)
+        Ok(largest)
     }
 
     /// Z_p⁻¹ b of all waves, and the factors of I + D bᴴG⁰b.
@@ -123,7 +122,11 @@ impl TunedFactors {
     /// x̂ ← Z_p⁻¹ x̂ for columns of a wave.
     pub(super) fn solve_wave(&mut self, p: usize, columns: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
         let sectors = self.plan.basis.sectors;
-        let (of, transposed) = if 2 * p <= sectors { (p, false) } else { (sectors - p, true) };
+        let (of, transposed) = if 2 * p <= sectors {
+            (p, false)
+        } else {
+            (sectors - p, true)
+        };
         if columns.is_empty() {
             return Ok(());
         }

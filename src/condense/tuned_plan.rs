@@ -39,9 +39,16 @@ pub const TERMS: usize = 6;
 pub struct TunedPlan {
     rings: Vec<TunedRing>,
     pub(super) basis: TunedBasis,
-    /// D of matrices that differ, and of each block those of its terms.
-    differences: Vec<Vec<Complex64>>,
-    blocks: Vec<[Option<usize>; TERMS]>,
+    matrices: Vec<Matrix>,
+    /// The ring of each block, and the matrices of its terms.
+    blocks: Vec<(usize, [Option<usize>; TERMS])>,
+}
+
+/// One of the matrices: its means around the ring, and D.
+#[derive(Debug)]
+struct Matrix {
+    means: Vec<Complex64>,
+    differences: Vec<Complex64>,
 }
 
 impl TunedPlan {
@@ -77,7 +84,7 @@ impl TunedPlan {
                     try_push(&mut matrices, (ring, values), CONTEXT)?;
                 }
             }
-            try_push(&mut of_blocks, terms, CONTEXT)?;
+            try_push(&mut of_blocks, (ring, terms), CONTEXT)?;
         }
         for &(ring, values) in &matrices {
             interrupt.check_before(10 * values.len() as u64)?;
@@ -91,17 +98,21 @@ impl TunedPlan {
             interrupt.check_before(values.len() as u64)?;
             let ratio = rings[ring].largest_ratio(values, &scale)?;
             let noise = |i: usize, j: usize| ALIKE * ratio * (scale[i] * scale[j]).sqrt();
-            try_push(&mut differing, rings[ring].differences(values, (noise, ALIKE))?, CONTEXT)?;
+            try_push(
+                &mut differing,
+                rings[ring].differences(values, (noise, ALIKE))?,
+                CONTEXT,
+            )?;
         }
         let Some(basis) = TunedBasis::new(&differing, sectors, &scale, interrupt)? else {
             return Ok(None);
         };
-        let mut differences: Vec<Vec<Complex64>> = Vec::new();
-        for (k, a) in differing.iter().enumerate() {
-            let multiple = (0..k).find_map(|known| Some((known, multiple(a, &differing[known])?)));
-            let of_matrix = match multiple {
+        let mut found: Vec<Matrix> = Vec::new();
+        for (k, (a, &(ring, values))) in differing.iter().zip(&matrices).enumerate() {
+            let known = (0..k).find_map(|known| Some((known, multiple(a, &differing[known])?)));
+            let differences = match known {
                 Some((known, factor)) => {
-                    let mut d = try_copy(&differences[known], CONTEXT)?;
+                    let mut d = try_copy(&found[known].differences, CONTEXT)?;
                     for d in &mut d {
                         *d *= factor;
                     }
@@ -109,30 +120,50 @@ impl TunedPlan {
                 }
                 None => basis.of(a, interrupt)?,
             };
-            try_push(&mut differences, of_matrix, CONTEXT)?;
+            let means = rings[ring].means(values)?;
+            try_push(&mut found, Matrix { means, differences }, CONTEXT)?;
         }
         Ok(Some(Self {
             rings,
             basis,
-            differences,
+            matrices: found,
             blocks: of_blocks,
         }))
     }
 
-    /// The ring of a pattern, if it is known.
-    pub fn ring(&self, pattern: &Csc) -> Option<&TunedRing> {
-        self.rings.iter().find(|ring| ring.is_of(pattern))
+    /// The ring of the i-th block.
+    pub fn ring(&self, i: usize) -> &TunedRing {
+        &self.rings[self.blocks[i].0]
     }
 
-    /// D of the i-th block as the sum of its terms with these factors.
+    /// The means around the ring of the i-th block as the sum of its terms with these factors.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn means(&self, i: usize, factors: &[Complex64; TERMS]) -> Result<Vec<Complex64>> {
+        let mut sum = try_vec(self.ring(i).kinds(), Complex64::ZERO, CONTEXT)?;
+        self.add_terms((i, factors), |matrix| &matrix.means, &mut sum);
+        Ok(sum)
+    }
+
+    /// D of the i-th block, likewise.
     pub fn differences(&self, i: usize, factors: &[Complex64; TERMS], sum: &mut [Complex64]) {
         sum.fill(Complex64::ZERO);
-        for (term, factor) in self.blocks[i].iter().zip(factors) {
-            let Some(d) = term.map(|term| &self.differences[term]) else {
+        self.add_terms((i, factors), |matrix| &matrix.differences, sum);
+    }
+
+    fn add_terms(
+        &self,
+        (i, factors): (usize, &[Complex64; TERMS]),
+        of: impl Fn(&Matrix) -> &[Complex64],
+        sum: &mut [Complex64],
+    ) {
+        for (term, factor) in self.blocks[i].1.iter().zip(factors) {
+            let Some(term) = term.filter(|_| *factor != Complex64::ZERO) else {
                 continue;
             };
-            for (sum, d) in sum.iter_mut().zip(d) {
-                *sum += factor * d;
+            for (sum, x) in sum.iter_mut().zip(of(&self.matrices[term])) {
+                *sum += factor * x;
             }
         }
     }

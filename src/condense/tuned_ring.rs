@@ -85,7 +85,8 @@ impl TunedRing {
                 position[wave.row_idx[at]] = at;
             }
             // Kinds lie column after column.
-            let of_column = kinds.partition_point(|kind| kind.column < j)..kinds.partition_point(|kind| kind.column <= j);
+            let of_column =
+                kinds.partition_point(|kind| kind.column < j)..kinds.partition_point(|kind| kind.column <= j);
             for kind in &mut kinds[of_column] {
                 kind.position = position[kind.row];
             }
@@ -104,6 +105,11 @@ impl TunedRing {
     /// Whether this is the ring of a pattern.
     pub fn is_of(&self, pattern: &Csc) -> bool {
         self.pattern.col_ptr == pattern.col_ptr && self.pattern.row_idx == pattern.row_idx
+    }
+
+    /// Number of kinds of entries.
+    pub fn kinds(&self) -> usize {
+        self.kinds.len()
     }
 
     /// A matrix of a wave, to fill.

@@ -115,7 +115,9 @@ impl TunedFactors {
                     let rows = outputs.rows.iter().chain([outputs.response]);
                     for (read, row) in read.iter_mut().zip(rows) {
                         let terms = row.terms();
-                        *read = terms.map(|&(at, a)| a * self.root(p * (at / n)).conj() * x[at % n]).sum();
+                        *read = terms
+                            .map(|&(at, a)| a * self.root(p * (at / n)).conj() * x[at % n])
+                            .sum();
                     }
                 }
             }
@@ -130,7 +132,11 @@ impl TunedFactors {
         let outputs = sectors * k + 1;
         for (column, table) in value.chunks_exact_mut(outputs).enumerate() {
             // The excitation acts on all sectors.
-            let (t, q) = if column == sectors * k { (0, k) } else { (column / k, column % k) };
+            let (t, q) = if column == sectors * k {
+                (0, k)
+            } else {
+                (column / k, column % k)
+            };
             for s in 0..sectors {
                 let d = (s + sectors - t) % sectors;
                 table[s * k..(s + 1) * k].copy_from_slice(&found.read[(d * rows + q) * rows..][..k]);
@@ -164,7 +170,11 @@ impl TunedFactors {
         }
         let mut right = try_vec(all * outputs, Complex64::ZERO, CONTEXT)?;
         for (column, right) in right.chunks_exact_mut(all).enumerate() {
-            let (t, q) = if column == sectors * k { (0, k) } else { (column / k, column % k) };
+            let (t, q) = if column == sectors * k {
+                (0, k)
+            } else {
+                (column / k, column % k)
+            };
             for (p, right) in right.chunks_exact_mut(r).enumerate() {
                 let root = self.root(p * t);
                 for (right, along) in right.iter_mut().zip(&found.along[(p * rows + q) * r..]) {
