@@ -9,6 +9,7 @@
 //! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
 //! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+use crate::condense::basis_outlook::is_tuned_quicker;
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::exchanged_motions::{check_rigid, select_exchanged};
@@ -36,6 +37,10 @@ use std::sync::Arc;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
+
+/// Degrees of freedom of a wheel from which tables of the tuned one take less time than sums over all modes. Kind: tuned; wheels of 24
+/// sectors with 4 to 25 degrees of freedom and a contact each.
+const TUNED_FROM: usize = 200;
 
 impl Condensed {
     /// Condenses a model under its forces for a range of frequency, with the motion scaled for its start.
@@ -445,8 +450,8 @@ pub(super) fn quicker_reference(model: &Model, unknowns: usize) -> Reference {
     }
 }
 
-/// The blocks of a wheel that is tuned but for terms of low rank, where it has so many degrees of freedom that all of its modes are no
-/// alternative; `None` for others.
+/// The blocks of a wheel that is tuned but for terms of low rank, where this takes less time than factors or modes of all of it; `None` for
+/// others.
 fn tuned_blocks(
     request: &Request<'_>,
     kappa: impl Fn(usize, usize) -> Complex64,
@@ -456,13 +461,23 @@ fn tuned_blocks(
     let Some((sectors, _)) = structure.whole_wheel() else {
         return Ok(None);
     };
-    if request.options.flexibility != Flexibility::Automatic || structure.ndof() <= ALL_UP_TO {
+    if request.options.flexibility != Flexibility::Automatic || !may_be_tuned(request) {
         return Ok(None);
     }
     within_matrices(request.options.memory_limit, request.model, request.numbers)?;
     let blocks = direct_blocks(request, None, kappa, interrupt)?;
-    let plan = TunedPlan::new(&blocks, sectors, interrupt)?;
-    Ok(plan.map(|plan| (blocks, Arc::new(plan))))
+    let Some(plan) = TunedPlan::new(&blocks, sectors, interrupt)? else {
+        return Ok(None);
+    };
+    let is_quicker = is_tuned_quicker(&plan, &blocks)?;
+    Ok(is_quicker.then(|| (blocks, Arc::new(plan))))
+}
+
+/// Whether a wheel has so many degrees of freedom that sums over all of its modes are no alternative, or take longer: estimates of errors
+/// need many harmonics, and take the modes of small wheels.
+fn may_be_tuned(request: &Request<'_>) -> bool {
+    let n = request.model.structure().ndof();
+    n > ALL_UP_TO || (n >= TUNED_FROM && request.options.tolerance == 0.0 && request.sweep.is_range())
 }
 
 /// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
