@@ -200,7 +200,7 @@ def small(disk=(8, 2, 3), blade=(2, 2, 12), sectors=12):
 
 def large(sectors=24):
     """A wheel of sectors with 20,000 degrees of freedom on 10 modes a blade, and on 20 of each."""
-    sector = Sector((10, 4, 6), (6, 4, 170))
+    sector = Sector((10, 4, 6), (6, 4, 190))
     print(f"{sector.n} degrees of freedom a sector with both faces")
     pattern = 0.02 * np.random.default_rng(7).standard_normal(sectors)
     rows = []

@@ -9,38 +9,31 @@
 //! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
 //! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
-use crate::condense::basis_outlook::is_tuned_quicker;
+use crate::condense::chosen_blocks::{Chosen, chosen_blocks};
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::exchanged_motions::{check_rigid, select_exchanged};
 use crate::condense::flexibility::Workspace;
 use crate::condense::flexibility_way::FlexibilityWay;
-use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
-use crate::condense::memory_limit::{within_directly, within_for_contacts, within_matrices};
+use crate::condense::memory_limit::within_for_contacts;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
-use crate::condense::tuned_plan::TunedPlan;
-use crate::condense::wave_cache::{ALL_UP_TO, WaveCache};
-use crate::condense::wave_reduction::{Request, reduced_blocks};
+use crate::condense::wave_cache::WaveCache;
+use crate::condense::wave_reduction::Request;
 use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::interrupt::{Interrupt, Phase};
+use crate::interrupt::Interrupt;
 use crate::linalg::power_of_two;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, Exchanged, Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
-
-/// Degrees of freedom of a wheel from which tables of the tuned one take less time than sums over all modes. Kind: tuned; wheels of 24
-/// sectors with 4 to 25 degrees of freedom and a contact each.
-const TUNED_FROM: usize = 200;
 
 impl Condensed {
     /// Condenses a model under its forces for a range of frequency, with the motion scaled for its start.
@@ -319,24 +312,12 @@ impl Condensed {
             sweep,
             loss_factor: model.structure().whole_loss_factor()?,
         };
-        let tuned = match mode {
-            None => tuned_blocks(&request, kappa, interrupt)?,
-            Some(_) => None,
-        };
-        let on_bases = match mode {
-            None if tuned.is_none() => reduced_blocks(&request, kappa, interrupt)?,
-            _ => None,
-        };
-        let is_reduced = on_bases.is_some();
-        let (blocks, certificate, tuned) = match (tuned, on_bases) {
-            (Some((blocks, plan)), _) => (blocks, 0.0, Some(plan)),
-            (None, Some((blocks, certificate))) => (blocks, certificate, None),
-            (None, None) => {
-                within_directly(options.memory_limit, model, set.numbers())?;
-                let form = mode.map(|(form, _)| form);
-                (direct_blocks(&request, form, kappa, interrupt)?, 0.0, None)
-            }
-        };
+        let Chosen {
+            blocks,
+            certificate,
+            tuned,
+        } = chosen_blocks(&request, mode.map(|(form, _)| form), kappa, interrupt)?;
+        let is_reduced = blocks.iter().any(|block| block.view.is_some());
         let condensed = Self {
             set,
             degrees: model.structure().degrees().clone(),
@@ -448,62 +429,4 @@ pub(super) fn quicker_reference(model: &Model, unknowns: usize) -> Reference {
     } else {
         Reference::Complex
     }
-}
-
-/// The blocks of a wheel that is tuned but for terms of low rank, where this takes less time than factors or modes of all of it; `None` for
-/// others.
-fn tuned_blocks(
-    request: &Request<'_>,
-    kappa: impl Fn(usize, usize) -> Complex64,
-    interrupt: &Interrupt<'_>,
-) -> Result<Option<(Vec<HarmonicBlock>, Arc<TunedPlan>)>> {
-    let structure = request.model.structure();
-    let Some((sectors, _)) = structure.whole_wheel() else {
-        return Ok(None);
-    };
-    if request.options.flexibility != Flexibility::Automatic || !may_be_tuned(request) {
-        return Ok(None);
-    }
-    within_matrices(request.options.memory_limit, request.model, request.numbers)?;
-    let blocks = direct_blocks(request, None, kappa, interrupt)?;
-    let Some(plan) = TunedPlan::new(&blocks, sectors, interrupt)? else {
-        return Ok(None);
-    };
-    let is_quicker = is_tuned_quicker(&plan, &blocks)?;
-    Ok(is_quicker.then(|| (blocks, Arc::new(plan))))
-}
-
-/// Whether a wheel has so many degrees of freedom that sums over all of its modes are no alternative, or take longer: estimates of errors
-/// need many harmonics, and take the modes of small wheels.
-fn may_be_tuned(request: &Request<'_>) -> bool {
-    let n = request.model.structure().ndof();
-    n > ALL_UP_TO || (n >= TUNED_FROM && request.options.tolerance == 0.0 && request.sweep.is_range())
-}
-
-/// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
-fn direct_blocks(
-    request: &Request<'_>,
-    mode: Option<DampingForm>,
-    kappa: impl Fn(usize, usize) -> Complex64,
-    interrupt: &Interrupt<'_>,
-) -> Result<Vec<HarmonicBlock>> {
-    let (model, numbers) = (request.model, request.numbers);
-    let mut blocks = Vec::new();
-    for (i, &number) in numbers.iter().enumerate() {
-        interrupt.part(Phase::Condensation, i, numbers.len())?;
-        let mut block = match of_same_wave(model, number, &blocks.iter()) {
-            Some(known) => shared_block(model, number, known, request.contacts, &kappa)?,
-            None => harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?,
-        };
-        block.artificial = match mode {
-            None => Artificial::None,
-            Some(DampingForm::Mass) => Artificial::Mass,
-            Some(DampingForm::Stiffness) => {
-                let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
-                Artificial::Stiffness(structure.aligned(&block.reference)?)
-            }
-        };
-        try_push(&mut blocks, block, "the matrices per harmonic")?;
-    }
-    Ok(blocks)
 }

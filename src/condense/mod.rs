@@ -2,6 +2,7 @@
 
 mod basis_outlook;
 mod certificate;
+mod chosen_blocks;
 mod condensation;
 mod condensed;
 pub mod contact_classes;

@@ -51,8 +51,8 @@ impl TunedRing {
             let first = kinds.len();
             for t in 0..sectors {
                 let column = t * n + j;
-                for at in pattern.col_ptr[column]..pattern.col_ptr[column + 1] {
-                    let row = pattern.row_idx[at];
+                let of_column = pattern.col_ptr[column]..pattern.col_ptr[column + 1];
+                for (row, place) in pattern.row_idx[of_column.clone()].iter().zip(&mut place[of_column]) {
                     let (distance, i) = ((row / n + sectors - t) % sectors, row % n);
                     let kind = &mut known[distance * n + i];
                     if *kind == 0 {
@@ -71,7 +71,7 @@ impl TunedRing {
                         }
                     }
                     kinds[*kind - 1].count += 1;
-                    place[at] = u32::try_from(*kind - 1).unwrap_or(u32::MAX);
+                    *place = u32::try_from(*kind - 1).unwrap_or(u32::MAX);
                 }
             }
             for kind in &kinds[first..] {
@@ -189,10 +189,10 @@ impl TunedRing {
                 found.row_idx.push((t + kind.distance) % self.sectors * n + kind.row);
                 found.values.push(-means[k]);
             }
-            for at in self.pattern.col_ptr[column]..self.pattern.col_ptr[column + 1] {
-                let k = self.place[at] as usize;
-                if differs[k] {
-                    found.values[place[k]] += values[at];
+            let of_column = self.pattern.col_ptr[column]..self.pattern.col_ptr[column + 1];
+            for (&k, value) in self.place[of_column.clone()].iter().zip(&values[of_column]) {
+                if differs[k as usize] {
+                    found.values[place[k as usize]] += value;
                 }
             }
             found.col_ptr[column + 1] = found.values.len();
@@ -217,10 +217,10 @@ impl TunedRing {
         let (x, y) = vectors.split_at(all);
         let (mut gap, mut size) = (Complex64::ZERO, 0.0);
         for j in 0..all {
-            for at in self.pattern.col_ptr[j]..self.pattern.col_ptr[j + 1] {
-                let i = self.pattern.row_idx[at];
-                gap += values[at] * (y[i] * x[j] - x[i] * y[j]);
-                size += values[at].norm_sqr();
+            let of_column = self.pattern.col_ptr[j]..self.pattern.col_ptr[j + 1];
+            for (&i, value) in self.pattern.row_idx[of_column.clone()].iter().zip(&values[of_column]) {
+                gap += value * (y[i] * x[j] - x[i] * y[j]);
+                size += value.norm_sqr();
             }
         }
         Ok(gap.norm() <= rounding * size.sqrt())
