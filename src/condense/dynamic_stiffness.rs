@@ -5,7 +5,7 @@
 //! −2ihDK.
 
 use crate::condense::tuned_factors::TunedFactors;
-use crate::condense::tuned_plan::TERMS;
+use crate::condense::tuned_plan::TUNED_TERMS;
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
 use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -344,7 +344,7 @@ impl Combination {
     }
 
     /// The factors of the matrices, in the order of a [`crate::condense::tuned_plan::TunedPlan`].
-    fn factors(&self) -> [Complex64; TERMS] {
+    fn factors(&self) -> [Complex64; TUNED_TERMS] {
         [
             self.reference.into(),
             self.damping,

@@ -21,7 +21,7 @@ const FELT: f64 = 1e-12;
 const CONVINCED: usize = 2;
 
 /// Unknowns of all low-rank terms up to which these take less time than factors of the wheel. Kind: cap; their matrix is full.
-const MOST_TERMS: usize = 1_500;
+const MOST_TUNED_TERMS: usize = 1_500;
 
 /// Orthonormal motions of each wave, as many in each.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ impl TunedBasis {
                     }
                 }
                 let rank = found.iter().map(|q| q.len() / order).max().unwrap_or(0);
-                if rank * sectors > MOST_TERMS || rank >= order {
+                if rank * sectors > MOST_TUNED_TERMS || rank >= order {
                     return Ok(None);
                 }
             }

@@ -7,7 +7,7 @@
 //! G⁰ takes one factorisation of the order of a sector for each wave p = 0 .. N/2, whose transposes serve the waves that travel the
 //! other way. The matrix in the middle has N times the rank of a sector's differences.
 
-use crate::condense::tuned_plan::{TERMS, TunedPlan};
+use crate::condense::tuned_plan::{TUNED_TERMS, TunedPlan};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::complex_products::multiply;
@@ -72,7 +72,7 @@ impl TunedFactors {
     ///
     /// # Errors
     /// `Singular` where the tuned wheel or the wheel is; `OutOfMemory`; `StoppedByCaller`.
-    pub fn factor(&mut self, i: usize, factors: &[Complex64; TERMS], interrupt: &Interrupt<'_>) -> Result<f64> {
+    pub fn factor(&mut self, i: usize, factors: &[Complex64; TUNED_TERMS], interrupt: &Interrupt<'_>) -> Result<f64> {
         let plan = Arc::clone(&self.plan);
         let (sectors, ring) = (plan.basis.sectors, plan.ring(i));
         let means = plan.means(i, factors)?;

@@ -22,17 +22,17 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the tuned wheel";
 
 /// Difference of entries around the ring, over the stiffness of their degrees of freedom, that is rounding. Kind: rounding.
-const ALIKE: f64 = 1e-14;
+const ALIKE_AROUND_RING: f64 = 1e-14;
 
 /// Gap of yᵀAx and xᵀAy, over the root of the sum of squares of A, up to which waves that travel the other way have the transposed
 /// matrices. Kind: rounding.
 const MIRRORED: f64 = 1e-13;
 
 /// Largest gap of two matrices that are proportional, over the largest entry. Kind: rounding.
-const PROPORTIONAL: f64 = 1e-13;
+const PROPORTIONAL_DIFFERENCES: f64 = 1e-13;
 
 /// Matrices of which that of a harmonic is a sum.
-pub const TERMS: usize = 6;
+pub const TUNED_TERMS: usize = 6;
 
 /// A wheel whose differences have low rank.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub struct TunedPlan {
     pub(super) basis: TunedBasis,
     matrices: Vec<Matrix>,
     /// The ring of each block, and the matrices of its terms.
-    blocks: Vec<(usize, [Option<usize>; TERMS])>,
+    blocks: Vec<(usize, [Option<usize>; TUNED_TERMS])>,
 }
 
 /// One of the matrices: its means around the ring, and D.
@@ -75,7 +75,7 @@ impl TunedPlan {
                 };
                 try_push(&mut rings, new, CONTEXT)?;
             }
-            let mut terms = [None; TERMS];
+            let mut terms = [None; TUNED_TERMS];
             for (term, values) in terms.iter_mut().zip(values_of(block)) {
                 let Some(values) = values else { continue };
                 let known = matrices.iter().position(|(_, known)| core::ptr::eq(*known, values));
@@ -97,10 +97,10 @@ impl TunedPlan {
         for &(ring, values) in &matrices {
             interrupt.check_before(values.len() as u64)?;
             let ratio = rings[ring].largest_ratio(values, &scale)?;
-            let noise = |i: usize, j: usize| ALIKE * ratio * (scale[i] * scale[j]).sqrt();
+            let noise = |i: usize, j: usize| ALIKE_AROUND_RING * ratio * (scale[i] * scale[j]).sqrt();
             try_push(
                 &mut differing,
-                rings[ring].differences(values, (noise, ALIKE))?,
+                rings[ring].differences(values, (noise, ALIKE_AROUND_RING))?,
                 CONTEXT,
             )?;
         }
@@ -140,21 +140,21 @@ impl TunedPlan {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn means(&self, i: usize, factors: &[Complex64; TERMS]) -> Result<Vec<Complex64>> {
+    pub fn means(&self, i: usize, factors: &[Complex64; TUNED_TERMS]) -> Result<Vec<Complex64>> {
         let mut sum = try_vec(self.ring(i).kinds(), Complex64::ZERO, CONTEXT)?;
         self.add_terms((i, factors), |matrix| &matrix.means, &mut sum);
         Ok(sum)
     }
 
     /// D of the i-th block, likewise.
-    pub fn differences(&self, i: usize, factors: &[Complex64; TERMS], sum: &mut [Complex64]) {
+    pub fn differences(&self, i: usize, factors: &[Complex64; TUNED_TERMS], sum: &mut [Complex64]) {
         sum.fill(Complex64::ZERO);
         self.add_terms((i, factors), |matrix| &matrix.differences, sum);
     }
 
     fn add_terms(
         &self,
-        (i, factors): (usize, &[Complex64; TERMS]),
+        (i, factors): (usize, &[Complex64; TUNED_TERMS]),
         of: impl Fn(&Matrix) -> &[Complex64],
         sum: &mut [Complex64],
     ) {
@@ -185,7 +185,7 @@ fn scale_of(rings: &[TunedRing], matrices: &[(usize, &[Complex64])], order: usiz
 }
 
 /// The matrices of which that of a block is a sum, in the order of the factors of [`TunedPlan::differences`].
-fn values_of(block: &HarmonicBlock) -> [Option<&[Complex64]>; TERMS] {
+fn values_of(block: &HarmonicBlock) -> [Option<&[Complex64]>; TUNED_TERMS] {
     let own = match &block.artificial {
         Artificial::Stiffness(own) => Some(&own[..]),
         Artificial::None | Artificial::Mass => None,
@@ -209,5 +209,5 @@ fn multiple(a: &Csc, of: &Csc) -> Option<Complex64> {
     let product: Complex64 = a.values.iter().zip(&of.values).map(|(a, of)| a * of.conj()).sum();
     let factor = product / of.values.iter().map(Complex64::norm_sqr).sum::<f64>();
     let gap = a.values.iter().zip(&of.values).map(|(a, of)| (a - factor * of).norm());
-    (gap.fold(0.0, f64::max) <= PROPORTIONAL * largest(a)).then_some(factor)
+    (gap.fold(0.0, f64::max) <= PROPORTIONAL_DIFFERENCES * largest(a)).then_some(factor)
 }
