@@ -117,14 +117,22 @@ impl TunedRing {
         self.wave.try_clone()
     }
 
-    /// The means of a matrix around the ring, kind after kind.
+    /// The means of a matrix around the ring, kind after kind. Those of equal entries are these, without rounding, which soft motions of a
+    /// stiff structure would feel.
     pub fn means(&self, values: &[Complex64]) -> Result<Vec<Complex64>> {
+        let mut first = try_vec(self.kinds.len(), None, CONTEXT)?;
         let mut means = try_vec(self.kinds.len(), Complex64::ZERO, CONTEXT)?;
         for (v, &kind) in values.iter().zip(&self.place) {
-            means[kind as usize] += v;
+            let first = first[kind as usize].get_or_insert(*v);
+            means[kind as usize] += v - *first;
         }
-        for mean in &mut means {
-            *mean /= self.sectors as f64;
+        for ((mean, first), kind) in means.iter_mut().zip(&first).zip(&self.kinds) {
+            let first = first.unwrap_or_default();
+            *mean = if kind.count == self.sectors {
+                first + *mean / self.sectors as f64
+            } else {
+                (*mean + first * kind.count as f64) / self.sectors as f64
+            };
         }
         Ok(means)
     }
