@@ -84,7 +84,7 @@ fn reduction(branch: &Branch) -> FlexibilityWay {
 #[test]
 fn a_mistuned_wheel_is_that_of_factors_of_all_sectors() {
     let (model, omega) = wheel(&[TIP, TIP - 3]);
-    let at = (0.985 * omega, 0.985 * omega);
+    let at = (0.985 * omega, 0.987 * omega);
     let both = |range, harmonics| {
         [Flexibility::Automatic, Flexibility::Direct].map(|way| solve(&model, way, range, harmonics))
     };
