@@ -9,30 +9,40 @@ by N times ten low-rank terms, whatever the size of the mesh.
     python examples/python/wheel_of_fe_sectors.py --large    # 20,000 degrees of freedom a sector, with 10 and 20 modes
     python examples/python/wheel_of_fe_sectors.py --contacts # 24 sectors with 60 contacts each, see examples/data/fe
 
-Prints amplitudes and CPU seconds. Needs scipy.
+Prints amplitudes and CPU seconds. Needs scipy and examples/data. Amplitudes in um.
 """
+from __future__ import annotations
+
 import argparse
 import csv
 import gzip
+import importlib
 import pathlib
 import resource
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import hbvib
 import numpy as np
-import scipy.io
-import scipy.sparse as sp
-import scipy.sparse.linalg
+from numpy.typing import NDArray
+
+sp = importlib.import_module("scipy.sparse")
+linalg = importlib.import_module("scipy.sparse.linalg")
+
+Floats = NDArray[np.float64]
+Box = tuple[int, int, int]
+Wheel = tuple[hbvib.Model, hbvib.Model, dict[int, float]]
 
 DATA = pathlib.Path(__file__).resolve().parents[1] / "data" / "fe"
 
 
-def cpu():
+def cpu() -> float:
     """CPU seconds of this process."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     return used.ru_utime + used.ru_stime
 
 
-def brick(size, young=2.0e11, poisson=0.3, density=7800.0):
+def brick(size: Floats, young: float = 2.0e11, poisson: float = 0.3, density: float = 7800.0) -> tuple[Floats, Floats]:
     """Stiffness and mass of a brick with edges `size`, three degrees of freedom a node, x fastest."""
     corners = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
     shear = young / (2 * (1 + poisson))
@@ -59,7 +69,7 @@ def brick(size, young=2.0e11, poisson=0.3, density=7800.0):
 class Sector:
     """Stiffness and mass of one sector with both faces, and the numbers of its parts."""
 
-    def __init__(self, disk, blade):
+    def __init__(self, disk: Box, blade: Box) -> None:
         boxes = [((0, 0, 0), disk, (0.08 / disk[0], 0.02 / disk[1], 0.02 / disk[2])),
                  (((disk[0] - blade[0]) // 2, (disk[1] - blade[1]) // 2, disk[2]), blade,
                   (0.08 / disk[0], 0.02 / disk[1], 0.12 / blade[2]))]
@@ -73,7 +83,7 @@ class Sector:
         nodes = sorted({node for corners, _ in elements for node in corners if node[2] > 0})
         first = {node: 3 * number for number, node in enumerate(nodes)}
         self.n = 3 * len(nodes)
-        parts = [], [], [], []
+        parts: tuple[list[Any], ...] = ([], [], [], [])
         for corners, matrices in elements:
             numbers = np.array([first[node] + d if node in first else -1 for node in corners for d in range(3)])
             rows, columns = np.meshgrid(numbers, numbers, indexing="ij")
@@ -83,7 +93,7 @@ class Sector:
         rows, columns, *values = (np.concatenate(part) for part in parts)
         self.stiffness, self.mass = (sp.csc_matrix((v, (rows, columns)), shape=(self.n, self.n)) for v in values)
 
-        def dofs(chosen, directions=range(3)):
+        def dofs(chosen: Callable[..., bool], directions: Iterable[int] = range(3)) -> list[int]:
             return [first[node] + d for node in nodes if chosen(*node) for d in directions]
 
         (low, width), top = (boxes[1][0][0], blade[0]), disk[2]
@@ -97,7 +107,7 @@ class Sector:
         self.contacts = dofs(lambda x, y, z: z == top and x == 1, [0, 1])
 
 
-def blocks(matrix, left, right):
+def blocks(matrix: Any, left: Sequence[int], right: Sequence[int]) -> tuple[Any, Any]:
     """A matrix with both faces as that of a sector and its coupling to the next one, whose left face is the right one of this."""
     own = np.setdiff1d(np.arange(matrix.shape[0]), right)
     place = {dof: number for number, dof in enumerate(own)}
@@ -107,7 +117,7 @@ def blocks(matrix, left, right):
     return matrix[own][:, own] + moved.T @ matrix[right][:, right] @ moved, coupling
 
 
-def reduced(sector, modes, disk_modes):
+def reduced(sector: Sector, modes: int, disk_modes: int) -> tuple[Floats, dict[int, int]]:
     """Craig and Bampton's basis: static motions of the kept degrees of freedom, cantilever modes of the blade, modes of the disk."""
     kept = sorted({*sector.left, *sector.right, *sector.root, *sector.contacts})
     blade = np.array(sector.blade)
@@ -117,20 +127,21 @@ def reduced(sector, modes, disk_modes):
     first = len(kept)
     for dofs, count in [(blade, modes), (inner, disk_modes)]:
         k, m = (a[dofs][:, dofs].tocsc() for a in (sector.stiffness, sector.mass))
-        static = scipy.sparse.linalg.splu(k).solve(sector.stiffness[dofs][:, kept].toarray())
-        basis[np.ix_(dofs, range(len(kept)))] = -static
-        _, shapes = scipy.sparse.linalg.eigsh(k, count, m, sigma=0.0, v0=np.ones(len(dofs)))
+        static = linalg.splu(k).solve(sector.stiffness[dofs][:, kept].toarray())
+        basis[np.ix_(dofs, np.arange(len(kept)))] = -static
+        _, shapes = linalg.eigsh(k, count, m, sigma=0.0, v0=np.ones(len(dofs)))
         basis[dofs, first:first + count] = shapes
         first += count
     return basis, {dof: number for number, dof in enumerate(kept)}
 
 
-def wheel_of(matrices, faces, contacts, force, blade, sectors, pattern):
+def wheel_of(matrices: Sequence[Any], faces: tuple[Sequence[int], Sequence[int]], contacts: Iterable[int], force: Floats,
+             blade: Iterable[int], pattern: Floats) -> tuple[hbvib.Model, hbvib.Model, dict[int, int]]:
     """A mistuned wheel with friction, its sector, and the numbers of degrees of freedom within a sector."""
     left, right = faces
     (k0, k1), (m0, m1) = (blocks(a, left, right) for a in matrices)
     place = {dof: number for number, dof in enumerate(np.setdiff1d(np.arange(matrices[0].shape[0]), right))}
-    model = hbvib.Model.cyclic(sectors=sectors, engine_order=3, mass=m0, stiffness=k0, coupling=dict(stiffness=k1, mass=m1),
+    model = hbvib.Model.cyclic(sectors=len(pattern), engine_order=3, mass=m0, stiffness=k0, coupling=dict(stiffness=k1, mass=m1),
                                rayleigh=(0, 2e-7))
     for dof in contacts:
         model.add_contact("jenkins", place[dof], kt=2e7, mu=0.3, preload=4.0)
@@ -142,7 +153,7 @@ def wheel_of(matrices, faces, contacts, force, blade, sectors, pattern):
     return wheel, model, place
 
 
-def reduced_wheel(sector, modes, sectors, pattern, disk_modes=12, force=30.0):
+def reduced_wheel(sector: Sector, modes: int, pattern: Floats, disk_modes: int = 12, force: float = 30.0) -> Wheel:
     """The wheel on the basis, and the weights that make the motion of a blade's tip."""
     basis, kept = reduced(sector, modes, disk_modes)
     matrices = [basis.T @ (a @ basis) for a in (sector.stiffness, sector.mass)]
@@ -155,62 +166,62 @@ def reduced_wheel(sector, modes, sectors, pattern, disk_modes=12, force=30.0):
     faces = ([kept[dof] for dof in sector.left], [kept[dof] for dof in sector.right])
     contacts = [kept[dof] for dof in sector.contacts]
     tip = np.where(abs(basis[sector.tip]) > 1e-14, basis[sector.tip], 0.0)
-    wheel, model, place = wheel_of(matrices, faces, contacts, force * tip, blade, sectors, pattern)
+    wheel, model, place = wheel_of(matrices, faces, contacts, force * tip, blade, pattern)
     weights = {place[dof]: weight for dof, weight in enumerate(tip) if weight != 0.0}
     return wheel, model, weights
 
 
-def full_wheel(sector, sectors, pattern, force=30.0):
+def full_wheel(sector: Sector, pattern: Floats, force: float = 30.0) -> Wheel:
     """The wheel of all degrees of freedom."""
     load = np.zeros(sector.n)
     load[sector.tip] = force
     faces = (sector.left, sector.right)
-    wheel, model, place = wheel_of((sector.stiffness, sector.mass), faces, sector.contacts, load, sector.blade, sectors, pattern)
+    wheel, model, place = wheel_of((sector.stiffness, sector.mass), faces, sector.contacts, load, sector.blade, pattern)
     return wheel, model, {place[sector.tip]: 1.0}
 
 
-def tips(wheel, model, weights, omega, flexibility="automatic"):
+def tips(wheel: hbvib.Model, model: hbvib.Model, weights: dict[int, float], omega: Floats) -> Floats:
     """Amplitudes of all blade tips at frequencies, one row each."""
     n = model.ndof
     blades = [hbvib.Response([s * n + dof for dof in weights], weights=list(weights.values())) for s in range(wheel.ndof // n)]
     rows = []
     for at in omega:
-        branch = wheel.forced_response((at, at), harmonics=1, tolerance=0, responses=blades, flexibility=flexibility)
+        branch = wheel.forced_response((at, at), harmonics=1, tolerance=0, responses=blades)
         rows.append([found.amplitude[0] for found in branch.responses])
     return np.array(rows)
 
 
-def small(disk=(8, 2, 3), blade=(2, 2, 12), sectors=12):
+def small(disk: Box = (8, 2, 3), blade: Box = (2, 2, 12), sectors: int = 12) -> float:
     """Largest difference of the blades of a wheel on ten modes a blade from those of the wheel solved in full, over the largest."""
     sector = Sector(disk, blade)
     pattern = 0.02 * np.random.default_rng(7).standard_normal(sectors)
     used = cpu()
-    wheel, model, weights = reduced_wheel(sector, 10, sectors, pattern)
+    wheel, model, weights = reduced_wheel(sector, 10, pattern)
     tuned = model.linear_modes(1, 3).omega[0]
     omega = tuned * np.array([0.99, 1.0, 1.01])
     found = tips(wheel, model, weights, omega)
     print(f"{sector.n} degrees of freedom with both faces, on {model.ndof}: {cpu() - used:.1f} s, tips in um\n{found * 1e6}")
     used = cpu()
-    known = tips(*full_wheel(sector, sectors, pattern), omega)
+    known = tips(*full_wheel(sector, pattern), omega)
     print(f"in full, {sectors} sectors: {cpu() - used:.1f} s\n{known * 1e6}")
     error = abs(found - known).max() / known.max()
     print(f"largest difference of a blade {error:.1e} of the largest amplitude")
-    return error
+    return float(error)
 
 
-def large(sectors=24):
+def large(sectors: int = 24) -> None:
     """A wheel of sectors with 20,000 degrees of freedom on 10 modes a blade, and on 20 of each."""
     sector = Sector((10, 4, 6), (6, 4, 190))
     print(f"{sector.n} degrees of freedom a sector with both faces")
     pattern = 0.02 * np.random.default_rng(7).standard_normal(sectors)
-    rows = []
+    rows: list[Floats] = []
+    omega = np.zeros(0)
     for modes, disk_modes in [(10, 12), (20, 24)]:
         used = cpu()
-        wheel, model, weights = reduced_wheel(sector, modes, sectors, pattern, disk_modes)
+        wheel, model, weights = reduced_wheel(sector, modes, pattern, disk_modes)
         built = cpu() - used
-        omega = model.linear_modes(1, 3).omega[0] * np.array([0.99, 1.0, 1.01])
-        omega = omega if not rows else frequencies
-        frequencies = omega
+        if not rows:
+            omega = model.linear_modes(1, 3).omega[0] * np.array([0.99, 1.0, 1.01])
         used = cpu()
         rows.append(tips(wheel, model, weights, omega))
         print(f"{modes} modes a blade: {model.ndof} a sector, basis {built:.1f} s, three frequencies {cpu() - used:.1f} s, "
@@ -218,12 +229,12 @@ def large(sectors=24):
     print(f"largest difference of a blade {abs(rows[0] - rows[1]).max() / rows[1].max():.1e} of the largest amplitude")
 
 
-def contacts(force=2.0):
+def contacts(force: float = 2.0) -> None:
     """The sector of examples/data/fe: 24 x 60 contacts, ten cantilever modes differ, harmonic 1, a sweep over the peak."""
 
-    def matrix(name):
+    def matrix(name: str) -> Floats:
         with gzip.open(DATA / f"rom_{name}.mtx.gz") as file:
-            return np.asarray(sp.csc_matrix(scipy.io.mmread(file)).todense())
+            return np.asarray(sp.csc_matrix(importlib.import_module("scipy.io").mmread(file)).todense())
 
     sector = hbvib.Model.cyclic(sectors=24, engine_order=3, mass=matrix("M0"), stiffness=matrix("K0"),
                                 coupling=dict(stiffness=matrix("K1"), mass=matrix("M1")), rayleigh=(0, 5e-7))
