@@ -58,6 +58,9 @@ impl TunedBasis {
             while without_gain < CONVINCED {
                 interrupt.check_before((a.values.len() + sectors * sectors * order) as u64)?;
                 let (parts, size) = random_product(a, scale, &mut random)?;
+                if !size.is_finite() {
+                    return Ok(None);
+                }
                 without_gain += 1;
                 for part in parts {
                     if add_waves((&part, FELT * size), &roots, (order, &mut found))? {
@@ -104,7 +107,7 @@ impl TunedBasis {
         let (sectors, n, r) = (self.sectors, self.order, self.rank);
         let all = sectors * r;
         let mut d = try_vec(all * all, Complex64::ZERO, CONTEXT)?;
-        if a.values.is_empty() {
+        if a.values.is_empty() || r == 0 {
             return Ok(d);
         }
         let unit = 1.0 / (sectors as f64).sqrt();
