@@ -2526,6 +2526,9 @@ typedef enum {
   HBVIB_FLEXIBILITY_WAY_UNSUITABLE = 7,
   /// Factors: sums did not agree with them at an end of the range.
   HBVIB_FLEXIBILITY_WAY_DISAGREEMENT = 8,
+  /// Factors of the waves of a tuned wheel at each frequency, and a correction of low rank for the
+  /// differences of its sectors.
+  HBVIB_FLEXIBILITY_WAY_TUNED_WHEEL = 9,
 } hbvib_flexibility_way;
 
 /// Size of the problem that was solved, and the parts that were removed from it before. Fill it by

@@ -510,6 +510,8 @@ class FlexibilityWay(enum.IntEnum):
     UNSUITABLE   Factors: the reference stiffness is not definite, or poles are badly conditioned; in a nonlinear mode
         also where damping couples the modes.
     DISAGREEMENT   Factors: sums did not agree with them at an end of the range.
+    TUNED_WHEEL   Factors of the waves of a tuned wheel at each frequency, and a correction of low rank for the
+        differences of its sectors.
 
     >>> import hbvib
     >>> hbvib.FlexibilityWay(0)
@@ -524,6 +526,7 @@ class FlexibilityWay(enum.IntEnum):
     MANY = 6
     UNSUITABLE = 7
     DISAGREEMENT = 8
+    TUNED_WHEEL = 9
 
 
 class State(enum.IntEnum):

@@ -2,7 +2,9 @@
 //! natural frequency up to the highest one that it serves. These are counted by one factorisation, whose size tells what factors at
 //! each frequency would take instead.
 
+use crate::condense::HarmonicBlock;
 use crate::condense::memory_limit::within;
+use crate::condense::tuned_plan::TunedPlan;
 use crate::condense::wave_matrices::{Assembled, WaveMatrices};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
@@ -75,4 +77,28 @@ pub(super) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<b
     let n = pattern.cols;
     let of_factors = of_factors(entries_by_degrees(pattern)?, n);
     Ok(WORK_OF_ALL_MODES * (n as f64).powi(3) <= ALONG_RANGE * harmonics as f64 * of_factors)
+}
+
+/// Whether tables of a wheel's flexibility take less time from the waves of the tuned wheel than by factors of all sectors, by their
+/// multiplications.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn is_tuned_quicker(plan: &TunedPlan, blocks: &[HarmonicBlock]) -> Result<bool> {
+    let Some(first) = blocks.first() else { return Ok(false) };
+    let (sectors, n) = (plan.basis.sectors, plan.basis.order);
+    let outputs = first.rows.len() + 1;
+    let of_wave = entries_by_degrees(&plan.ring(0).wave()?)?;
+    let columns = (sectors * (outputs.div_ceil(sectors) + plan.basis.rank)) as f64;
+    let (terms, outputs) = ((sectors * plan.basis.rank) as f64, outputs as f64);
+    let of_tuned = (sectors / 2 + 1) as f64 * of_factors(of_wave, n)
+        + columns * 2.0 * of_wave as f64
+        + terms.powi(3) / 3.0
+        + outputs * terms * (outputs + terms);
+    let of_plain = |entries: usize| of_factors(entries, sectors * n) + 2.0 * entries as f64 * outputs;
+    // The factors have the entries of the matrix at least, which are counted quickly.
+    if of_tuned <= of_plain(first.reference.values.len() / 2) {
+        return Ok(true);
+    }
+    Ok(of_tuned <= of_plain(entries_by_degrees(&first.reference)?))
 }

@@ -9,26 +9,25 @@
 //! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
 //! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+use crate::condense::chosen_blocks::{Chosen, chosen_blocks};
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::exchanged_motions::{check_rigid, select_exchanged};
 use crate::condense::flexibility::Workspace;
 use crate::condense::flexibility_way::FlexibilityWay;
-use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
-use crate::condense::memory_limit::{within_directly, within_for_contacts};
+use crate::condense::memory_limit::within_for_contacts;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
 use crate::condense::wave_cache::WaveCache;
-use crate::condense::wave_reduction::{Request, reduced_blocks};
+use crate::condense::wave_reduction::Request;
 use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::interrupt::{Interrupt, Phase};
+use crate::interrupt::Interrupt;
 use crate::linalg::power_of_two;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
 use crate::options::{Content, DampingForm, Exchanged, Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -114,6 +113,10 @@ impl Condensed {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
         let is_near_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
         for i in 0..self.blocks.len() {
+            if self.tuned.is_some() {
+                self.blocks[i].without_source = FlexibilityWay::TunedWheel;
+                continue;
+            }
             if is_near_rigid {
                 self.blocks[i].without_source = FlexibilityWay::NearRigid;
                 continue;
@@ -236,6 +239,7 @@ impl Condensed {
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
             wheel: model.structure().whole_wheel(),
+            tuned: None,
             refinement: 1,
         })
     }
@@ -310,18 +314,12 @@ impl Condensed {
             sweep,
             loss_factor: model.structure().whole_loss_factor()?,
         };
-        let on_bases = match mode {
-            None => reduced_blocks(&request, kappa, interrupt)?,
-            Some(_) => None,
-        };
-        let is_reduced = on_bases.is_some();
-        let (blocks, certificate) = match on_bases {
-            Some(found) => found,
-            None => (
-                direct_blocks(&request, mode.map(|(form, _)| form), kappa, interrupt)?,
-                0.0,
-            ),
-        };
+        let Chosen {
+            blocks,
+            certificate,
+            tuned,
+        } = chosen_blocks(&request, mode.map(|(form, _)| form), kappa, interrupt)?;
+        let is_reduced = blocks.iter().any(|block| block.view.is_some());
         let condensed = Self {
             set,
             degrees: model.structure().degrees().clone(),
@@ -345,6 +343,7 @@ impl Condensed {
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
             wheel: model.structure().whole_wheel(),
+            tuned,
             refinement: options.refinement,
         };
         Ok((condensed, assembled))
@@ -432,33 +431,4 @@ pub(super) fn quicker_reference(model: &Model, unknowns: usize) -> Reference {
     } else {
         Reference::Complex
     }
-}
-
-/// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
-fn direct_blocks(
-    request: &Request<'_>,
-    mode: Option<DampingForm>,
-    kappa: impl Fn(usize, usize) -> Complex64,
-    interrupt: &Interrupt<'_>,
-) -> Result<Vec<HarmonicBlock>> {
-    let (model, numbers) = (request.model, request.numbers);
-    within_directly(request.options.memory_limit, model, numbers)?;
-    let mut blocks = Vec::new();
-    for (i, &number) in numbers.iter().enumerate() {
-        interrupt.part(Phase::Condensation, i, numbers.len())?;
-        let mut block = match of_same_wave(model, number, &blocks.iter()) {
-            Some(known) => shared_block(model, number, known, request.contacts, &kappa)?,
-            None => harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?,
-        };
-        block.artificial = match mode {
-            None => Artificial::None,
-            Some(DampingForm::Mass) => Artificial::Mass,
-            Some(DampingForm::Stiffness) => {
-                let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
-                Artificial::Stiffness(structure.aligned(&block.reference)?)
-            }
-        };
-        try_push(&mut blocks, block, "the matrices per harmonic")?;
-    }
-    Ok(blocks)
 }

@@ -4,6 +4,7 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::exchange::Exchange;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::condense::tied_load::{LoadedLaw, TiedLoad};
+use crate::condense::tuned_plan::TunedPlan;
 use crate::contact::Law;
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
@@ -101,6 +102,8 @@ pub struct Condensed {
     pub(super) in_step: usize,
     /// Sectors and engine order, where the structure is a whole wheel.
     pub(super) wheel: Option<(usize, i64)>,
+    /// The same as a tuned wheel with differences of low rank, where its factors are made so.
+    pub(super) tuned: Option<Arc<TunedPlan>>,
     /// Factor of the samples of laws without exact events.
     pub(super) refinement: usize,
 }
@@ -125,6 +128,7 @@ impl Condensed {
             share: try_copy(&self.share, CONTEXT)?,
             contact_classes: self.contact_classes.clone(),
             structure: self.structure.as_ref().map(Structure::try_clone).transpose()?,
+            tuned: self.tuned.clone(),
             ..*self
         })
     }
@@ -284,6 +288,12 @@ impl Condensed {
     #[must_use]
     pub fn wheel(&self) -> Option<(usize, i64)> {
         self.wheel
+    }
+
+    /// The wheel as a tuned one with differences of low rank, where its factors are made so.
+    #[must_use]
+    pub(crate) fn tuned(&self) -> Option<&Arc<TunedPlan>> {
+        self.tuned.as_ref()
     }
 
     /// Harmonics in which all sectors move alike are the multiples of this number.

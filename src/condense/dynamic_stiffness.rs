@@ -4,8 +4,10 @@
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
 //! −2ihDK.
 
+use crate::condense::tuned_factors::TunedFactors;
+use crate::condense::tuned_plan::TUNED_TERMS;
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
-use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::{self, ComplexSum};
@@ -21,10 +23,12 @@ pub(super) enum Variable {
 
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct DynamicStiffness {
-    factor: Factor,
-    /// Z_κ on each pattern, and the index of that of each harmonic.
-    z: Vec<Csc>,
-    patterns: Vec<usize>,
+    /// Factors of all degrees of freedom, made when they are first needed.
+    plain: Option<Plain>,
+    /// Those of a wheel that is tuned but for terms of low rank, and the harmonic, frequency and damping of which they are.
+    tuned: Option<Box<TunedFactors>>,
+    tuned_at: Option<(usize, Complex64, f64)>,
+    columns: usize,
     /// Largest entry of the matrix that was factorised.
     largest: f64,
     /// b − Z x, and memory for its exact sum.
@@ -32,6 +36,38 @@ pub struct DynamicStiffness {
     sums: Vec<ComplexSum>,
     part: Vec<ComplexSum>,
 }
+
+/// Factors of all degrees of freedom.
+struct Plain {
+    factor: Factor,
+    /// Z_κ on each pattern, and the index of that of each harmonic.
+    z: Vec<Csc>,
+    patterns: Vec<usize>,
+}
+
+impl Plain {
+    fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
+        let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
+        for block in condensed.blocks() {
+            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
+            let known = z.iter().position(of_block);
+            try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
+            if known.is_none() {
+                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+            }
+        }
+        let Some(first) = condensed.blocks().first() else {
+            return fail!(Internal, "no harmonic is carried");
+        };
+        Ok(Self {
+            factor: Factor::new(&first.reference, columns)?,
+            z,
+            patterns,
+        })
+    }
+}
+
+const CONTEXT: &str = "the dynamic stiffness";
 
 /// Relative error of the relative motions above which a residual summed with its rounding errors is worth its cost.
 const NOISE: f64 = 1e-12;
@@ -52,24 +88,17 @@ impl DynamicStiffness {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
-        const CONTEXT: &str = "the dynamic stiffness";
-        let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
-        for block in condensed.blocks() {
-            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
-            let known = z.iter().position(of_block);
-            try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
-            if known.is_none() {
-                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
-            }
-        }
-        let Some(first) = condensed.blocks().first() else {
-            return fail!(Internal, "no harmonic is carried");
-        };
         let n = condensed.ndof();
+        let tuned = condensed.tuned().map(|plan| boxed(|| TunedFactors::new(plan, columns)));
+        let tuned = tuned.transpose()?;
         Ok(Self {
-            factor: Factor::new(&first.reference, columns)?,
-            z,
-            patterns,
+            plain: match tuned {
+                None => Some(Plain::new(condensed, columns)?),
+                Some(_) => None,
+            },
+            tuned,
+            tuned_at: None,
+            columns,
             largest: 0.0,
             remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
             sums: try_vec(n, ComplexSum::default(), CONTEXT)?,
@@ -90,16 +119,50 @@ impl DynamicStiffness {
         damping: f64,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
+        if self.tuned_at == Some((i, omega, damping)) {
+            return Ok(());
+        }
+        self.tuned_at = None;
         let block = &condensed.blocks()[i];
-        let z = &mut self.z[self.patterns[i]];
         let sum = Combination::value(block, omega, damping);
         self.largest = 0.0;
+        if let Some(tuned) = &mut self.tuned {
+            match tuned.factor(i, &sum.factors(), interrupt) {
+                // The tuned wheel may be singular where the wheel is not.
+                Err(e) if e.status == Status::Singular => {}
+                factored => {
+                    self.largest = factored.map_err(|e| at_harmonic(e, block, omega.re))?;
+                    self.tuned_at = Some((i, omega, damping));
+                    return Ok(());
+                }
+            }
+        }
+        let known = match self.plain.take() {
+            Some(known) => known,
+            None => Plain::new(condensed, self.columns)?,
+        };
+        let plain = self.plain.insert(known);
+        let z = &mut plain.z[plain.patterns[i]];
         for (at, z) in z.values.iter_mut().enumerate() {
             *z = sum.at(block, at);
             self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
         }
-        let factored = self.factor.factor(z, interrupt);
+        let factored = plain.factor.factor(z, interrupt);
         factored.map_err(|e| at_harmonic(e, block, omega.re))
+    }
+
+    /// The factors of a wheel, if the current ones are such.
+    pub(super) fn tuned(&mut self) -> Option<&mut TunedFactors> {
+        self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
+    }
+
+    /// Solves with the current factors.
+    fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
+        match (&mut self.tuned, &mut self.plain) {
+            (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
+            (_, Some(plain)) => plain.factor.solve(b, transposed, interrupt),
+            _ => fail!(Internal, "a dynamic stiffness was not factored"),
+        }
     }
 
     /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
@@ -124,8 +187,7 @@ impl DynamicStiffness {
         transposed: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.factor
-            .solve(b, transposed, interrupt)
+        self.solve_columns(b, transposed, interrupt)
             .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
     }
 
@@ -183,7 +245,9 @@ impl DynamicStiffness {
                 }
             }
         }
-        let solved = self.factor.solve(&mut self.remainder, false, interrupt);
+        let mut remainder = core::mem::take(&mut self.remainder);
+        let solved = self.solve_columns(&mut remainder, false, interrupt);
+        self.remainder = remainder;
         solved.map_err(|e| at_harmonic(e, block, at.0))?;
         let mut change = (0.0_f64, 0.0_f64);
         for row in &block.rows {
@@ -277,6 +341,18 @@ impl Combination {
                 sum.add_multiple(*part, factor);
             }
         }
+    }
+
+    /// The factors of the matrices, in the order of a [`crate::condense::tuned_plan::TunedPlan`].
+    fn factors(&self) -> [Complex64; TUNED_TERMS] {
+        [
+            self.reference.into(),
+            self.damping,
+            self.mass,
+            self.tied[0],
+            self.tied[1],
+            self.own,
+        ]
     }
 
     #[inline]

@@ -5,6 +5,7 @@
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
+use crate::condense::tuned_table::Outputs;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -111,9 +112,10 @@ impl Workspace {
     /// Fills the columns Z⁻¹ B.
     fn solve_columns(&mut self, condensed: &Condensed, i: usize, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let block = &condensed.blocks()[i];
-        if self.columns.is_empty() {
-            let outputs = condensed.coordinates() + 1;
-            self.columns = try_vec(condensed.ndof().saturating_mul(outputs), Complex64::ZERO, CONTEXT)?;
+        let size = condensed.ndof().saturating_mul(condensed.coordinates() + 1);
+        if self.columns.len() != size {
+            self.columns = Vec::new();
+            self.columns = try_vec(size, Complex64::ZERO, CONTEXT)?;
         }
         for (k, column) in self.columns.chunks_exact_mut(condensed.ndof()).enumerate() {
             fill_load(block, k, omega, column);
@@ -164,6 +166,14 @@ impl Workspace {
         interrupt: &Interrupt<'_>,
     ) -> Result<&Table> {
         made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        if slopes != Slopes::All && self.tabulate_wheel(condensed, (i, omega), interrupt)? {
+            if slopes == Slopes::OfResponse {
+                self.fill_adjoint_slopes(condensed, (i, omega), interrupt)?;
+            } else {
+                self.table.slope.fill(Complex64::ZERO);
+            }
+            return Ok(&self.table);
+        }
         self.solve_columns(condensed, i, omega, interrupt)?;
         self.refine_columns((condensed, i, omega), interrupt)?;
         let block = &condensed.blocks()[i];
@@ -180,6 +190,31 @@ impl Workspace {
             Slopes::All => self.fill_all_slopes(condensed, (i, omega), interrupt)?,
         }
         Ok(&self.table)
+    }
+
+    /// Fills the table of a wheel with the factors of its waves, and keeps the column of the excitation alone; `false` where the current
+    /// factors are not such, or the contacts of its sectors differ.
+    fn tabulate_wheel(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let block = &condensed.blocks()[i];
+        let Some(tuned) = made(&mut self.dynamic, condensed)?.tuned() else {
+            return Ok(false);
+        };
+        block.force_at(omega, &mut self.load);
+        let size = (tuned.plan.basis.sectors, tuned.plan.basis.order);
+        let Some(outputs) = Outputs::new(block, size, &self.load, &self.responses[i]) else {
+            return Ok(false);
+        };
+        if self.columns.len() != condensed.ndof() {
+            self.columns = Vec::new();
+            self.columns = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
+        }
+        let tabulated = tuned.tabulate(&outputs, (&mut self.table.value, &mut self.columns), interrupt);
+        tabulated.map(|()| true)
     }
 
     /// Removes the rounding of the columns where the stiffness of a penalty makes it large.

@@ -99,6 +99,44 @@ impl Workspace {
         Ok(())
     }
 
+    /// The last row of ∂H/∂ω = −qᵀB with q = Z⁻ᵀ Z′ᵀ Z⁻ᵀ Rᵀ of the response, where no columns are at hand, with the current factors.
+    pub(super) fn fill_adjoint_slopes(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (n, block) = (condensed.ndof(), &condensed.blocks()[i]);
+        let outputs = condensed.coordinates() + 1;
+        self.table.slope.fill(Complex64::ZERO);
+        self.load.fill(Complex64::ZERO);
+        for &(p, a) in self.responses[i].terms() {
+            self.load[p] += a;
+        }
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.load, true, interrupt)?;
+        if self.products.len() < n {
+            self.products = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        }
+        let at = (omega.into(), self.damping);
+        let adjoint = &mut self.products[..n];
+        adjoint.fill(Complex64::ZERO);
+        add_slope_product(condensed, i, at, Variable::Omega, true, &self.load, adjoint);
+        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, adjoint, true, interrupt)?;
+        let slopes = self.table.slope.iter_mut().skip(outputs - 1).step_by(outputs);
+        for (slope, row) in slopes.zip(&block.rows) {
+            *slope = -row.terms().map(|&(p, a)| a.conj() * adjoint[p]).sum::<Complex64>();
+        }
+        let Some(last) = self.table.slope.last_mut() else {
+            return Ok(());
+        };
+        let (factor, by_omega) = (omega * omega, 2.0 * omega);
+        *last -= block.force.iter().zip(&*adjoint).map(|(f, q)| f * q).sum::<Complex64>();
+        for ((u, q), r) in block.unbalance.iter().flatten().zip(&*adjoint).zip(&self.load) {
+            *last += u * (by_omega * r - factor * q);
+        }
+        Ok(())
+    }
+
     /// The column of the excitation of H and ∂H/∂ω of the i-th carried harmonic at `omega`; the others of `table` are then zero.
     ///
     /// With the motion x = Z⁻¹F it is R x and R ∂x/∂ω, ∂x/∂ω = Z⁻¹(∂F/∂ω − Z′ x).

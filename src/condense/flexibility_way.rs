@@ -25,6 +25,8 @@ pub enum FlexibilityWay {
     Unsuitable = 7,
     /// Factors: sums did not agree with them at an end of the range.
     Disagreement = 8,
+    /// Factors of the waves of a tuned wheel, and a correction of low rank for the differences of its sectors.
+    TunedWheel = 9,
 }
 
 impl fmt::Display for FlexibilityWay {
@@ -39,6 +41,9 @@ impl fmt::Display for FlexibilityWay {
             Self::Many => "factors at each frequency: there are too many degrees of freedom for all modes or poles",
             Self::Unsuitable => {
                 "factors at each frequency: the reference stiffness is not definite, or poles are badly conditioned"
+            }
+            Self::TunedWheel => {
+                "factors of the waves of a tuned wheel, and a correction of low rank for its differences"
             }
             Self::Disagreement => "factors at each frequency: sums did not agree with them at an end of the range",
         })

@@ -230,7 +230,7 @@ impl FrequencyCache {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let alone = !contacts
-            && self.way == Way::Factorised
+            && (self.way == Way::Factorised || condensed.tuned().is_some())
             && condensed.coordinates() >= EXCITED_ALONE_FROM
             && !condensed.has_exchanges();
         let is_current = |whole| self.tabulated == Some((omega, self.way, whole));
@@ -282,7 +282,9 @@ impl FrequencyCache {
             let slopes = self.way != Way::Pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
             let slopes = match slopes {
                 false => Slopes::None,
-                true if may_lack && condensed.coordinates() > ALL_SLOPES_UP_TO => Slopes::OfResponse,
+                true if may_lack && (condensed.coordinates() > ALL_SLOPES_UP_TO || condensed.tuned().is_some()) => {
+                    Slopes::OfResponse
+                }
                 true => Slopes::All,
             };
             (self.lacks_slopes[i], self.is_modal[i]) = (slopes == Slopes::OfResponse, false);

@@ -47,6 +47,17 @@ pub(super) fn within_for_contacts(limit: usize, model: &Model) -> Result<()> {
     )))
 }
 
+/// Refuses a model whose matrices would exceed the limit, where its factors need less than these.
+pub(super) fn within_matrices(limit: usize, model: &Model, numbers: &[usize]) -> Result<()> {
+    if limit == 0 {
+        return Ok(());
+    }
+    let number = numbers.first().copied().unwrap_or(0);
+    let k = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+    let matrices = k.values.len() * (ARRAYS * size_of::<Complex64>() + size_of::<usize>());
+    within(limit, (1 + numbers.len()) * matrices)
+}
+
 /// Refuses a model whose matrices and complex LU factors would exceed the limit.
 pub(super) fn within_directly(limit: usize, model: &Model, numbers: &[usize]) -> Result<()> {
     if limit == 0 {

@@ -2,6 +2,7 @@
 
 mod basis_outlook;
 mod certificate;
+mod chosen_blocks;
 mod condensation;
 mod condensed;
 pub mod contact_classes;
@@ -39,6 +40,11 @@ mod single_contact_lanes;
 mod sum_terms;
 mod sweep;
 mod tied_load;
+mod tuned_basis;
+mod tuned_factors;
+mod tuned_plan;
+mod tuned_ring;
+mod tuned_table;
 mod under_force;
 pub mod wave_cache;
 mod wave_matrices;
@@ -58,3 +64,6 @@ pub use tied_load::{LoadedLaw, TiedLoad};
 
 #[cfg(test)]
 pub(crate) mod test_chains;
+
+#[cfg(test)]
+mod tuned_tests;

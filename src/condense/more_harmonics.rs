@@ -3,12 +3,14 @@
 use crate::condense::Condensed;
 use crate::condense::condensation::{carried, forced_harmonics, quicker_reference};
 use crate::condense::harmonic_block::{harmonic_block, of_same_wave, shared_block};
-use crate::condense::memory_limit::within_directly;
+use crate::condense::memory_limit::{within_directly, within_matrices};
 use crate::condense::relative_coordinates::assign_coordinates;
+use crate::condense::tuned_plan::TunedPlan;
 use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::SolverOptions;
+use std::sync::Arc;
 
 const CONTEXT: &str = "the matrices per harmonic";
 
@@ -30,7 +32,11 @@ impl Condensed {
         if self.is_reduced() || quicker_reference(model, unknowns) != self.reference {
             return Ok(None);
         }
-        within_directly(options.memory_limit, model, set.numbers())?;
+        if self.tuned.is_some() {
+            within_matrices(options.memory_limit, model, set.numbers())?;
+        } else {
+            within_directly(options.memory_limit, model, set.numbers())?;
+        }
         let (_, representatives) = assign_coordinates(model, active, interrupt)?;
         let contacts = (&self.contact_classes, &representatives[..]);
         let kappa = |c: usize, number: usize| self.reference.kappa(self.reference_stiffness[c], number);
@@ -49,7 +55,12 @@ impl Condensed {
             }
             try_push(&mut blocks, block, CONTEXT)?;
         }
+        let tuned = match (&self.tuned, self.wheel) {
+            (Some(_), Some((sectors, _))) => TunedPlan::new(&blocks, sectors, interrupt)?.map(Arc::new),
+            _ => None,
+        };
         Ok(Some(Self {
+            tuned,
             refinement: options.refinement,
             ..self.with_blocks(set, blocks)?
         }))

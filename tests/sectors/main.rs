@@ -10,4 +10,5 @@ mod sector_contacts;
 mod sector_frequencies;
 mod sector_mode_rounding;
 mod sector_refusals;
+mod tuned_wheel;
 mod wheel_of_faces;

@@ -25,6 +25,10 @@ const BLADES: RGBColor = RGBColor(150, 150, 150);
 pub fn check(part: &WheelPart, built: &Built) -> Outcome<()> {
     if !part.pattern.is_empty() || part.patterns.is_none() {
         mistuned(part, &part.pattern, built)?;
+    } else if part.csv.is_some() || part.figure.is_some() {
+        return Err("[wheel]: csv and figure tell the blades of `pattern`, which is not given; `patterns` alone has patterns_csv and \
+                    patterns_figure"
+            .into());
     }
     solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built)
         .map(|_| ())

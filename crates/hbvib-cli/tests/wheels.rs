@@ -95,6 +95,13 @@ fn many_patterns_have_their_largest_blades_and_their_distribution() {
     let figure = fs::read_to_string(folder.join("patterns.svg")).unwrap();
     assert!(figure.contains("<polyline") && figure.contains("share of the patterns"));
 
+    // Files of one pattern have no content beside many.
+    for key in ["csv = 'blades.csv'", "figure = 'blades.svg'"] {
+        let (output, folder) = run("patterns_and_blades", &format!("{part}{key}\n"));
+        let errors = crate::common::printed(&output.stderr);
+        assert!(!output.status.success() && errors.contains("patterns_csv"), "{errors}");
+        assert!(!folder.join("patterns.csv").exists());
+    }
     fs::write(&file, "0.1 0.2\n").unwrap();
     let (output, _) = run("short_patterns", &part);
     let errors = crate::common::printed(&output.stderr);
