@@ -7,7 +7,7 @@
 //! where Bᴴ k B is the part of K_κ that belongs to no structure: springs, stuck contacts and κ. Without the last term
 //! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`]. A complex κ
 //! enters K_κ with its real part; its imaginary part adds to the low rank, and so does damping L Lᴴ of few directions beside
-//! αM + βK, see [`crate::condense::few_directions`].
+//! αM + βK, see `condense::few_directions`.
 
 use crate::linalg::sparse::Csc;
 use crate::model::reduced_wave::MotionRow;

@@ -2,8 +2,11 @@
 //! only by its products with vectors. Each vector is made orthogonal to those before one after the other and once: what that
 //! loses by rounding does no harm (Paige, Rozložník & Strakoš 2006, doi:10.1137/050630416).
 
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::{dot, norm};
+use pulp::{Arch, Simd, WithSimd};
 
 const CONTEXT: &str = "an iterative linear solution";
 
@@ -59,6 +62,7 @@ impl Gmres {
         for (q, b) in self.basis[0].iter_mut().zip(&*b) {
             *q = b / size;
         }
+        let arch = Arch::new();
         for k in 0..most {
             self.reserve(k + 1, b.len())?;
             let (known, next) = self.basis.split_at_mut(k + 1);
@@ -66,13 +70,8 @@ impl Gmres {
             product(&known[k], v)?;
             found.products += 1;
             let column = &mut self.triangle[k];
-            for (h, q) in column.iter_mut().zip(&*known) {
-                let along = dot(q, v);
-                *h = along;
-                for (v, q) in v.iter_mut().zip(q) {
-                    *v -= along * q;
-                }
-            }
+            let part = Orthogonalise { v, known, column };
+            arch.dispatch(part);
             let below = norm(v);
             for (i, &(c, s)) in self.rotations.iter().enumerate() {
                 let (x, y) = (column[i], column[i + 1]);
@@ -116,6 +115,29 @@ impl Gmres {
             try_push(&mut self.triangle, column, CONTEXT)?;
         }
         Ok(())
+    }
+}
+
+/// Takes the parts along known vectors away from v, one after the other, and notes them: compiled for the instructions of the processor.
+struct Orthogonalise<'a> {
+    v: &'a mut [f64],
+    known: &'a [Vec<f64>],
+    column: &'a mut [f64],
+}
+
+impl WithSimd for Orthogonalise<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self { v, known, column } = self;
+        for (h, q) in column.iter_mut().zip(known) {
+            let along = dot(q, v);
+            *h = along;
+            for (v, q) in v.iter_mut().zip(q) {
+                *v -= along * q;
+            }
+        }
     }
 }
 

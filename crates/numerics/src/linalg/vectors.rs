@@ -23,7 +23,8 @@ pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
 
 /// Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
 #[must_use]
-#[inline]
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));

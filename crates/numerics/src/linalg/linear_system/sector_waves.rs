@@ -9,6 +9,8 @@
 //! leaves a block B_p of the order of one sector for each wave p. Those of 0 and N/2 are real, the others complex, and those beyond
 //! N/2 conjugate. The border of the matrix is eliminated with these factors.
 
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
@@ -16,6 +18,7 @@ use crate::linalg::linear_system::{Border, MatrixFree, Ring};
 use crate::linalg::lu::Lu;
 use core::f64::consts::TAU;
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 
 const CONTEXT: &str = "the linear system of a wheel";
 
@@ -167,6 +170,28 @@ impl RingFactors {
 
     /// u ← B⁻¹ u
     fn solve_inner(&mut self, u: &mut [f64]) {
+        Arch::new().dispatch(Inner { factors: self, u });
+    }
+}
+
+/// u ← B⁻¹ u, compiled for the vector instructions of the processor.
+struct Inner<'a> {
+    factors: &'a mut RingFactors,
+    u: &'a mut [f64],
+}
+
+impl WithSimd for Inner<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        self.factors.by_waves(self.u);
+    }
+}
+
+impl RingFactors {
+    #[inline(always)]
+    fn by_waves(&mut self, u: &mut [f64]) {
         let (n, order) = (self.sectors, self.order);
         self.spectrum.fill(Complex64::ZERO);
         for (s, of_sector) in u.chunks_exact(order).enumerate() {
