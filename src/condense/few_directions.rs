@@ -18,14 +18,20 @@ const CONTEXT: &str = "the directions of the damping";
 /// Most directions: a basis has a few hundred columns.
 const MOST_DIRECTIONS: usize = 200;
 
-/// Entry of R over the sum of its terms, and what is left of a diagonal entry over its size, that is rounding.
+/// Entry of R over the sum of its terms that is rounding.
 const OF_ROUNDING: f64 = 1e-12;
+
+/// Part of a diagonal entry that is left of it, beyond which a direction is none of rounding.
+const LEFT_OF_ENTRY: f64 = 4e-12;
 
 /// Difference of products with R and L Lᴴ, relative to the diagonal, beyond which R is not of this form.
 const NOT_SEMIDEFINITE: f64 = 1e-10;
 
-/// Size of αM + βK over that of C, in an entry, beyond which R cancels it.
+/// Size of αM + βK over that of C, in a diagonal entry, beyond which R cancels it.
 const CANCELS: f64 = 100.0;
+
+/// Share of the terms of a diagonal entry of R below which it has few digits.
+const SMALL_SHARE: f64 = 1e-3;
 
 /// Columns from whose entries α and β are taken.
 const SAMPLED_COLUMNS: usize = 8;
@@ -171,10 +177,19 @@ impl<'a> Rest<'a> {
         Ok(rest)
     }
 
-    /// Whether R takes away what αM + βK adds, as where a stiff link has no damping: the sum would have lost the digits of C.
+    /// Whether R takes away what αM + βK adds to a diagonal entry, as where a stiff link has no damping: the sum would have lost the
+    /// digits of C.
     fn cancels(&self) -> bool {
         let ([m, k, c], (alpha, beta)) = (self.matrices, self.proportional);
-        (0..c.len()).any(|at| (alpha * m[at] + beta * k[at]).norm() > CANCELS * c[at].norm())
+        let own = (0..self.touched.len()).filter_map(|p| self.diagonal(p));
+        own.into_iter()
+            .any(|at| (alpha * m[at] + beta * k[at]).norm() > CANCELS * c[at].norm())
+    }
+
+    /// Place of the diagonal entry of one among those touched.
+    fn diagonal(&self, p: usize) -> Option<usize> {
+        let (pattern, j) = (self.pattern, self.touched[p]);
+        (pattern.col_ptr[j]..pattern.col_ptr[j + 1]).find(|&at| pattern.row_idx[at] == j)
     }
 
     /// Rows and values of the column of a degree of freedom.
@@ -220,22 +235,30 @@ impl<'a> Rest<'a> {
         Ok(Some((found, Some(middle))))
     }
 
+    /// Sum of the terms of the diagonal entry of one among those touched.
+    fn terms(&self, p: usize) -> f64 {
+        let ([m, k, c], (alpha, beta)) = (self.matrices, self.proportional);
+        self.diagonal(p)
+            .map_or(0.0, |at| c[at].norm() + (alpha * m[at]).norm() + (beta * k[at]).norm())
+    }
+
     /// The columns of L; `None` where they are more than `most`, or R is not semidefinite. Pivots are compared over the own diagonal
-    /// entries, so that units do not matter.
+    /// entries, so that units do not matter, or over the share of their terms in which R has no digits.
     fn semidefinite_factor(&self, most: usize, interrupt: &Interrupt<'_>) -> Result<Option<Vec<Vec<Complex64>>>> {
         let n = self.touched.len();
-        let mut own = try_vec(n, 0.0_f64, CONTEXT)?;
-        for (j, own) in own.iter_mut().enumerate() {
-            *own = self.column(j).find(|(i, _)| *i == j).map_or(0.0, |(_, r)| r.re);
-            if *own <= 0.0 {
+        let (mut own, mut left) = (try_vec(n, 0.0_f64, CONTEXT)?, try_vec(n, 0.0_f64, CONTEXT)?);
+        for (j, (own, left)) in own.iter_mut().zip(&mut left).enumerate() {
+            let r = self.column(j).find(|(i, _)| *i == j).map_or(0.0, |(_, r)| r.re);
+            *own = r.max(SMALL_SHARE * self.terms(j));
+            if r < 0.0 || *own == 0.0 {
                 return Ok(None);
             }
+            *left = r / *own;
         }
-        let mut left = try_vec(n, 1.0_f64, CONTEXT)?;
         let mut factor: Vec<Vec<Complex64>> = Vec::new();
         loop {
             let pivot = (0..n).max_by(|&a, &b| left[a].total_cmp(&left[b]));
-            let Some(p) = pivot.filter(|&p| left[p] > OF_ROUNDING) else {
+            let Some(p) = pivot.filter(|&p| left[p] > LEFT_OF_ENTRY) else {
                 break;
             };
             if factor.len() == most {
