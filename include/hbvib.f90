@@ -2472,6 +2472,7 @@ module hbvib
       procedure :: from_sector => model_from_sector
       procedure :: fix => model_fix
       procedure :: clone => model_clone
+      procedure :: longer_period => model_longer_period
       procedure :: save => model_save
       procedure :: load => model_load
       procedure :: free => model_free
@@ -2550,6 +2551,9 @@ module hbvib
       procedure :: peaks => branch_peaks
       procedure :: folds => branch_folds
       procedure :: bifurcations => branch_bifurcations
+      procedure :: children => branch_children
+      procedure :: descent => branch_descent
+      procedure :: searched => branch_searched
       procedure :: limit_cycles => branch_limit_cycles
       procedure :: optima => branch_optima
       procedure :: turns => branch_turns
@@ -2616,7 +2620,7 @@ module hbvib
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
    private :: branch_synthesis_peaks, model_verify, model_floquet, model_smallest_kick, &
       model_sensitivity, model_batch, branch_limit_cycles
-   private :: branch_bifurcations
+   private :: branch_bifurcations, branch_children, branch_descent, branch_searched, model_longer_period, receive
    private :: turns_between, model_time_sweep, life_options, model_life, model_best_load_for_life, branch_run_up, branch_mission, &
       branch_campbell_response
    private :: model_parameter_response, branch_optima, branch_turns, branch_higher_peaks
@@ -2940,7 +2944,29 @@ contains
       type(c_ptr) :: made_now
       made_now = c_null_ptr
       status = hbvib_model_clone(self%handle, made_now)
-      if (status /= HBVIB_OK) return
+      if (status == HBVIB_OK) call receive(status, self, copy, made_now)
+   end function model_clone
+
+   !> copy becomes a model for motions with `periods` periods of the forces: forces in harmonic h act in harmonic periods*h, and the
+   !> frequencies are those of this model over periods. Children of a period doubling are solutions of that of 2 periods.
+   function model_longer_period(self, periods, copy) result(status)
+      class(hbvib_model), intent(in) :: self
+      integer, intent(in) :: periods
+      type(hbvib_model), intent(inout) :: copy
+      integer(i32) :: status
+      type(c_ptr) :: made_now
+      made_now = c_null_ptr
+      status = hbvib_model_longer_period(self%handle, int(periods, i64), made_now)
+      if (status == HBVIB_OK) call receive(status, self, copy, made_now)
+   end function model_longer_period
+
+   !> A model made from self takes the place of the one in copy, which is freed unless it is self.
+   subroutine receive(status, self, copy, made_now)
+      integer(i32), intent(out) :: status
+      class(hbvib_model), intent(in) :: self
+      type(hbvib_model), intent(inout) :: copy
+      type(c_ptr), intent(in) :: made_now
+      status = HBVIB_OK
       if (.not. c_associated(copy%handle, self%handle)) status = copy%free()
       if (status == HBVIB_E_BUSY) then
          if (hbvib_model_free(made_now) == HBVIB_OK) status = HBVIB_E_BUSY
@@ -2948,7 +2974,7 @@ contains
       end if
       copy%handle = made_now
       status = HBVIB_OK
-   end function model_clone
+   end subroutine receive
 
    !> The model as bytes, for load in any process. Write them to a file of access 'stream', or send them.
    function model_save(self, bytes) result(status)
@@ -4062,9 +4088,10 @@ contains
    end function model_check_jacobian
 
    !> Periodic response over omega_start .. omega_stop. at: requested exact frequencies. guess(ndof, 0:H): start values.
-   !> tolerance, harmonics (alone: exactly so many), response_dof: instead of those of solver.
+   !> tolerance, harmonics (alone: exactly so many), response_dof: instead of those of solver. branches, branch_depth and
+   !> most_branches: solutions beside the response that are sought, as in hbvib_forced_options; branch%children has them.
    function model_forced_response(self, branch, omega_start, omega_stop, solver, hooks, at, guess, tolerance, harmonics, &
-      response_dof) result(status)
+      response_dof, branches, branch_depth, most_branches) result(status)
       class(hbvib_model), intent(in) :: self
       type(hbvib_branch), intent(inout) :: branch
       real(dp), intent(in) :: omega_start, omega_stop
@@ -4073,7 +4100,7 @@ contains
       real(dp), intent(in), contiguous, target, optional :: at(:)
       complex(dp), intent(in), contiguous, target, optional :: guess(:, :)
       real(dp), intent(in), optional :: tolerance
-      integer, intent(in), optional :: harmonics, response_dof
+      integer, intent(in), optional :: harmonics, response_dof, branches, branch_depth, most_branches
       integer(i32) :: status
       type(hbvib_forced_options) :: forced
       type(hbvib_solver_options), allocatable :: chosen
@@ -4085,6 +4112,9 @@ contains
       call solver_from_one(status, solver, ndof, chosen, tolerance, harmonics, response_dof)
       forced%omega_start = omega_start
       forced%omega_stop = omega_stop
+      if (present(branches)) forced%branches = int(branches, i32)
+      if (present(branch_depth)) forced%branch_depth = int(branch_depth, i32)
+      if (present(most_branches)) forced%most_branches = most_branches
       if (present(at)) then
          forced%at_len = size(at)
          if (size(at) > 0) forced%at = c_loc(at)
@@ -4139,7 +4169,8 @@ contains
       if (status == HBVIB_OK) status = hbvib_parameter_response(self%handle, chosen, range, hooks, branch%handle)
    end function model_parameter_response
 
-   !> Nonlinear mode over log10 amplitudes log10_start .. log10_stop. mode: the other options, whose range is not looked at.
+   !> Nonlinear mode over log10 amplitudes log10_start .. log10_stop. mode: the other options, whose range is not looked at; with
+   !> mode%branches = 1 curves that branch off are sought, and branch%children has them.
    !> at: log10 of requested exact amplitudes. shape(ndof): the linear mode most similar to it. guess(ndof, 0:H): motion near the
    !> first point, whose frequency and damping ratio are mode%guess_omega and mode%guess_damping. tolerance, harmonics,
    !> response_dof: as in forced_response.
@@ -4816,6 +4847,45 @@ contains
       if (present(unstable_before)) unstable_before = int(before)
       if (present(unstable_after)) unstable_after = int(after)
    end function branch_bifurcations
+
+   !> The branches that branch off from this one, and detached curves beside it, as far as the option branches of the solve sought
+   !> them. Each is a branch with children of its own. They belong to this branch: its free ends them, theirs is refused.
+   function branch_children(self, children) result(status)
+      class(hbvib_branch), intent(in) :: self
+      type(hbvib_branch), allocatable, intent(inout) :: children(:)
+      integer(i32) :: status
+      type(hbvib_branch), allocatable :: found(:)
+      integer(i64) :: count, number
+      integer :: stat
+      count = hbvib_branch_children(self%handle)
+      status = int(min(count, 0_i64), i32)
+      if (status /= HBVIB_OK) return
+      allocate (found(count), stat=stat)
+      status = made(stat)
+      do number = 1, count
+         if (status == HBVIB_OK) status = hbvib_branch_child(self%handle, number - 1, found(number)%handle)
+      end do
+      if (status == HBVIB_OK) call move_alloc(found, children)
+   end function branch_children
+
+   !> Where a child comes from: bifurcation, among those of its parent, and mode count from 1, -1 is none.
+   function branch_descent(self, descent) result(status)
+      class(hbvib_branch), intent(in) :: self
+      type(hbvib_descent), intent(out) :: descent
+      integer(i32) :: status
+      status = hbvib_branch_descent(self%handle, descent)
+      if (status /= HBVIB_OK) return
+      if (descent%bifurcation >= 0) descent%bifurcation = descent%bifurcation + 1
+      if (descent%mode >= 0) descent%mode = descent%mode + 1
+   end function branch_descent
+
+   !> The solutions beside the branch that were sought. The list of children is never complete.
+   function branch_searched(self, searched) result(status)
+      class(hbvib_branch), intent(in) :: self
+      type(hbvib_searched), intent(out) :: searched
+      integer(i32) :: status
+      status = hbvib_branch_searched(self%handle, searched)
+   end function branch_searched
 
    !> Points of a nonlinear mode where its damping ratio is zero: motions of the model without forces.
    function branch_limit_cycles(self, omega, log10_amplitude, slope, point) result(status)

@@ -1413,6 +1413,12 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     copy.core_->forces = core_->forces;
     return copy;
   }
+  /// A copy for motions with some periods of the forces, as those of a child whose descent().periods is above 1.
+  Model longer_period(Index periods) const {
+    Model copy = make(hbvib_model_longer_period, get(), periods);
+    copy.core_->forces = core_->forces;
+    return copy;
+  }
 
   /// The model as bytes, for load in any process. Error (HBVIB_E_UNSUPPORTED) for a model with a user force.
   std::vector<unsigned char> save() const {

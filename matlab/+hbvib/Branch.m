@@ -9,6 +9,7 @@ classdef Branch < handle
     id = uint64(0);
     status = 0;
     message = '';
+    parent = [];     % of a child, which its parent frees
   end
   properties (Dependent)
     omega
@@ -21,12 +22,20 @@ classdef Branch < handle
     energy_field
     reduction        % size of the problem that was solved
     mode_info        % of a nonlinear mode
+    children         % cell array: branches that branch off, and detached curves beside it, as far as the option branches sought them
+    descent          % where a child comes from: kind, bifurcation, periods, merges_at, mode, born_at_force, merges_at_force ...
+    searched         % numbers of the searches beside it; the list of children is never complete
   end
 
   methods
-    function self = Branch(id, status)
+    function self = Branch(id, status, parent)
       self.id = id;
       self.status = status;
+      if nargin > 2
+        self.parent = parent;
+        self.message = hbvib_mex('status_name', status);
+        return
+      end
       if status ~= 0, self.message = hbvib_mex('last_error'); end
       if status > 1, warning('hbvib:stopped_early', '%s', self.message); end
     end
@@ -40,10 +49,11 @@ classdef Branch < handle
     end
 
     function free(self)
-    %FREE  Frees the branch.
+    %FREE  Frees the branch with its children; a child only lets go of its parent.
       if self.id ~= 0
-        hbvib_mex('branch_free', self.id);
+        if isempty(self.parent), hbvib_mex('branch_free', self.id); end
         self.id = uint64(0);
+        self.parent = [];
       end
     end
 
@@ -73,6 +83,24 @@ classdef Branch < handle
     function x = get.energy_field(self), x = self.field('energy'); end
     function info = get.reduction(self), info = hbvib_mex('branch_reduction', self.id); end
     function info = get.mode_info(self), info = hbvib_mex('branch_mode_info', self.id); end
+    function info = get.searched(self), info = hbvib_mex('branch_searched', self.id); end
+
+    function found = get.children(self)
+    % Each keeps its parent. Those of the double period have half the frequencies: their model is that of longer_period(2).
+      found = cell(1, hbvib_mex('branch_children', self.id));
+      for k = 1:numel(found)
+        child = hbvib_mex('branch_child', self.id, k - 1);
+        found{k} = hbvib.Branch(child, hbvib_mex('branch_status', child), self);
+      end
+    end
+
+    function info = get.descent(self)
+    % Bifurcation and mode count from 1, -1 is none; kind is that of bifurcations, -1 for a detached curve.
+      info = hbvib_mex('branch_descent', self.id);
+      for name = {'bifurcation', 'mode'}
+        if info.(name{1}) >= 0, info.(name{1}) = info.(name{1}) + 1; end
+      end
+    end
 
     function point = from_one(self, point)
       point = hbvib.internal.zero('point', point, hbvib_mex('branch_stored', self.id));
@@ -87,6 +115,14 @@ classdef Branch < handle
     function found = folds(self)
     %FOLDS  Refined folds: omega, amplitude, point.
       [found.omega, found.amplitude, point] = hbvib.internal.listed('branch_folds', {self.id}, false, 3);
+      found.point = point + 1;
+    end
+
+    function found = bifurcations(self)
+    %BIFURCATIONS  Points where a multiplier passes the unit circle, or a mode branches: omega, amplitude, kind, point,
+    %   unstable_before, unstable_after (-1 where unknown). kind: 0 fold, 1 period doubling, 2 Neimark-Sacker, 3 branch point.
+      [found.omega, found.amplitude, found.kind, point, found.unstable_before, found.unstable_after] = ...
+          hbvib.internal.listed('branch_bifurcations', {self.id}, false, 6);
       found.point = point + 1;
     end
 

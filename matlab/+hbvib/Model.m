@@ -57,6 +57,11 @@ classdef Model < handle
       copy = hbvib.Model(hbvib_mex('model_clone', self.id));
     end
 
+    function copy = longer_period(self, periods)
+    %LONGER_PERIOD  A copy for motions with some periods of the forces, as those of a child whose descent.periods is above 1.
+      copy = hbvib.Model(hbvib_mex('model_longer_period', self.id, periods));
+    end
+
     function n = get.contacts(self)
       n = hbvib_mex('model_contacts', self.id);
     end

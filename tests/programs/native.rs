@@ -99,6 +99,7 @@ fn fortran_feels_native() {
     let options = [&options[..], &[&place]].concat();
     let names = [
         "aero",
+        "all_solutions",
         "batch",
         "guard",
         "misuse",

@@ -121,14 +121,16 @@ function add_contact!(model::Model, kind::Symbol, a, b = GROUND; constants...)
     id[] + 1
 end
 
-"Solutions along a curve; freed with its last reference."
+"Solutions along a curve; freed with its last reference. A child keeps its parent, which frees it."
 mutable struct Branch
     handle::Ptr{Cvoid}
     status::Int32
+    parent::Union{Nothing, Branch}
     function Branch(handle::Ptr{Cvoid}, status)
-        branch = new(handle, status)
+        branch = new(handle, status, nothing)
         finalizer(b -> hbvib_branch_free(b.handle), branch)
     end
+    Branch(handle::Ptr{Cvoid}, status, parent::Branch) = new(handle, status, parent)
 end
 
 function solver_options(given)
@@ -137,18 +139,26 @@ function solver_options(given)
     with(hbvib_solver_options(); chosen...)
 end
 
-"Follows the periodic response over (start, stop); options are those of hbvib_solver_options."
-function forced_response(model::Model, omega; solver...)
-    range = with(hbvib_forced_options(); omega_start = first(omega), omega_stop = last(omega))
+"""
+Follows the periodic response over (start, stop); options are those of hbvib_solver_options. With branches = 1 to 4 solutions beside it are
+sought, at most most_branches of branch_depth generations, which children gives.
+"""
+function forced_response(model::Model, omega; branches = 0, branch_depth = 0, most_branches = 0, solver...)
+    range = with(hbvib_forced_options(); omega_start = first(omega), omega_stop = last(omega), branches = branches,
+        branch_depth = branch_depth, most_branches = most_branches)
     out = Ref{Ptr{Cvoid}}(C_NULL)
     status = check(hbvib_forced_response(model.handle, Ref(solver_options(solver)), Ref(range), C_NULL, out))
     Branch(out[], status)
 end
 
-"Follows a nonlinear mode over (start, stop) of log10 of the modal amplitude; mode counts from 1."
-function nonlinear_mode(model::Model, log10_amplitude; mode = 1, solver...)
+"""
+Follows a nonlinear mode over (start, stop) of log10 of the modal amplitude; mode counts from 1. With branches = 1 the curves that branch
+off from it are sought, which children gives.
+"""
+function nonlinear_mode(model::Model, log10_amplitude; mode = 1, branches = 0, branch_depth = 0, most_branches = 0, solver...)
     options = with(hbvib_mode_options(); log10_start = first(log10_amplitude), log10_stop = last(log10_amplitude),
-        mode_index = zero_based("mode", mode, ndof(model)))
+        mode_index = zero_based("mode", mode, ndof(model)), branches = branches, branch_depth = branch_depth,
+        most_branches = most_branches)
     out = Ref{Ptr{Cvoid}}(C_NULL)
     status = check(hbvib_nonlinear_mode(model.handle, Ref(solver_options(solver)), Ref(options), C_NULL, out))
     Branch(out[], status)
@@ -172,6 +182,48 @@ function peaks(branch::Branch)
     omega, amplitude, point = zeros(count[]), zeros(count[]), zeros(Int64, count[])
     check(hbvib_branch_peaks(branch.handle, count[], omega, amplitude, point, count))
     (omega = omega, amplitude = amplitude, point = point .+ 1)
+end
+
+"Bifurcations: omega, amplitude, kind (HBVIB_BIFURCATION_FOLD ...), point, unstable directions before and after (-1 where unknown)."
+function bifurcations(branch::Branch)
+    count = Ref{Int64}()
+    check(hbvib_branch_bifurcations(branch.handle, 0, C_NULL, C_NULL, C_NULL, C_NULL, C_NULL, C_NULL, count))
+    n = count[]
+    omega, amplitude = zeros(n), zeros(n)
+    kind, point, before, after = zeros(Int64, n), zeros(Int64, n), zeros(Int64, n), zeros(Int64, n)
+    check(hbvib_branch_bifurcations(branch.handle, n, omega, amplitude, kind, point, before, after, count))
+    (omega = omega, amplitude = amplitude, kind = kind, point = point .+ 1, unstable_before = before, unstable_after = after)
+end
+
+"The branches that branch off from this one, and detached curves beside it, as far as branches sought them; each has children of its own."
+function children(branch::Branch)
+    map(1:check(hbvib_branch_children(branch.handle))) do number
+        out = Ref{Ptr{Cvoid}}(C_NULL)
+        check(hbvib_branch_child(branch.handle, number - 1, out))
+        Branch(out[], hbvib_branch_status(out[]), branch)
+    end
+end
+
+"Where a child comes from: kind, periods, merges_at ... of hbvib_descent; bifurcation and mode count from 1, -1 is none."
+function descent(branch::Branch)
+    found = Ref(hbvib_descent())
+    check(hbvib_branch_descent(branch.handle, found))
+    from_one(index) = index < 0 ? index : index + 1
+    with(found[]; bifurcation = from_one(found[].bifurcation), mode = from_one(found[].mode))
+end
+
+"The solutions beside a branch that were sought, hbvib_searched; the list of children is never complete."
+function searched(branch::Branch)
+    found = Ref(hbvib_searched())
+    check(hbvib_branch_searched(branch.handle, found))
+    found[]
+end
+
+"The model for motions with some periods of its forces, as those of children with descent(child).periods > 1."
+function longer_period(model::Model, periods)
+    out = Ref{Ptr{Cvoid}}(C_NULL)
+    check(hbvib_model_longer_period(model.handle, periods, out))
+    Model(out[])
 end
 
 "Harmonics 0 .. H at a point, ndof x (H + 1) complex."

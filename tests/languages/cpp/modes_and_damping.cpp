@@ -64,6 +64,25 @@ void branches() {
   claim(children[0].children().empty(), "no further ones");
 }
 
+/// A stop that touches at rest. Harmonics 1 and 2 of half the frequency, 1.19, are those of event-driven integration.
+void doubled_period() {
+  auto model = oscillator(1, 0.05, 1, 1);
+  model.add_contact(Contact::unilateral(0, HBVIB_GROUND, 10, 0));
+  const double at[] = {2.38};
+  auto range = hbvib::ForcedOptions(2.3, 2.5);
+  range.branches = 1;
+  const auto branch = model.forced_response(harmonics(50), range.wanted(at));
+  const auto children = branch.children();
+  claim(children.size() == 1 && children[0].descent().periods == 2, "a child of the double period");
+  const Index point = children[0].at(0).at(0).point;
+  const auto x = children[0].harmonics(point);
+  near(std::abs(x(1, 0)), 0.183236054604, 1e-5, "half the frequency of the force");
+  near(std::abs(x(2, 0)), 0.292415649854, 1e-5, "the frequency of the force");
+  const auto info = model.longer_period(2).verify(children[0], point).info;
+  claim(info.same_solution == 1 && info.response_error < 1e-6, "it holds in time");
+  refused("no period", HBVIB_E_ARGUMENT, 2, "periods = 0", [&] { model.longer_period(0); });
+}
+
 /// Two masses of 1 between three springs of 1 + i eta.
 void parts() {
   const double n = std::numeric_limits<double>::quiet_NaN();
@@ -223,6 +242,7 @@ int main() {
   return verdict(120, [] {
     pressed();
     branches();
+    doubled_period();
     parts();
     speed();
     senses();

@@ -87,6 +87,43 @@ function check(file)
   throws(@() wedge.set_slider(3, 0), 'hbvib:E_INDEX', '');
   throws(@() wedge.band(sweep, point, 'off', 'amplitude'), 'hbvib:input', 'needs one of');
 
+  % Children: a detached curve, and motions of the double period; they keep their parent and are freed by it.
+  r = wanted.children;
+  isolated = hbvib.Model('mass', 1, 'stiffness', 1, 'damping', 0.05);
+  hbvib_mex('model_add_spring_damper', isolated.id, 0, -1, 0, 0, [], 5, [0 0 -0.05 0 0.012]);
+  isolated.add_force(1, 0.015);
+  sweep = isolated.forced_response([0.9 1.1], 'harmonics', 3, 'branches', 2);
+  child = sweep.children{1};
+  assert(numel(sweep.children) == 1 && isempty(child.children));
+  assert(child.status == 12 && strcmp(child.message, 'HBVIB_STOPPED_CLOSED'));
+  assert(child.descent.kind == -1 && child.descent.bifurcation == -1 && child.descent.mode == 1 && sweep.descent.mode == -1);
+  same([child.descent.born_at_force; child.descent.merges_at_force], r.forces);
+  same(sweep.searched.modes, r.modes);
+  clear sweep
+  same(child.omega, r.omega);
+  same(child.amplitude, r.amplitude);
+  assert(isempty(isolated.forced_response([0.9 1.1], 'harmonics', 3).children));
+  stop = hbvib.Model('mass', 1, 'stiffness', 1, 'damping', 0.05);
+  stop.add_contact('unilateral', 1, 'kn', 10);
+  stop.add_force(1, 1);
+  above = stop.forced_response([2.3 2.5], 'harmonics', 10, 'branches', 1, 'at', 2.38);
+  doubled = above.children{1};
+  found = above.bifurcations();
+  same(found.omega, r.bifurcations);
+  same(found.point - 1, r.points);
+  same(found.unstable_before, r.before);
+  assert(doubled.descent.periods == 2 && doubled.descent.bifurcation == 1 && doubled.descent.kind == 1 && found.kind(1) == 1);
+  same(doubled.omega, r.doubled);
+  point = doubled.at(1).point;
+  motion(doubled.harmonics(point), r.motion);
+  same(stop.longer_period(2).verify(doubled, point).response_error, r.error);
+  throws(@() stop.longer_period(0), 'hbvib:E_ARGUMENT', 'periods = 0');
+  other = above.children{1};
+  other.free();
+  same(doubled.omega, r.doubled);
+  above.free();
+  throws(@() doubled.omega, 'hbvib:E_HANDLE', '');
+
   % Laws of the caller: numbers of Python, derivatives, errors that come out as they are, models and branches that outlive the handle.
   r = wanted.own;
   own = hbvib.Model('mass', eye(2), 'stiffness', [2 -1; -1 2], 'rayleigh', [0 0.02]);

@@ -92,6 +92,25 @@ solved = own.forced_response((0.8, 1.2), harmonics=5)
 out["own"] = dict(omega=solved.omega.tolist(), amplitude=solved.amplitude.tolist(),
                   work=solved.summary(solved.peaks().point[0], 0).work)
 
+# A detached curve beside a sweep, and a stop with motions of the double period.
+isolated = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+isolated.add_spring_damper(0, damper=[0, 0, -0.05, 0, 0.012])
+isolated.add_force(0, 0.015)
+sweep = isolated.forced_response((0.9, 1.1), harmonics=3, branches=2)
+child, = sweep.children
+stop = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+stop.add_contact("unilateral", 0, kn=10)
+stop.add_force(0, 1)
+above = stop.forced_response((2.3, 2.5), harmonics=10, branches=1, at=[2.38])
+doubled, = above.children
+found, point = above.bifurcations(), int(doubled.at(0).point[0])
+out["children"] = dict(
+    omega=child.omega.tolist(), amplitude=child.amplitude.tolist(),
+    forces=[child.descent.born_at_force, child.descent.merges_at_force], modes=float(sweep.searched.modes),
+    bifurcations=found.omega.tolist(), points=found.point.tolist(), before=np.asarray(found.unstable_before, float).tolist(),
+    doubled=doubled.omega.tolist(), motion=pairs(doubled.harmonics(point)),
+    error=stop.longer_period(2).verify(doubled, point).info.response_error)
+
 
 def bits(value):
     """Numbers as the hexadecimal digits of their bits, which no reader rounds."""

@@ -369,8 +369,12 @@ def swept(**o):
     return bits(info.largest, info.largest_omega, info.events)
 
 
+STEADY = worn.time_response(0.8, harmonics=15).harmonics
+
+
 def kicked_off(**o):
-    return swept(**{"start": np.array([0.0, 0, 0, 0, 0.1, 0, 0.1, 0]), "start_len": 4, **o})
+    """From near the first periodic motion, in fewer periods than rest takes."""
+    return swept(**{"start": rows(STEADY), "start_len": STEADY.size, "max_periods": 8, **o})
 
 
 lived()
@@ -671,7 +675,7 @@ TABLE = {
         "dof": [(CHANGES, swept, 1), (refused("dof"), swept, 9)],
         "tolerance": [(same("the steps of smooth laws"), swept, 1e-10), (refused("tolerance"), swept, 1.0)],
         "max_periods": [(refused("max_periods"), swept, 0), (refused("max_periods = 1"), swept, 1)],
-        "start": [(CHANGES, kicked_off, NONE), (refused("start"), kicked_off, np.array([NAN] * 8))],
+        "start": [(refused("max_periods = 8"), kicked_off, NONE), (refused("start"), kicked_off, np.full(2 * STEADY.size, NAN))],
         "start_len": [(refused("start_len"), kicked_off, -1), (refused("start"), kicked_off, 3)],
     },
     "hbvib_run_up_options": {
