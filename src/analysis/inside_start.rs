@@ -31,6 +31,9 @@ const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 /// Share of the motion in harmonics that it does not have.
 const ABSENT: f64 = 1e-8;
 
+/// Share of a point in harmonics that the branch does not have below which it lies on the branch itself.
+const FELL_BACK: f64 = 1e-6;
+
 /// Eigenvalue over the smallest one among the harmonics that a motion does not have, below which another symmetry breaks.
 const OTHER_SYMMETRY: f64 = 0.1;
 
@@ -162,7 +165,9 @@ impl Inside<'_> {
             let Some(mut point) = response.resolve(&near, false, interrupt)? else {
                 continue;
             };
-            if !is_inside(&point) {
+            let u = point.unknowns();
+            let fell_back = |dropped: Dropped| dropped.dot(set, u, u).sqrt() <= FELL_BACK * norm(u);
+            if !is_inside(&point) || dropped.is_some_and(fell_back) {
                 continue;
             }
             let metric = Metric::along(norm(point.unknowns()), settings);
@@ -203,6 +208,10 @@ pub(super) fn null_vector(
         Some(_) => among(symmetric)?,
         None => None,
     };
+    // A curve of a longer period has its harmonics: along any other vector it would be the motion's own one.
+    if symmetric.is_some_and(|dropped| dropped.remainder == 1) {
+        return Ok(broken.map(|(null, _)| (null, symmetric)));
+    }
     let least = match (broken, among(None)?) {
         (Some(broken), Some(any)) if any.1 < OTHER_SYMMETRY * broken.1 => any,
         (Some(broken), _) => broken,

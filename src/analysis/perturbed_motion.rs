@@ -175,7 +175,8 @@ pub(super) fn perturbed(
         difference = Some(moved);
         hooks.log(LogLevel::Info, "the motion whose perturbations are integrated is found");
     }
-    let closures = closures(subject.structure(), options.waves, is_odd(&system, &state))?;
+    let odd = is_odd(&system, &state) && has_odd_laws(subject.model)?;
+    let closures = closures(subject.structure(), options.waves, odd)?;
     let mut recorder = if options.refine && motion.compared {
         let highest = motion.harmonics.len() / subject.model.ndof() - 1;
         Some(HarmonicAnalysis::new(&system, highest, 0)?)
@@ -313,6 +314,17 @@ fn is_odd(system: &System<'_>, state: &State) -> bool {
         })
     };
     opposite(&state.x, system.ndof) && opposite(&state.v, system.ndof) && opposite(&state.e, 1)
+}
+
+/// Whether forces change their sign with the motion: only then perturbations of opposite motions obey one equation. A stop is closed in
+/// one of them and open in the other.
+fn has_odd_laws(model: &Model) -> Result<bool> {
+    for contact in model.contacts() {
+        if !contact.law(1.0)?.is_odd() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Distance of two motions, relative to the first, both by their harmonics.

@@ -4,7 +4,7 @@ use crate::common::peers::structure;
 use crate::common::{all_harmonics, data, harmonics, largest, one_mass};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};
@@ -240,4 +240,70 @@ fn a_doubled_curve_has_children_at_its_branch_point() {
         assert!(found.response_error < 1e-3);
     }
     assert_ne!(larger[0], larger[1]);
+}
+
+/// Every child moves with its longer period at all of its points: beside some doublings the curve falls back onto the parent, which is no
+/// child of itself. The stop acts on the last of five masses with gyroscopic forces.
+#[test]
+fn no_child_is_its_parent() {
+    let mass = [1.447, 0.689, 0.679, 0.85, 0.731];
+    let springs = [1.17, 0.615, 1.396, 1.358];
+    let stiffness = [2.171, 1.948, 2.043, 2.832, 1.483];
+    // By rows; its skew part is that of a rotation.
+    let damping = [
+        0.0541, 0.0401, 0.056, -0.0158, -0.0865, -0.0729, 0.0386, -0.0581, -0.0215, 0.016, -0.056, 0.0409, 0.0398,
+        -0.0526, -0.0348, 0.0158, 0.0215, 0.0134, 0.0537, -0.0575, 0.0865, -0.016, 0.0348, 0.0194, 0.0328,
+    ];
+    let n = mass.len();
+    let (mut m, mut k, mut c) = (vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        (m[i * n + i], k[i * n + i]) = (mass[i], stiffness[i]);
+        for j in 0..n {
+            c[j * n + i] = damping[i * n + j];
+        }
+        if i > 0 {
+            k[i * n + i - 1] = -springs[i - 1];
+            k[(i - 1) * n + i] = -springs[i - 1];
+        }
+    }
+    let mut model = Model::new(n).unwrap();
+    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
+        .unwrap();
+    let general = MatrixView {
+        part: Part::General,
+        ..MatrixView::dense(n, &c)
+    };
+    model.set_matrix(MatrixKind::Damping, &general).unwrap();
+    model
+        .add_contact(&Contact::unilateral(Some(4), None, 5.836, 0.238))
+        .unwrap();
+    model.add_force(2, 1, 0.458.into()).unwrap();
+    let range = ForcedOptions {
+        omega_start: 0.7247,
+        omega_stop: 1.2681,
+        branches: 1,
+        branch_depth: 2,
+        ..ForcedOptions::default()
+    };
+    let solver = SolverOptions {
+        response_dof: Some(0),
+        ..harmonics(5)
+    };
+    let found = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
+    println!("{} children", found.children().len());
+    let mut left: Vec<&Branch> = found.children().iter().collect();
+    assert!(left.len() > 1);
+    while let Some(child) = left.pop() {
+        for point in 0..child.points() {
+            let x = all_harmonics(child, point);
+            let of = |remainder: usize| {
+                let rows = x.chunks_exact(n).enumerate().filter(|(h, _)| h % 2 == remainder);
+                rows.flat_map(|(_, x)| x).map(|z| z.norm_sqr()).sum::<f64>().sqrt()
+            };
+            assert!(of(1) > 1e-6 * of(0), "point {point} of {}", child.points());
+        }
+        left.extend(child.children());
+    }
 }

@@ -167,3 +167,32 @@ fn stiffness_of_a_fixed_speed_is_in_the_multipliers() {
     println!("{gap:.1e}");
     assert!(gap < 1e-9);
 }
+
+/// Neighbours that move opposite to each other, in half as many waves as sectors, with a stop between them: it is closed on one side of a
+/// sector while it is open on the other, so that perturbations do not repeat from one sector to the next.
+#[test]
+fn a_stop_between_opposite_neighbours_has_the_multipliers_of_the_wheel() {
+    for (sectors, engine_order) in [(2, 1), (4, 2), (6, 3), (4, 1)] {
+        for (gap_of_stop, preload) in [(0.2, 0.0), (0.0, 0.1)] {
+            let stop = Contact {
+                sector_offset: 1,
+                preload,
+                ..Contact::unilateral(Some(1), Some(1), 0.7, gap_of_stop)
+            };
+            let (sector, wheel) = (
+                sector(sectors, engine_order, &[stop.clone()]),
+                wheel(sectors, engine_order, &[stop]),
+            );
+            let of = |model: &Model, waves| -> Floquet {
+                multipliers(model, &solve_at(model, &harmonics(21), 1.05), 0, waves)
+            };
+            let (blocks, whole) = (of(&sector, Waves::Wheel), of(&wheel, Waves::Wave));
+            let gap = gap(&ordinary(&blocks), &ordinary(&whole));
+            println!(
+                "{sectors} sectors, EO {engine_order}: {gap:.1e}, radius {:.4}",
+                whole.radius
+            );
+            assert!(gap < 1e-8, "{sectors} sectors, EO {engine_order}: {gap:.1e}");
+        }
+    }
+}
