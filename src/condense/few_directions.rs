@@ -15,7 +15,9 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the directions of the damping";
 
-/// Most directions: a basis has a few hundred columns.
+/// Degrees of freedom over directions, and the most directions: a basis begins with them and has a few hundred columns, and the term of a
+/// sum over modes costs their cube. Kind: cap.
+const DEGREES_PER_DIRECTION: usize = 6;
 const MOST_DIRECTIONS: usize = 200;
 
 /// Entry of R over the sum of its terms that is rounding.
@@ -45,7 +47,7 @@ pub(super) struct FewDirections {
     pub middle: Option<Vec<Complex64>>,
 }
 
-/// Damping C, all matrices on one pattern, as αM + βK and at most so many directions; `None` where they are more. First α and β are
+/// Damping C, all matrices on one pattern, as αM + βK and few directions; `None` where they are more. First α and β are
 /// those that were given, then those by which most entries vanish.
 ///
 /// # Errors
@@ -53,10 +55,10 @@ pub(super) struct FewDirections {
 pub(super) fn few_directions(
     pattern: &Csc,
     matrices: [&[Complex64]; 3],
-    (given, most): ((f64, f64), usize),
+    given: (f64, f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<FewDirections>> {
-    let most = most.min(MOST_DIRECTIONS);
+    let most = (pattern.cols / DEGREES_PER_DIRECTION).min(MOST_DIRECTIONS);
     for candidate in [Some(given), sampled(pattern, matrices, interrupt)?] {
         let Some(proportional) = candidate else { continue };
         let rest = Rest::new(pattern, matrices, proportional)?;
@@ -330,7 +332,7 @@ mod tests {
 
     fn found(n: usize, given: (f64, f64), known: (f64, f64), r: impl Fn(usize, usize) -> f64) -> Option<FewDirections> {
         let (pattern, [m, k, c]) = matrices(n, given, r);
-        few_directions(&pattern, [&m, &k, &c], (known, n / 6), &Interrupt::none()).unwrap()
+        few_directions(&pattern, [&m, &k, &c], known, &Interrupt::none()).unwrap()
     }
 
     #[test]

@@ -66,16 +66,14 @@ impl Workspace {
         Ok(())
     }
 
-    /// The last row of ∂H/∂ω = −rᵀ Z′ Z⁻¹ B with r = Z⁻ᵀ Rᵀ of the response, with the current factors and columns.
-    pub(super) fn fill_slopes_of_response(
+    /// `load` ← r = Z⁻ᵀ Rᵀ of the response and `products` ← Z′ᵀ r, with the current factors.
+    fn move_response(
         &mut self,
         condensed: &Condensed,
         (i, omega): (usize, f64),
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let n = condensed.ndof();
-        let outputs = condensed.coordinates() + 1;
-        self.table.slope.fill(Complex64::ZERO);
         self.load.fill(Complex64::ZERO);
         for &(p, a) in self.responses[i].terms() {
             self.load[p] += a;
@@ -88,6 +86,21 @@ impl Workspace {
         let moved = &mut self.products[..n];
         moved.fill(Complex64::ZERO);
         add_slope_product(condensed, i, at, Variable::Omega, true, &self.load, moved);
+        Ok(())
+    }
+
+    /// The last row of ∂H/∂ω = −rᵀ Z′ Z⁻¹ B with r = Z⁻ᵀ Rᵀ of the response, with the current factors and columns.
+    pub(super) fn fill_slopes_of_response(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = condensed.ndof();
+        let outputs = condensed.coordinates() + 1;
+        self.table.slope.fill(Complex64::ZERO);
+        self.move_response(condensed, (i, omega), interrupt)?;
+        let moved = &self.products[..n];
         let product = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<Complex64>();
         let slopes = self.table.slope.chunks_exact_mut(outputs);
         for (column, slopes) in self.columns.chunks_exact(n).zip(slopes) {
@@ -109,18 +122,8 @@ impl Workspace {
         let (n, block) = (condensed.ndof(), &condensed.blocks()[i]);
         let outputs = condensed.coordinates() + 1;
         self.table.slope.fill(Complex64::ZERO);
-        self.load.fill(Complex64::ZERO);
-        for &(p, a) in self.responses[i].terms() {
-            self.load[p] += a;
-        }
-        made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.load, true, interrupt)?;
-        if self.products.len() < n {
-            self.products = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        }
-        let at = (omega.into(), self.damping);
+        self.move_response(condensed, (i, omega), interrupt)?;
         let adjoint = &mut self.products[..n];
-        adjoint.fill(Complex64::ZERO);
-        add_slope_product(condensed, i, at, Variable::Omega, true, &self.load, adjoint);
         made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, adjoint, true, interrupt)?;
         let slopes = self.table.slope.iter_mut().skip(outputs - 1).step_by(outputs);
         for (slope, row) in slopes.zip(&block.rows) {

@@ -92,8 +92,8 @@ impl SumWork {
 }
 
 impl ModeSums {
-    /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None` where these belong to poles, which
-    /// would follow the damping ratio, or to a wave with dampers.
+    /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None`
+    /// where these belong to poles, which would follow the damping ratio, or to a wave with dampers.
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -32,9 +32,6 @@ const ALL_OF_BASIS_UP_TO: usize = 1_200;
 /// each.
 const ALL_BESIDE_DEAR_FACTORS_UP_TO: usize = 2_000;
 
-/// Degrees of freedom over directions of the damping beside αM + βK that a sum over modes takes, whose term costs their cube.
-const DEGREES_PER_DAMPER: usize = 6;
-
 const CONTEXT: &str = "the modes of the structure";
 
 /// Degrees of freedom from which sums over poles take less time than factorisations, and their search may take more of the stack than
@@ -266,12 +263,7 @@ pub(super) fn are_all_modes_wanted(model: &Model, harmonics: usize, interrupt: &
     if proportional(matrices).is_some() {
         return Ok(true);
     }
-    let few = few_directions(
-        &pattern,
-        matrices,
-        (model.structure().rayleigh, n / DEGREES_PER_DAMPER),
-        interrupt,
-    )?;
+    let few = few_directions(&pattern, matrices, model.structure().rayleigh, interrupt)?;
     Ok(few.is_some_and(|few| few.middle.is_none()))
 }
 
@@ -318,7 +310,8 @@ fn elastic_reference(model: &Model, condensed: &Condensed, i: usize) -> Result<O
     Ok(Some((reference, loss_factor)))
 }
 
-/// The modes of the i-th carried harmonic with this K_κ, and with few directions of damping beside αM + βK where these are allowed; from those of the wave that travels the other way where they are known.
+/// The modes of the i-th carried harmonic with this K_κ, and with few directions of damping beside αM + βK where these are allowed; from
+/// those of the wave that travels the other way where they are known.
 fn modes_of(
     model: &Model,
     condensed: &Condensed,
@@ -352,13 +345,10 @@ fn modes_of(
     let matrices = [&block.mass[..], own, &block.damping];
     let (proportional, dampers) = match proportional(matrices) {
         Some(found) => (found, Vec::new()),
-        None if few => {
-            let at = (model.structure().rayleigh, n / DEGREES_PER_DAMPER);
-            match few_directions(&block.reference, matrices, at, interrupt)? {
-                Some(few) if few.middle.is_none() => (few.proportional, few.directions),
-                _ => return Ok(None),
-            }
-        }
+        None if few => match few_directions(&block.reference, matrices, model.structure().rayleigh, interrupt)? {
+            Some(few) if few.middle.is_none() => (few.proportional, few.directions),
+            _ => return Ok(None),
+        },
         None => return Ok(None),
     };
     let mass = try_copy(&block.mass, CONTEXT)?;

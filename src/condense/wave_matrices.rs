@@ -11,9 +11,6 @@ use crate::model::structure::MatrixKind;
 use crate::model::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 
-/// Degrees of freedom over directions of the damping beside αM + βK that a basis begins with.
-const DEGREES_PER_DIRECTION: usize = 6;
-
 /// Relative deviation from a Hermitian matrix that is rounding.
 const HERMITIAN: f64 = 1e-10;
 
@@ -92,8 +89,7 @@ impl WaveMatrices<'_> {
             if let Some((alpha, beta)) = proportional(aligned) {
                 Damping::Proportional(alpha, beta)
             } else {
-                let most = c.columns() / DEGREES_PER_DIRECTION;
-                match few_directions(&pattern, aligned, (structure.rayleigh, most), interrupt)? {
+                match few_directions(&pattern, aligned, structure.rayleigh, interrupt)? {
                     Some(few) => Damping::Few(few),
                     None => Damping::General(c.into_csc()?),
                 }

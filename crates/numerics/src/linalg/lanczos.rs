@@ -461,7 +461,7 @@ impl Search<'_> {
 }
 
 /// A starting vector without structure, the same on every run.
-fn start(n: usize, round: usize) -> Result<Vec<Complex64>> {
+pub(super) fn start(n: usize, round: usize) -> Result<Vec<Complex64>> {
     let mut v = try_vec(n, Complex64::ZERO, "the eigenvectors")?;
     let mut state = 0x9e37_79b9_7f4a_7c15_u64 ^ (round as u64 + 1);
     let mut draw = || {

@@ -12,7 +12,7 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
-use crate::linalg::{general_eigen, inner, remove};
+use crate::linalg::{general_eigen, inner, lanczos, remove};
 use num_complex::Complex64;
 
 /// Residual of an eigenvalue of the operator, relative to it, that counts as converged.
@@ -181,7 +181,7 @@ impl<'a> NearShift<'a> {
         let mut v = match start {
             Some(v) => v,
             // One application moves the vector into the range of the operator, free of massless motion.
-            None => self.applied(&without_structure(order, self.runs)?)?,
+            None => self.applied(&lanczos::start(order, self.runs)?)?,
         };
         self.runs += 1;
         let before = size(&v);
@@ -412,23 +412,6 @@ fn are_settled(ritz: &Ritz, level: f64, wanted: usize) -> bool {
 
 fn size(v: &[Complex64]) -> f64 {
     v.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt()
-}
-
-/// A starting vector without structure, the same on every run.
-fn without_structure(n: usize, run: usize) -> Result<Vec<Complex64>> {
-    let mut v = try_vec(n, Complex64::ZERO, CONTEXT)?;
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64 ^ (run as u64 + 1);
-    let mut draw = || {
-        // xorshift (Marsaglia 2003, doi:10.18637/jss.v008.i14)
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
-    for x in &mut v {
-        *x = Complex64::new(draw(), draw());
-    }
-    Ok(v)
 }
 
 #[cfg(test)]
