@@ -11,8 +11,8 @@ use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::quadratic_problem::Quadratic;
 use crate::model::speed::Speed;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 
 /// Relative distance of two eigenvalues that count as one.

@@ -11,8 +11,8 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, along};
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
 

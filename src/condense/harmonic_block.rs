@@ -10,8 +10,8 @@ use crate::model::Model;
 use crate::model::reduced_wave::{MotionRow, ReducedView};
 use crate::model::sector_motion::MOTION_TERMS;
 use crate::model::spring::Row;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -9,7 +9,7 @@ use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::reduced_wave::{MotionRow, ReducedView, WaveDamping};
 use crate::model::spring::Row;
-use crate::model::spring_stiffness::Wave;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 use std::sync::Arc;
 

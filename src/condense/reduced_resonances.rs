@@ -8,7 +8,7 @@ use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::quadratic_problem::Quadratic;
 use crate::model::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};
-use crate::model::spring_stiffness::Wave;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the resonances";

@@ -10,8 +10,8 @@ use crate::error::{Result, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::Model;
 use crate::model::spring::Row;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 
 /// Stiffness of a contact over that of the structure above which it is near-rigid.

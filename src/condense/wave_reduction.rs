@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::model::reduced_wave::{ReducedView, ReducedWave, WaveKey};
 use crate::model::sector_motion::MOTION_TERMS;
 use crate::model::spring::Row;
-use crate::model::spring_stiffness::Wave;
+use crate::model::wave::Wave;
 use crate::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;

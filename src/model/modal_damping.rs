@@ -8,7 +8,7 @@ use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::speed::Speed;
-use crate::model::spring_stiffness::Wave;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the matrix, which has no zero entries, is affordable.

@@ -9,7 +9,7 @@ use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
-use crate::model::spring_stiffness::Wave;
+use crate::model::wave::Wave;
 use crate::options::ModeChoice;
 use num_complex::Complex64;
 use std::ops::Range;

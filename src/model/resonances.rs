@@ -11,8 +11,8 @@ use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::quadratic_problem::Quadratic;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 

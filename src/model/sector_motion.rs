@@ -8,8 +8,8 @@ use crate::contact::relative_motion::{Direction, Side, TERMS_A, TERMS_B};
 use crate::error::{Result, fail};
 use crate::model::sector_faces::Faces;
 use crate::model::spring::{Row, Spring};
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::Structure;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 use std::ops::Range;
 

@@ -22,8 +22,8 @@ use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::along;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

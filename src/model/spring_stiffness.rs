@@ -6,7 +6,7 @@ use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::Row;
 use crate::model::structure::MatrixKind;
-pub use crate::model::wave::Wave;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 
 /// A tie over the stiffness of the structure: natural frequencies are below those of tied sides by 10⁻⁸ or so, the rounding of K as large. Kind:

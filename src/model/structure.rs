@@ -11,7 +11,7 @@ use crate::model::influence::{AeroInfluence, FORMS};
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
 use crate::model::speed::Speed;
-use crate::model::spring_stiffness::Wave;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 use std::sync::Arc;
 

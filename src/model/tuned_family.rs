@@ -10,8 +10,8 @@ use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::mistuning::Mistuning;
 use crate::model::sector_matrices::Entries;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the tuned modes of a wheel";

@@ -11,8 +11,8 @@ use crate::linalg::matrix_view::MatrixView;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::aero::AeroForm;
-use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use crate::model::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 

@@ -104,25 +104,33 @@ impl Tree {
     fn read() -> Self {
         let root = crate::root();
         let crates = [root.join("src"), root.join("crates/numerics/src")];
+        let mut tree = Self::of(&crates, &[]);
+        // The library re-exports the rooms of the crate below under their own names.
+        let own = code(&fs::read_to_string(crates[0].join("lib.rs")).unwrap());
+        tree.files.insert("lib".to_owned(), own);
+        assert!(tree.files.len() > 100);
+        tree
+    }
+
+    /// The files of these folders but those whose modules are left out.
+    fn of(crates: &[PathBuf], without: &[&str]) -> Self {
         let mut found = Vec::new();
-        for folder in &crates {
+        for folder in crates {
             sources(folder, &mut found);
         }
-        // The library re-exports the rooms of the crate below under their own names.
-        found.retain(|path| *path != crates[1].join("lib.rs"));
         // Unit tests in a file of their own see as much as those that close a file.
         found.retain(|path| {
             !path
                 .file_stem()
                 .is_some_and(|stem| stem.to_string_lossy().ends_with("_tests"))
         });
-        assert!(found.len() > 100);
         let files = found.iter().map(|path| {
             let own = crates.iter().find_map(|folder| path.strip_prefix(folder).ok());
             let module = module_of(own.unwrap());
             (module, code(&fs::read_to_string(path).unwrap()))
         });
-        Self { files: files.collect() }
+        let kept = files.filter(|(module, _)| !without.contains(&module.as_str()));
+        Self { files: kept.collect() }
     }
 
     /// The file that a path names: its longest prefix that is a file, through the re-exports of that file.
@@ -311,7 +319,15 @@ fn every_file_imports_from_lower_layers_or_its_own_room_only() {
 
 #[test]
 fn files_do_not_import_each_other_in_circles() {
-    let tree = Tree::read();
+    assert_no_circles(&Tree::read());
+    // Programs and readers stand beside the library, each a tree of its own.
+    for folder in ["crates/hbvib-cli/src", "crates/hbvib-io/src", "crates/bindings/src"] {
+        assert_no_circles(&Tree::of(&[crate::root().join(folder)], &["main", "lib"]));
+    }
+}
+
+/// Files that nothing imports, and that import nothing, are taken away until circles are left.
+fn assert_no_circles(tree: &Tree) {
     let mut left: BTreeMap<String, BTreeSet<String>> = tree
         .files
         .keys()

@@ -1,7 +1,7 @@
 //! The stiffness over speed from matrices at two speeds: K(Ω) = K + Ω² K1.
 
-use crate::build::Outcome;
 use crate::job::{AtSpeedPart, Job};
+use crate::outcome::Outcome;
 use hbvib_io::{Matrices, Matrix, Symmetry};
 use std::collections::BTreeMap;
 

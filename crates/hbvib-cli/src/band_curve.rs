@@ -1,13 +1,15 @@
 //! Band of a job: the lower and the upper curve of a response over the forces that sticking contacts may keep, and the band of its
 //! highest peak.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
+use crate::incomplete_bands::beyond;
 use crate::job_studies::{BandName, BandPart};
 use crate::map::Written;
 use crate::mode_band::of_model;
+use crate::outcome::Outcome;
 use crate::residual_state::write_places;
 use crate::solver::solver;
 use hbvib::{Band, BandOf, BandOptions, Branch, ForcedOptions, Hooks, Special, Status, band, forced_response};
@@ -238,17 +240,6 @@ fn summary(rows: &[Row], peaks: &[PeakBand], incomplete: usize) -> String {
         );
     }
     text + &beyond(incomplete, "point")
-}
-
-/// Tells at how many places the search of a band does not claim its ends.
-pub fn beyond(incomplete: usize, of: &str) -> String {
-    if incomplete == 0 {
-        return String::new();
-    }
-    format!(
-        "at {} the ends are attained, but others may lie beyond\n",
-        counted(incomplete, of)
-    )
 }
 
 /// The band as a shaded area around the curve of the response.

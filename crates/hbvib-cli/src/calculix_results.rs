@@ -1,6 +1,6 @@
 //! Results that CalculiX prints: vectors of nodes in `.dat`, fields of nodes in `.frd`.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Runs of CalculiX.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;

@@ -1,10 +1,10 @@
 //! Campbell and interference (SAFE) diagrams of a job: natural frequencies over speed, and over nodal diameter.
 
-use crate::build::Outcome;
 use crate::counted::counted;
 use crate::figure::{bounds, draw};
 use crate::files::Files;
 use crate::job_studies::{CampbellPart, StateName};
+use crate::outcome::Outcome;
 use hbvib::{Campbell, Hooks, Interference, LinearContacts, Model, Speed, campbell, interference};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLACK, Color, Palette, Palette99, RED};

@@ -1,8 +1,8 @@
 //! A deck that asks CalculiX for the matrices of a mesh.
 
-use crate::build::Outcome;
 use crate::mesh::Mesh;
 use crate::mesh_elements::Shape;
+use crate::outcome::Outcome;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 

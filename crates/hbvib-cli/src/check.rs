@@ -1,9 +1,12 @@
 //! The command `check`: a job and its files, the model, and the report on its matrices.
 
-use crate::build::{Built, Outcome, built};
+use crate::build::built;
+use crate::built::Built;
 use crate::counted::counted;
+use crate::expected::near;
 use crate::job::Job;
 use crate::model_report::ModelReport;
+use crate::outcome::Outcome;
 use crate::{
     band_curve, campbell, fit_run, kicks, life, map, mode_band, motion_files, passages, print, residual_state, study,
     tornado, wheel_patterns, wheel_response,
@@ -20,7 +23,6 @@ const LISTED: usize = 3;
 const MOST: usize = 20_000;
 
 /// Relative difference of an expected value.
-const NEAR: f64 = 0.01;
 
 /// Reads and checks a job.
 ///
@@ -175,9 +177,4 @@ fn frequencies(job: &Job, model: &Model) -> (Vec<String>, Vec<String>) {
         }
     }
     (facts, warnings)
-}
-
-/// Whether a value is the expected one, within a hundredth.
-pub fn near(found: f64, expected: f64) -> bool {
-    (found - expected).abs() <= NEAR * expected.abs()
 }

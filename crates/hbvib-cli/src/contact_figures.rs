@@ -1,8 +1,8 @@
 //! Figures of contacts: force over motion, and slip fraction over frequency.
 
-use crate::build::Outcome;
 use crate::curve::Curve;
 use crate::figure::{Area, bounds, draw, draw_text, scientific};
+use crate::outcome::Outcome;
 use hbvib::{ContactLoop, Special};
 use plotters::prelude::{ChartBuilder, LineSeries, PathElement, Rectangle};
 use plotters::style::{BLACK, Color, HSLColor, Palette, Palette99, RGBColor, WHITE};

@@ -1,7 +1,8 @@
 //! A first guess of a contact between two sets of nodes: its normal, distance and stiffness from mesh and matrices.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::mesh::Mesh;
+use crate::outcome::Outcome;
 use num_complex::Complex64;
 use std::fmt::Write;
 

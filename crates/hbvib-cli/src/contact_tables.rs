@@ -1,10 +1,12 @@
 //! Hysteresis loops and slip fractions of contacts as CSV, and the figures beside them.
 
-use crate::build::{Built, Names, Outcome};
+use crate::built::Built;
+use crate::built::Names;
 use crate::contact_figures::{loops_figure, slip_figure};
 use crate::curve::Curve;
 use crate::files::Files;
 use crate::job::{HysteresisPart, Job};
+use crate::outcome::Outcome;
 use crate::points::chosen;
 use hbvib::{Branch, ContactLoop, Error, Special, State};
 use std::f64::consts::TAU;

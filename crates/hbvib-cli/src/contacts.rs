@@ -1,12 +1,17 @@
 //! The contacts of a job.
 
-use crate::build::Outcome;
-use crate::job::{ContactPart, DofName, Job, KindName, Node, NodeList, NodesPart, SideDof};
+use crate::job::{ContactPart, Job, NodesPart};
 use crate::job_static::{MissingName, StaticPart};
+use crate::job_words::DofName;
+use crate::job_words::KindName;
+use crate::job_words::Node;
+use crate::job_words::NodeList;
+use crate::job_words::SideDof;
 use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
 use crate::normals;
+use crate::outcome::Outcome;
 use crate::static_states::static_states;
 use hbvib::{Contact, ContactKind, Frame};
 use hbvib_io::SurfaceContact;

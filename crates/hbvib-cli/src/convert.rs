@@ -1,8 +1,8 @@
 //! The verb `convert`: matrix files between formats.
 
 use crate::arguments::ConvertArguments;
-use crate::build::Outcome;
 use crate::events;
+use crate::outcome::Outcome;
 use crate::print;
 use hbvib_io::{Files, Format};
 use std::fmt::Write;

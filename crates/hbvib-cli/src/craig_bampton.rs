@@ -1,10 +1,10 @@
 //! Craig-Bampton reduction: the motion of kept degrees of freedom, the static motion that follows them, and natural modes with these
 //! fixed (R. R. Craig and M. C. C. Bampton, AIAA Journal 6 (1968), doi:10.2514/3.4741).
 
-use crate::build::Outcome;
+use crate::basis_motions::Motions;
 use crate::entries::Entries;
+use crate::outcome::Outcome;
 use crate::pencil::{Modes, Pencil, TOGETHER, factored};
-use crate::reduced_basis::Motions;
 use hbvib::Interrupt;
 use hbvib_io::{Matrices, Matrix};
 use num_complex::Complex64;

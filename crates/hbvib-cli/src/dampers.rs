@@ -1,9 +1,12 @@
 //! Adds the dampers of a job to its model.
 
-use crate::build::{Names, Outcome};
-use crate::job::{DofName, Job, SideDof};
+use crate::built::Names;
+use crate::job::Job;
 use crate::job_damper::{DamperFacePart, DamperPart};
+use crate::job_words::DofName;
+use crate::job_words::SideDof;
 use crate::node_table::Nodes;
+use crate::outcome::Outcome;
 use hbvib::{Damper, DamperFace, Model};
 
 /// Adds the dampers behind all degrees of freedom and contacts, and names their contacts.

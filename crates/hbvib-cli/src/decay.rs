@@ -3,7 +3,7 @@
 //! Lines through zero crossings and through logarithms of extremes (Londono, Neild & Cooper 2015, doi:10.1016/j.jsv.2014.12.019). Both are
 //! means of two neighbours, which a mean of the signal does not move. The standard deviations are those of the residuals of these lines.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use std::f64::consts::PI;
 
 /// Least relative deviation of a frequency, and least deviation of a damping ratio, of a signal without noise.

@@ -1,6 +1,6 @@
 //! The command `demo`: a small job with its matrices, written, run and shown.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use crate::{print, run_job};
 use std::fs;
 use std::io::ErrorKind;

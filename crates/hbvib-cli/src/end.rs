@@ -1,8 +1,8 @@
 //! How a run ends: signals that stop it, and its exit code.
 
-use crate::build::Outcome;
 use crate::events;
 use crate::files::Files;
+use crate::outcome::Outcome;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,6 +1,6 @@
 //! Real entries of the matrices of a file, and products with them.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use hbvib::linalg::sparse::Csc;
 use hbvib_io::{Matrix, Symmetry};
 use num_complex::Complex64;

@@ -5,12 +5,15 @@
 //! all sectors move alike, across it where the wave has one period around the wheel, and not at all in others. A stiffness far above its own
 //! between the node and its image says so in each wave.
 
-use crate::build::Outcome;
-use crate::faces::{NEAR, norm, turned};
-use crate::job::{Job, Node};
+use crate::job::Job;
 use crate::job_faces::{FacesPart, FrameName, MatchingName};
+use crate::job_words::Node;
 use crate::mesh::Mesh;
 use crate::node_table::{Nodes, node_list, positions};
+use crate::outcome::Outcome;
+use crate::positions::NEAR;
+use crate::positions::norm;
+use crate::positions::turned;
 use hbvib_io::{Dof, Matrix, Surface, Symmetry, outer_faces, projected_points};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::TAU;

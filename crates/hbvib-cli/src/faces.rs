@@ -1,19 +1,20 @@
 //! A sector from its faces.
 
-use crate::build::Outcome;
 use crate::face_images::FaceImages;
-use crate::job::{Job, Node, NodeList};
+use crate::job::Job;
 use crate::job_faces::{FacesPart, FrameName, MatchingName};
+use crate::job_words::Node;
+use crate::job_words::NodeList;
 use crate::mesh::Mesh;
 use crate::node_match::{Positioned, pairs};
 use crate::node_table::{Nodes, node_list, positions};
+use crate::outcome::Outcome;
+use crate::positions::NEAR;
+use crate::positions::norm;
+use crate::positions::turned;
 use hbvib::{Model, SectorDescription, SectorFrame};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
-
-/// Largest distance between a node of the right face and the image of a left one, over the largest distance from the
-/// origin, unless the job has another one.
-pub const NEAR: f64 = 1e-4;
 
 type Points = Vec<[f64; 3]>;
 
@@ -322,23 +323,6 @@ fn given(dof: i64) -> Outcome<Option<usize>> {
         -1 => Ok(None),
         dof => usize::try_from(dof).map(Some).map_err(|_| format!("names {dof}")),
     }
-}
-
-pub fn norm(x: &[f64; 3]) -> f64 {
-    x[0].hypot(x[1]).hypot(x[2])
-}
-
-/// A point turned about an axis through the origin (Rodrigues' formula).
-pub fn turned(x: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
-    let n = axis.map(|a| a / norm(&axis));
-    let (sin, cos) = angle.sin_cos();
-    let along = n[0] * x[0] + n[1] * x[1] + n[2] * x[2];
-    let across = [
-        n[1] * x[2] - n[2] * x[1],
-        n[2] * x[0] - n[0] * x[2],
-        n[0] * x[1] - n[1] * x[0],
-    ];
-    [0, 1, 2].map(|k| cos * x[k] + sin * across[k] + (1.0 - cos) * along * n[k])
 }
 
 #[cfg(test)]

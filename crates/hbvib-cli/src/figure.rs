@@ -1,7 +1,7 @@
 //! Figures as SVG or, where the name of the file ends so, as PNG.
 
-use crate::build::Outcome;
 use crate::canvas::Canvas;
+use crate::outcome::Outcome;
 use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, SVGBackend};
 use plotters::style::{FontStyle, WHITE, register_font};

@@ -1,9 +1,9 @@
 //! Files that the command writes. Each is written under a temporary name beside its own and then renamed, so that a file is
 //! whole or not there; one that fails costs no other.
 
-use crate::build::Outcome;
 use crate::events;
 use crate::job::Job;
+use crate::outcome::Outcome;
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{self, Write};

@@ -1,9 +1,10 @@
 //! Data of tests as the library takes them, from the columns of files.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::decay;
 use crate::fit_table::Table;
 use crate::job_fit::{DataName, DataPart};
+use crate::outcome::Outcome;
 use hbvib::{DataKind, FitData, Response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -1,12 +1,13 @@
 //! Fit of a job: parameters from data of tests, as a report, tables and a figure.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::files::Files;
 use crate::fit_files::Data;
 use crate::job::Job;
 use crate::job_fit::{FitPart, UnknownPart};
 use crate::line_chart::{Chart, Line};
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{Fit, FitOptions, Hooks, Loss, Status, Suspicion, Unknown, fit};

@@ -1,7 +1,7 @@
 //! Columns of files with data of tests: CSV with names, vectors of MATLAB and NumPy files, functions and modes of universal files.
 
-use crate::build::Outcome;
 use crate::job_fit::{DataName, DataPart};
+use crate::outcome::Outcome;
 use hbvib_io::{Function, Universal, read_number_arrays, read_universal};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -1,8 +1,9 @@
 //! Results in the .frd format of CalculiX: the mesh, and real and imaginary part of each harmonic at points of the curve, as `DISP` and
 //! `DISPI` of a steady state.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::node_motion::{Places, harmonics};
+use crate::outcome::Outcome;
 use hbvib::{Branch, Special};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -22,9 +22,9 @@
 //!
 //! Stiffness and mass on these columns contain all m modes exactly, and the static motion under all forces on kept degrees of freedom.
 
-use crate::build::Outcome;
+use crate::basis_motions::Motions;
+use crate::outcome::Outcome;
 use crate::pencil::{Modes, Pencil, TOGETHER, factored};
-use crate::reduced_basis::Motions;
 use hbvib::Interrupt;
 use hbvib::linalg::sparse::{Csc, Form};
 use hbvib_io::Matrices;

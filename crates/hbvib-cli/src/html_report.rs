@@ -1,6 +1,6 @@
 //! The report of a run: one page of HTML with its figures inside, which needs no network.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::contact_figures::{loops_svg, slip_svg};
 use crate::curve::Curve;
 use crate::files::Files;
@@ -8,6 +8,7 @@ use crate::job::{Job, PointsName};
 use crate::line_chart::{Chart, Line};
 use crate::mesh_picture;
 use crate::node_motion::{ContactField, Places};
+use crate::outcome::Outcome;
 use crate::output;
 use crate::points::chosen;
 use crate::responses;

@@ -1,11 +1,11 @@
 //! The verb `init`: a first job from matrices, or from a mesh whose matrices CalculiX makes.
 
 use crate::arguments::InitArguments;
-use crate::build::Outcome;
 use crate::calculix_run::made;
 use crate::ccx_deck::{Material, deck};
 use crate::init_job::{Choices, Written, text};
 use crate::mesh::Mesh;
+use crate::outcome::Outcome;
 use crate::print;
 use std::fmt::Write as _;
 use std::fs;

@@ -1,8 +1,10 @@
 //! The text of a first job, with its choices explained.
 
-use crate::build::{Built, Outcome, built};
+use crate::build::built;
+use crate::built::Built;
 use crate::contact_guess::{Guess, preload};
 use crate::job::Job;
+use crate::outcome::Outcome;
 use hbvib::{ContactState, Interrupt};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

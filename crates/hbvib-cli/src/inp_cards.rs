@@ -1,6 +1,6 @@
 //! Decks of Abaqus and CalculiX as cards: a keyword with its options, and the lines below it. Files that a deck includes are read.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use std::fs;
 use std::path::Path;
 

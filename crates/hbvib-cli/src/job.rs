@@ -7,12 +7,18 @@ use crate::job_life::LifePart;
 use crate::job_motion::{ModalPart, MotionPart, UnitsPart};
 use crate::job_passages::{MissionPart, RunUpPart};
 use crate::job_residual::{ModeBandPart, ResidualPart};
+use crate::job_response::ResponsePart;
 use crate::job_solutions::SolutionsPart;
 use crate::job_static::StaticPart;
 use crate::job_studies::{BandPart, CampbellPart, MapPart, StudyPart, TornadoPart, WheelPart};
 use crate::job_surfaces::SurfacesPart;
+use crate::job_words::AbsentName;
+use crate::job_words::Amplitude;
+use crate::job_words::DofName;
+use crate::job_words::KindName;
+use crate::job_words::NodeList;
+use crate::job_words::SideDof;
 use crate::nearest_name::hint;
-use crate::responses::ResponsePart;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -138,17 +144,6 @@ pub struct AtSpeedPart {
     pub matrices: PathBuf,
 }
 
-/// Contacts, forces and faces at degrees of freedom that the matrices do not have: these may be fixed, or follow others by a
-/// constraint (MPC, TIE, rigid body) that the matrices contain.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum AbsentName {
-    #[default]
-    Refused,
-    /// They do not move.
-    Fixed,
-}
-
 /// Values that the finite-element program tells; others, by more than a hundredth, are warnings.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -157,20 +152,6 @@ pub struct ExpectedPart {
     pub total_mass: Option<f64>,
     /// Lowest natural frequency without contacts in the nodal diameter of the engine order, for check.
     pub first_hz: Option<f64>,
-}
-
-/// Law of a contact.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum KindName {
-    Jenkins,
-    #[serde(rename = "friction_2d")]
-    Friction2d,
-    #[serde(rename = "friction_3d")]
-    Friction3d,
-    Unilateral,
-    Cubic,
-    Regularised,
 }
 
 /// A contact, or one for each pair of two lists.
@@ -245,40 +226,6 @@ pub struct NodesPart {
     pub areas: Vec<f64>,
 }
 
-/// The number of a node in the files of the job, or its degrees of freedom in the directions of the law.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Node {
-    Number(i64),
-    Dofs(Vec<i64>),
-}
-
-/// Nodes, or the name of a set of the mesh, or names of several sets, as one of each body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum NodeList {
-    Set(String),
-    Sets(Vec<String>),
-    Nodes(Vec<Node>),
-}
-
-/// A degree of freedom of a side of a contact: its number, -1 for the ground, or its name as of a force.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum SideDof {
-    Number(i64),
-    Node(String),
-}
-
-/// A degree of freedom by its number from 0, or by node and direction from 1 as "12.3", where the name of a set of one node
-/// may stand for the node: "TIP.3".
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum DofName {
-    Number(usize),
-    Node(String),
-}
-
 /// A force Re(value exp(i harmonic omega t)).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -287,14 +234,6 @@ pub struct ForcePart {
     #[serde(default = "one")]
     pub harmonic: usize,
     pub value: Amplitude,
-}
-
-/// A real number or [re, im].
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Amplitude {
-    Real(f64),
-    Complex([f64; 2]),
 }
 
 /// A forced response.

@@ -1,6 +1,6 @@
 //! The keys of a job on dampers under the platforms of blades.
 
-use crate::job::SideDof;
+use crate::job_words::SideDof;
 use schemars::JsonSchema;
 use serde::Deserialize;
 

@@ -1,6 +1,6 @@
 //! The keys of a job on the faces of a sector.
 
-use crate::job::NodeList;
+use crate::job_words::NodeList;
 use schemars::JsonSchema;
 use serde::Deserialize;
 

@@ -1,7 +1,7 @@
 //! The parts of a job that fit parameters to data of tests.
 
-use crate::job::DofName;
 use crate::job_studies::ParameterName;
+use crate::job_words::DofName;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;

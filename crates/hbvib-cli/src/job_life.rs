@@ -1,6 +1,6 @@
 //! The part of a job for wear over a life.
 
-use crate::job::DofName;
+use crate::job_words::DofName;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! The parts of a job for passages through a resonance: run-ups and missions of a nonlinear mode.
 
-use crate::job::DofName;
+use crate::job_words::DofName;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;

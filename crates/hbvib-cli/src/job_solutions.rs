@@ -1,6 +1,6 @@
 //! The part of a job on solutions that the sweep does not show.
 
-use crate::job::DofName;
+use crate::job_words::DofName;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;

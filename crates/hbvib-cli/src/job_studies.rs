@@ -1,6 +1,6 @@
 //! The parts of a job that are computed over a quantity: Campbell diagrams, curves over a parameter, maps, tornados, bands and wheels.
 
-use crate::job::DofName;
+use crate::job_words::DofName;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -1,10 +1,11 @@
 //! The smallest kicks of a job: from each stable motion at a requested frequency across each unstable one.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::files::Files;
 use crate::job::Job;
 use crate::job_solutions::KickPart;
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solutions::places;
 use hbvib::{Branch, Error, FloquetOptions, Hooks, Kick, Model, Status, floquet, smallest_kick};
 use std::f64::consts::TAU;

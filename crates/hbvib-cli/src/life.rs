@@ -1,11 +1,12 @@
 //! Life of a job: wear of contacts, their loads and the amplitude over cycles.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::files::Files;
 use crate::job_life::{LifePart, WornName};
 use crate::line_chart::{Chart, Line};
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use hbvib::{Duty, Hooks, Life, LifeFollow, LifeOptions, Status, Wear, life};
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! A chart of lines with linear or logarithmic axes, markers and a legend.
 
-use crate::build::Outcome;
 use crate::figure::{Area, SIZE, bounds, draw, draw_text, scientific};
+use crate::outcome::Outcome;
 use plotters::prelude::{ChartBuilder, Circle, LineSeries, PathElement, Text};
 use plotters::style::{BLACK, Color, IntoFont, Palette, Palette99};
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! Completions of shells and the manual page, from the description of the arguments.
 
 use crate::arguments::{Arguments, ShellName};
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use clap_complete::generate as completions_of;

@@ -1,11 +1,12 @@
 //! Map of a job: the highest peak of all pairs of two quantities' values.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::draw;
 use crate::files::Files;
 use crate::job_studies::{AxisPart, MapPart};
 use crate::npz::Npz;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{BatchOptions, DesignPeak, Hooks, Status, batch};

@@ -1,8 +1,8 @@
 //! A mesh: positions of its nodes, sets of them, and elements.
 
-use crate::build::Outcome;
 use crate::inp_cards::expanded;
 use crate::mesh_elements::{Element, Shape};
+use crate::outcome::Outcome;
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 

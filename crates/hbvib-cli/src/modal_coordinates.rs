@@ -2,11 +2,13 @@
 //!
 //! The coordinates minimise (x − Φq)ᴴ M (x − Φq). The modes are made orthonormal in the mass first, by Gram and Schmidt, twice.
 
-use crate::build::{Built, Outcome, read_matrices};
+use crate::build::read_matrices;
+use crate::built::Built;
 use crate::entries::Entries;
 use crate::job::Job;
 use crate::job_motion::ModalPart;
 use crate::node_table::Nodes;
+use crate::outcome::Outcome;
 use hbvib::{Branch, Special};
 use hbvib_io::{NumberArray, Universal};
 use num_complex::Complex64;

@@ -1,12 +1,13 @@
 //! Band of a nonlinear mode of a job: damping ratio and frequency over the forces that sticking contacts may keep.
 
-use crate::band_curve::beyond;
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
+use crate::incomplete_bands::beyond;
 use crate::job_residual::ModeBandPart;
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use hbvib::{Hooks, ModeBandOf, ModeChoice, ModeOptions, Status, mode_band, nonlinear_mode};
 use plotters::prelude::{ChartBuilder, LineSeries, Polygon};

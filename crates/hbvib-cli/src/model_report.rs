@@ -1,7 +1,7 @@
 //! The report of `check` on a model beside its matrices: centre of mass, rigid motions, frequencies of each diameter, faces, and
 //! contacts at rest. The same facts are lines of text and JSON.
 
-use crate::build::Built;
+use crate::built::Built;
 use crate::counted::counted;
 use crate::job::Job;
 use crate::static_contacts::at_rest;

@@ -1,7 +1,8 @@
 //! The table of natural frequencies.
 
-use crate::build::{Outcome, built};
+use crate::build::built;
 use crate::job::Job;
+use crate::outcome::Outcome;
 use crate::print;
 use hbvib::ContactState;
 use std::f64::consts::TAU;

@@ -1,11 +1,12 @@
 //! Files with the motion of all nodes that a job names.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::curve::Curve;
 use crate::files::Files;
 use crate::job::Job;
 use crate::modal_coordinates::Modes;
 use crate::node_motion::Places;
+use crate::outcome::Outcome;
 use crate::points::shapes;
 use crate::{frd, modal_coordinates, netcdf_response, uff, vtu_series};
 

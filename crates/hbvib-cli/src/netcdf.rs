@@ -1,7 +1,7 @@
 //! Files of NetCDF in the classic format with 64-bit offsets (CDF-2), which need no library: a header, variables, and records of the
 //! variables along an unlimited dimension.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;

@@ -1,10 +1,11 @@
 //! A response as NetCDF: all harmonics of all points by node and direction, with positions and units, for xarray, scipy and MATLAB.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::curve::Curve;
 use crate::job::Job;
 use crate::netcdf::{Dataset, Kind, Numbers, UNLIMITED};
 use crate::node_motion::Places;
+use crate::outcome::Outcome;
 use crate::responses;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

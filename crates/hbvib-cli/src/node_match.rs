@@ -1,7 +1,7 @@
 //! Pairs of nodes by nearest distance.
 
-use crate::build::Outcome;
-use crate::job::Node;
+use crate::job_words::Node;
+use crate::outcome::Outcome;
 
 /// Distances that differ by less than this share of the larger are equal.
 const EQUAL: f64 = 1e-9;
@@ -99,7 +99,7 @@ fn nearest_two(x: &[f64; 3], points: &[[f64; 3]]) -> (Near, Option<Near>) {
 #[cfg(test)]
 mod tests {
     use super::{Positioned, pairs};
-    use crate::job::Node;
+    use crate::job_words::Node;
 
     fn matched(at_a: &[[f64; 3]], at_b: &[[f64; 3]], largest_distance: f64) -> Result<Vec<usize>, String> {
         let numbers = |from: i64, count: usize| (from..).take(count).map(Node::Number).collect::<Vec<_>>();

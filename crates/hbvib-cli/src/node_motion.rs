@@ -1,9 +1,10 @@
 //! Motion of every node of a mesh from the harmonics of the degrees of freedom.
 
-use crate::build::{Built, Outcome};
-use crate::faces::turned;
+use crate::built::Built;
 use crate::job::Job;
 use crate::job_faces::FrameName;
+use crate::outcome::Outcome;
+use crate::positions::turned;
 use hbvib::{Branch, Contact, State};
 use hbvib_io::RelativeCoordinates;
 use num_complex::Complex64;

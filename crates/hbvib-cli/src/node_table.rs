@@ -1,8 +1,11 @@
 //! Positions and degrees of freedom of nodes, which a job names by numbers, by sets or by degrees of freedom.
 
-use crate::build::Outcome;
-use crate::job::{AbsentName, DofName, Node, NodeList};
+use crate::job_words::AbsentName;
+use crate::job_words::DofName;
+use crate::job_words::Node;
+use crate::job_words::NodeList;
 use crate::mesh::Mesh;
+use crate::outcome::Outcome;
 use hbvib_io::{Dof, RelativeCoordinates};
 use std::collections::HashMap;
 
@@ -320,7 +323,9 @@ fn set_of<'a>(name: &str, mesh: Option<&'a Mesh>) -> Outcome<&'a [i64]> {
 #[cfg(test)]
 mod tests {
     use super::Nodes;
-    use crate::job::{AbsentName, DofName, Node};
+    use crate::job_words::AbsentName;
+    use crate::job_words::DofName;
+    use crate::job_words::Node;
 
     #[test]
     fn degrees_of_freedom_follow_the_directions_of_the_file() {

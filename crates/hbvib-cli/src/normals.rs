@@ -1,6 +1,6 @@
 //! Normals of contacts against the positions of their nodes.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 
 /// Length of the mean of all gaps over the mean of their lengths, from which they have one direction.
 const COHERENT: f64 = 0.5;

@@ -1,6 +1,5 @@
 //! Files and summary of a result.
 
-use crate::build::Outcome;
 use crate::counted::counted;
 use crate::curve::Curve;
 use crate::figure::{bounds, draw, scientific};
@@ -8,6 +7,7 @@ use crate::files::Files;
 use crate::job::Job;
 use crate::node_table::Nodes;
 use crate::npz::Npz;
+use crate::outcome::Outcome;
 use crate::responses;
 use hbvib::{BifurcationKind, Branch, Stretch};
 use plotters::prelude::{ChartBuilder, DashedLineSeries, LineSeries};

@@ -1,11 +1,12 @@
 //! Run-ups and missions of a job, by the slow flow of a nonlinear mode.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::files::Files;
 use crate::job_passages::{MissionPart, PassedMode, RunUpPart};
 use crate::line_chart::{Chart, Line};
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use hbvib::{
     Branch, Hooks, Mission, MissionOptions, ModeChoice, ModeOptions, RunUp, RunUpOptions, Status, SynthesisOptions,

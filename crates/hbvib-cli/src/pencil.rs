@@ -1,7 +1,7 @@
 //! Stiffness and mass of the rows of a model that move in a reduction, and their lowest natural modes.
 
-use crate::build::Outcome;
 use crate::entries::Entries;
+use crate::outcome::Outcome;
 use hbvib::linalg::factor::Factor;
 use hbvib::linalg::sparse::Csc;
 use hbvib::{ContactState, Interrupt, LinearModes, MatrixKind, MatrixView, Model, Part, Storage, Values};

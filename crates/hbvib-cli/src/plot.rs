@@ -1,9 +1,9 @@
 //! The verb `plot`: figures of stored responses.
 
 use crate::arguments::PlotArguments;
-use crate::build::Outcome;
 use crate::events;
 use crate::line_chart::{Chart, Line};
+use crate::outcome::Outcome;
 use crate::print;
 use crate::stored_response::Stored;
 use std::f64::consts::TAU;

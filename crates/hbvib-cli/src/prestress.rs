@@ -1,11 +1,11 @@
 //! The verb `prestress`: matrices of a sector that a static step of CalculiX has loaded.
 
 use crate::arguments::PrestressArguments;
-use crate::build::Outcome;
 use crate::calculix_results::displacements;
 use crate::calculix_run::made;
 use crate::inp_cards::{cards, expanded};
 use crate::mesh::Mesh;
+use crate::outcome::Outcome;
 use crate::prestress_decks::{SET, StaticDeck};
 use crate::print;
 use std::collections::BTreeSet;

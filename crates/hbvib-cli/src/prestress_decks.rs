@@ -1,8 +1,8 @@
 //! Decks of CalculiX for the matrices of a prestressed sector: the static step of a deck with its cyclic symmetry and contacts, and the
 //! sector without these under the displacements of that step, which are released in a perturbation that stores the matrices.
 
-use crate::build::Outcome;
 use crate::inp_cards::Card;
+use crate::outcome::Outcome;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 

@@ -1,11 +1,14 @@
 //! The verb `reduce`: a model of a job by either method, written as a superelement, with its error.
 
 use crate::arguments::{MethodName, ReduceArguments};
-use crate::build::{Built, Outcome, built, read_matrices};
+use crate::build::{built, read_matrices};
+use crate::built::Built;
 use crate::convert::format_of;
 use crate::events;
-use crate::job::{DofName, Job};
+use crate::job::Job;
 use crate::job_faces::MatchingName;
+use crate::job_words::DofName;
+use crate::outcome::Outcome;
 use crate::pencil::Modes;
 use crate::print;
 use crate::reduced_basis::Basis;

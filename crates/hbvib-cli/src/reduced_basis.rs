@@ -1,10 +1,10 @@
 //! The basis of a reduced model, by either method, and matrices on it. Kept degrees of freedom are coordinates of it.
 
 use crate::arguments::MethodName;
-use crate::build::Outcome;
 use crate::craig_bampton::FixedInterface;
 use crate::entries::Entries;
 use crate::free_interface::FreeInterface;
+use crate::outcome::Outcome;
 use crate::pencil::Modes;
 use hbvib::linalg::sparse::Csc;
 use hbvib_io::{Matrices, Matrix, Symmetry};
@@ -29,15 +29,6 @@ pub struct Basis {
 enum Form {
     CraigBampton(FixedInterface),
     FreeInterface(FreeInterface),
-}
-
-/// Columns of a basis for some modes.
-pub struct Motions {
-    pub columns: Vec<Vec<f64>>,
-    /// Frequencies of the modes, Hz.
-    pub hertz: Vec<f64>,
-    /// Whether there are no more modes.
-    pub is_complete: bool,
 }
 
 impl Basis {

@@ -1,11 +1,13 @@
 //! The residual state of a job: places of sliders from a file, by themselves, from a load history and from vibrations.
 
-use crate::build::{Built, Names, Outcome};
+use crate::built::Built;
+use crate::built::Names;
 use crate::counted::counted;
 use crate::files::Files;
 use crate::job::Job;
 use crate::job_residual::{ResidualPart, SliderPart};
 use crate::npz::Npz;
+use crate::outcome::Outcome;
 use hbvib::{
     Hooks, LoadHistory, Model, SolverOptions, StaticStep, Status, SteadyMethod, TimeOptions, static_history,
     time_response,

@@ -1,54 +1,16 @@
 //! The responses that a job watches: from its tables to the library, and what the summary tells of them.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::curve::Curve;
-use crate::job::{DofName, Job};
+use crate::job::Job;
+use crate::job_response::ComponentName;
+use crate::job_response::MeasureName;
+use crate::job_response::ResponsePart;
+use crate::outcome::Outcome;
 use hbvib::{Component, Measure, Response};
-use schemars::JsonSchema;
-use serde::Deserialize;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-
-/// A response of [forced]: a weighted sum of degrees of freedom, and what is read from it over a period.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ResponsePart {
-    pub dofs: Vec<DofName>,
-    /// One for each of the dofs; none: 1 each.
-    #[serde(default)]
-    pub weights: Vec<f64>,
-    #[serde(default)]
-    pub measure: MeasureName,
-    /// Number of the harmonic of the measure "harmonic".
-    pub harmonic: Option<usize>,
-    #[serde(default)]
-    pub sector: usize,
-    #[serde(default)]
-    pub component: ComponentName,
-}
-
-/// The number that is read from a response.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum MeasureName {
-    #[default]
-    Fundamental,
-    Harmonic,
-    Peak,
-    Rms,
-    Range,
-}
-
-/// The derivative by time that a response sees.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum ComponentName {
-    #[default]
-    Displacement,
-    Velocity,
-    Acceleration,
-}
 
 /// Degrees of freedom of each response.
 ///

@@ -3,10 +3,11 @@
 //! The run begins again at a stored point beyond which the curve does not come back: behind it the stored points are kept, and all
 //! others are computed anew. Whether the curve comes back is known afterwards; then the run begins again further ahead.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::curve::Before;
 use crate::events;
 use crate::job::{ForcedPart, Job};
+use crate::outcome::Outcome;
 use crate::stored_response::Stored;
 use hbvib::{Branch, Status};
 use num_complex::Complex64;

@@ -1,13 +1,16 @@
 //! Running a job: its analyses one after the other, and what each writes.
 
-use crate::build::{Built, Outcome, built};
+use crate::build::built;
+use crate::built::Built;
 use crate::curve::{Before, Curve};
 use crate::end::{self, End};
 use crate::files::Files;
 use crate::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
+use crate::job_response::ResponsePart;
 use crate::job_solutions::SolutionsPart;
+use crate::outcome::Outcome;
 use crate::progress::watched;
-use crate::responses::{self, ResponsePart};
+use crate::responses;
 use crate::restart::{self, Begin};
 use crate::solver::solver;
 use crate::stored_response::Stored;

@@ -1,10 +1,10 @@
 //! Solutions that the sweep of a response does not show: their table, figure and summary.
 
-use crate::build::Outcome;
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
 use crate::job::Job;
+use crate::outcome::Outcome;
 use hbvib::{BifurcationKind, Branch, Stretch};
 use plotters::prelude::{ChartBuilder, DashedLineSeries, LineSeries};
 use plotters::style::{BLUE, Palette, Palette99};

@@ -1,7 +1,8 @@
 //! Options of the solver from the keys that all analyses have.
 
-use crate::build::{Built, Outcome};
-use crate::job::DofName;
+use crate::built::Built;
+use crate::job_words::DofName;
+use crate::outcome::Outcome;
 use hbvib::SolverOptions;
 
 /// A number of harmonics is that number and no other, unless a tolerance is named as well.

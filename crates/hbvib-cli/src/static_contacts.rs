@@ -1,6 +1,6 @@
 //! Contacts at rest: forces under constant loads and preload, and which are closed.
 
-use crate::build::Built;
+use crate::built::Built;
 use hbvib::{ForcedOptions, Hooks, Model, SolverOptions, State, forced_response};
 use num_complex::Complex64;
 

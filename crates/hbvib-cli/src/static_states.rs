@@ -1,7 +1,7 @@
 //! Pressures and gaps of nodes in a static step, from files.
 
-use crate::build::Outcome;
 use crate::calculix_results::{contact_table, field};
+use crate::outcome::Outcome;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

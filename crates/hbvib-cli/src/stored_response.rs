@@ -1,6 +1,6 @@
 //! A response that a run has stored as .npz: read again to go on from, and to draw.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use hbvib_io::NumberArray;
 use num_complex::Complex64;
 use std::path::Path;

@@ -1,10 +1,11 @@
 //! Study of a job: a result over a parameter of the model, with its optima.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
 use crate::job_studies::{FollowName, StudyPart};
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{Branch, Follow, Hooks, ParameterRange, Status, parameter_response};

@@ -1,10 +1,10 @@
 //! Contacts between surfaces of the mesh, and the coordinates in which each of them is one of a node with the ground.
 
-use crate::build::Outcome;
 use crate::face_images::FaceImages;
 use crate::job::Job;
 use crate::job_surfaces::{AreasName, SetNames, SurfaceMethod, SurfacesPart};
 use crate::mesh::Mesh;
+use crate::outcome::Outcome;
 use hbvib_io::{
     Dof, NodalAreas, RelativeCoordinates, Surface, SurfaceContact, faces_of_set, node_contacts, outer_faces,
     surface_contacts,

@@ -1,11 +1,12 @@
 //! Tornado of a job: changes of the highest peak by given shares of quantities, from its derivatives, the largest first.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::{bounds, draw};
 use crate::files::Files;
 use crate::job_studies::{SpreadPart, TornadoPart};
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use crate::varied::{Keys, Varied};
 use hbvib::{Branch, ForcedOptions, Hooks, Quantity, Reason, Special, Status, forced_response, sensitivity};

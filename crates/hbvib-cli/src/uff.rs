@@ -1,8 +1,9 @@
 //! Universal files (UFF): nodes (2411), responses over frequency (58) and shapes at points of the curve (55).
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::curve::Curve;
 use crate::node_motion::{Places, harmonics};
+use crate::outcome::Outcome;
 use hbvib::Special;
 use hbvib_io::{Function, Shape, Universal, UniversalNode, write_universal};
 use num_complex::Complex64;

@@ -1,8 +1,9 @@
 //! A quantity that a study, a map or a tornado changes.
 
-use crate::build::{Built, Outcome};
-use crate::job::DofName;
+use crate::built::Built;
 use crate::job_studies::ParameterName;
+use crate::job_words::DofName;
+use crate::outcome::Outcome;
 use hbvib::{Constant, MatrixKind, MatrixView, Model, Parameter, Part, Speed, Storage, Values};
 use std::fmt::Write;
 

@@ -1,9 +1,9 @@
 //! Comparison of points of a forced response with integration in time.
 
-use crate::build::Outcome;
 use crate::counted::counted;
 use crate::files::Files;
 use crate::job::{MethodName, VerifyPart};
+use crate::outcome::Outcome;
 use crate::points::chosen;
 use hbvib::{Branch, Hooks, Model, Special, Status, SteadyMethod, Verification, VerifyOptions, verify};
 use std::f64::consts::TAU;

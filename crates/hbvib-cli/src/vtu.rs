@@ -1,6 +1,6 @@
 //! One VTU file of ParaView: an unstructured grid with values at its points, binary numbers as text of base 64.
 
-use crate::build::Outcome;
+use crate::outcome::Outcome;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;

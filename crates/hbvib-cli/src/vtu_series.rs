@@ -1,9 +1,10 @@
 //! Motion of the mesh for ParaView: a VTU file for each time of the period, one with the harmonics, and the list of the times (.pvd).
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::files::Files;
 use crate::job_motion::MotionPart;
 use crate::node_motion::{ContactField, Places, harmonics};
+use crate::outcome::Outcome;
 use crate::vtu::{Cell, Grid};
 use hbvib::{Branch, Special};
 use num_complex::Complex64;

@@ -1,11 +1,12 @@
 //! Many patterns of a wheel: the largest blade of each, and the distribution of their amplification.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::{Area, SIZE, bounds, draw};
 use crate::files::Files;
 use crate::job_studies::WheelPart;
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::wheel_response::{mistuned, peaks};
 use hbvib::{Hooks, Status};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};

@@ -1,11 +1,12 @@
 //! Wheel of a job: all blades of a mistuned wheel, the largest of them, and its amplification against the tuned wheel.
 
-use crate::build::{Built, Outcome};
+use crate::built::Built;
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::files::Files;
 use crate::job_studies::{MistunedName, WheelPart};
 use crate::map::Written;
+use crate::outcome::Outcome;
 use crate::solver::solver;
 use hbvib::{BladeProperty, ForcedOptions, Hooks, Mistuning, Model, Response, Status, WheelPeaks, wheel_peaks};
 use plotters::prelude::{ChartBuilder, LineSeries};
