@@ -10,7 +10,7 @@ use std::time::Instant;
 use hbvib::analysis::{estimate_at, forced_response};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;

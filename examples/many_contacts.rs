@@ -16,8 +16,8 @@ use hbvib::interrupt::Interrupt;
 
 use hbvib::SolverOptions;
 use hbvib::condense::Condensed;
-use hbvib::linalg::bordered::Bordered;
-use hbvib::linalg::linear_system::Jacobian;
+use hbvib::linalg::newton::bordered::Bordered;
+use hbvib::linalg::newton::linear_system::Jacobian;
 use hbvib::linalg::norm;
 use hbvib::problem::contact_forces::ContactForces;
 use hbvib::problem::harmonic_balance::HarmonicBalance;

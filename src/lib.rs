@@ -97,7 +97,7 @@ pub use contact::relative_motion::{Direction, Frame};
 pub use contact::rigid_point::RigidPoint;
 pub use contact::{Contact, ContactKind};
 #[doc(inline)]
-pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
+pub use linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
 pub use model::damper::{Damper, DamperFace, DamperPlace};

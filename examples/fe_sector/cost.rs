@@ -9,7 +9,7 @@ use hbvib::interrupt::Interrupt;
 
 use hbvib::condense::Condensed;
 use hbvib::condense::flexibility::Workspace;
-use hbvib::linalg::lu::Lu;
+use hbvib::linalg::factors::lu::Lu;
 use hbvib::{Model, SolverOptions};
 
 use crate::memory::peak_memory;

@@ -4,7 +4,7 @@
 use crate::brick::{self, Material};
 use hbvib::contact::Contact;
 use hbvib::error::Result;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;

@@ -87,7 +87,7 @@ impl ResonanceBands {
 mod tests {
     use super::*;
     use crate::contact::Contact;
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::structure::MatrixKind;
 
     /// A mass of 1 on a spring of 1, with a slider of stiffness 3 to the ground: bands from 1 to 2 over the harmonic.

@@ -9,7 +9,7 @@ use crate::contact::time_piece::Mode;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::fallible_matrix::{filled, zero_vector};
+use crate::linalg::dense::fallible_matrix::{filled, zero_vector};
 use crate::model::Model;
 use crate::model::contact_modes::{ContactModes, ForceOfWave};
 use crate::model::on_modes::forces_of_harmonics;

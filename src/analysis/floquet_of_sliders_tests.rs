@@ -5,7 +5,7 @@ use crate::analysis::floquet_on_modes::{KeptModes, floquet_of};
 use crate::analysis::forced_response;
 use crate::analysis::two_numbers_of_modes::{change, error_of_radius};
 use crate::hooks::Hooks;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::structure::MatrixKind;
 use crate::options::{ForcedOptions, SolverOptions, Waves};
 use crate::results::Recovery;

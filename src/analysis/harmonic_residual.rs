@@ -8,7 +8,7 @@ use crate::contact::{self, Contact};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, along};
 use crate::model::structure::MatrixKind;

@@ -13,7 +13,7 @@
 use crate::analysis::worn_state::{WornState, WornStates};
 use crate::error::{Result, try_copy, try_vec};
 use crate::hooks::Hooks;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 const CONTEXT: &str = "the steps of a life";
 

@@ -16,7 +16,7 @@
 
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 const CONTEXT: &str = "a measured mode";
 

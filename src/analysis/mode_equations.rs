@@ -4,7 +4,7 @@ use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::static_state::StaticState;

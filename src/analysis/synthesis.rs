@@ -21,7 +21,7 @@ pub(super) use crate::analysis::synthesis::oscillator::{Load, State, form};
 pub(super) use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SynthesisOptions;

@@ -4,7 +4,7 @@ use crate::analysis::linear_contacts::LinearContacts;
 use crate::analysis::mode_adjustment::{Observed, Reduced};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 use crate::model::Model;
 use crate::model::mistuning::{BladeProperty, Mistuning};
 use crate::model::tuned_family::TunedFamily;

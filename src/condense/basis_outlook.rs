@@ -8,9 +8,9 @@ use crate::condense::tuned_plan::TunedPlan;
 use crate::condense::wave_matrices::{Assembled, WaveMatrices};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::linalg::cholesky::entries_by_degrees;
-use crate::linalg::inertia::eigenvalues_below;
-use crate::linalg::sparse::{Columns, Csc};
+use crate::linalg::factors::cholesky::entries_by_degrees;
+use crate::linalg::factors::inertia::eigenvalues_below;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc};
 
 /// Usual columns of a basis per input, and besides.
 pub(super) const USUAL_COLUMNS: (usize, usize) = (5, 10);

@@ -1,7 +1,7 @@
 //! Certificate of a structure on a basis: the estimated relative error of its motion under a unit force at each contact,
 //! at the excitation and at the response, in the energy norm of A = K + σM.
 //!
-//! The residual b − Z V q has the norm ρ in A⁻¹, see [`crate::linalg::block_krylov`]. Motions that the basis lacks answer it
+//! The residual b − Z V q has the norm ρ in A⁻¹, see [`crate::linalg::iterative::block_krylov`]. Motions that the basis lacks answer it
 //! about statically, which gives ρ/‖q‖. A motion that the basis holds to a share of about ρ/‖q‖ answers it as near its
 //! resonance as it is, which adds ‖Z⁻¹‖ (ρ/‖q‖)² with the inverse on the basis: near a resonance a small residual is an
 //! error that is 1/(2ζ) times larger.
@@ -15,9 +15,9 @@ use crate::condense::HarmonicBlock;
 use crate::condense::sweep::Sweep;
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::block_krylov::SparseVector;
-use crate::linalg::hermitian;
-use crate::linalg::lu::Lu;
+use crate::linalg::dense::hermitian;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::reduced_wave::{ReducedView, Remainder, WaveDamping};
 use num_complex::Complex64;
 

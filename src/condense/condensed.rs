@@ -8,7 +8,7 @@ use crate::condense::tuned_plan::TunedPlan;
 use crate::contact::Law;
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::model::reduced_wave::MotionRow;

@@ -9,9 +9,9 @@ use crate::condense::tuned_plan::TUNED_TERMS;
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
 use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::factor::Factor;
-use crate::linalg::quadratic::{self, ComplexSum};
-use crate::linalg::sparse::Csc;
+use crate::linalg::exact_sums::quadratic::{self, ComplexSum};
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
 /// Variable of a derivative of Z_κ.

@@ -8,7 +8,7 @@ use crate::condense::relative_coordinates::AssembledDirection;
 use crate::condense::sweep::Sweep;
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 use crate::model::Model;
 use crate::options::Exchanged;
 use num_complex::Complex64;

@@ -8,9 +8,9 @@
 
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::block_krylov::SparseVector;
-use crate::linalg::complex_products;
-use crate::linalg::sparse::Csc;
+use crate::linalg::dense::complex_products;
+use crate::linalg::iterative::block_krylov::SparseVector;
+use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the directions of the damping";

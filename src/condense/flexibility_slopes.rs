@@ -8,7 +8,7 @@ use crate::condense::dynamic_stiffness::{Variable, add_slope_product, fill_slope
 use crate::condense::flexibility::{CONTEXT, Table, Workspace, made, read};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products::multiply_adjoint;
+use crate::linalg::dense::complex_products::multiply_adjoint;
 use crate::linalg::inner;
 use num_complex::Complex64;
 

@@ -5,7 +5,7 @@ use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::sum_terms::Source;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::{MotionRow, ReducedView};
 use crate::model::sector_motion::MOTION_TERMS;
@@ -383,7 +383,7 @@ fn over_dofs(rows: &[Row]) -> Result<Vec<MotionRow>> {
 mod tests {
     use super::*;
     use crate::condense::test_chains::{DAMPED, chain};
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
 
     fn close(a: &[Complex64], b: &[Complex64]) -> bool {
         let size = b.iter().fold(0.0_f64, |m, b| m.max(b.norm()));

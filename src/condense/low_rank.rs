@@ -15,8 +15,8 @@ use crate::condense::flexibility::Table;
 use crate::condense::sum_terms::{Factors, Frequency};
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products;
-use crate::linalg::lu::Lu;
+use crate::linalg::dense::complex_products;
+use crate::linalg::factors::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 

@@ -1,7 +1,7 @@
 //! The limit of memory that the caller sets: what needs more is refused before it is allocated.
 
 use crate::error::{Error, Result, Status};
-use crate::linalg::factor::Factor;
+use crate::linalg::factors::factor::Factor;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;

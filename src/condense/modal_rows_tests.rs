@@ -7,7 +7,7 @@ use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::wave_cache::WaveCache;
 use crate::contact::Contact;
 use crate::interrupt::Interrupt;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;

@@ -11,7 +11,7 @@ use crate::condense::flexibility::Table;
 use crate::condense::modal_table::{ModalTable, ModalWork, Work};
 use crate::condense::mode_sums::multiply_adjoint;
 use crate::condense::sum_terms::Denominator;
-use crate::linalg::complex_columns;
+use crate::linalg::dense::complex_columns;
 use num_complex::Complex64;
 
 impl ModalTable {

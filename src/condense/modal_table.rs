@@ -12,7 +12,7 @@ use crate::condense::sum_terms::{Denominator, Frequency, Source};
 use crate::condense::wave_modes::{NEAR_ALONE, NEAR_RESONANCE};
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_columns;
+use crate::linalg::dense::complex_columns;
 use num_complex::Complex64;
 use std::sync::Arc;
 

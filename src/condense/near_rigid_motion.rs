@@ -11,7 +11,7 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::least_squares::LeastSquares;
+use crate::linalg::dense::least_squares::LeastSquares;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the motion of near-rigid contacts";

@@ -8,7 +8,7 @@ use crate::condense::modal_slopes::tests::assert_slopes;
 use crate::condense::modal_table::{ModalTable, ModalWork};
 use crate::condense::sum_terms::Source;
 use crate::condense::test_chains::{N, chain};
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::speed::Speed;
 use crate::model::structure::MatrixKind;

@@ -5,7 +5,7 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility_way::FlexibilityWay;
 use crate::condense::harmonic_block::Artificial;
 use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::reduced_wave::{MotionRow, ReducedView, WaveDamping};
 use crate::model::spring::Row;

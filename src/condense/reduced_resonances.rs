@@ -4,7 +4,7 @@ use crate::condense::Condensed;
 use crate::contact::Role;
 use crate::error::{Result, Status, try_copy, try_extend};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::quadratic_problem::Quadratic;
 use crate::model::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};

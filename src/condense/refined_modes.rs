@@ -11,11 +11,11 @@
 
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products;
-use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::quadratic::{self, ComplexSum, terms_of_moduli};
-use crate::linalg::sparse::Csc;
-use crate::linalg::triangle::Entry;
+use crate::linalg::dense::complex_products;
+use crate::linalg::dense::eigen::{self, Pairs};
+use crate::linalg::exact_sums::quadratic::{self, ComplexSum, terms_of_moduli};
+use crate::linalg::sparse_storage::sparse::Csc;
+use crate::linalg::sparse_storage::triangle::Entry;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;

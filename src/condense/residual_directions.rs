@@ -7,9 +7,9 @@
 
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products::{multiply, multiply_adjoint};
-use crate::linalg::hermitian;
-use crate::linalg::triangle::Entry;
+use crate::linalg::dense::complex_products::{multiply, multiply_adjoint};
+use crate::linalg::dense::hermitian;
+use crate::linalg::sparse_storage::triangle::Entry;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the reduced structure";

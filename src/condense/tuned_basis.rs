@@ -7,7 +7,7 @@
 use crate::condense::tuned_ring::Random;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::{inner, remove};
 use core::f64::consts::TAU;
 use num_complex::Complex64;

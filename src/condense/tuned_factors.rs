@@ -10,10 +10,10 @@
 use crate::condense::tuned_plan::{TUNED_TERMS, TunedPlan};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products::multiply;
-use crate::linalg::factor::Factor;
+use crate::linalg::dense::complex_products::multiply;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::lu::Lu;
 use crate::linalg::inner;
-use crate::linalg::lu::Lu;
 use core::f64::consts::TAU;
 use num_complex::Complex64;
 use std::sync::Arc;

@@ -16,7 +16,7 @@ use crate::condense::tuned_basis::TunedBasis;
 use crate::condense::tuned_ring::TunedRing;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the tuned wheel";

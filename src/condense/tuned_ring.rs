@@ -3,7 +3,7 @@
 //! Wave p of the tuned wheel, x_s = x̂ e^(2πi ps/N), has the matrix Z_p = Σ_d g_d e^(−2πi pd/N) of the order of a sector.
 
 use crate::error::{Result, try_push, try_room, try_vec};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the tuned wheel";

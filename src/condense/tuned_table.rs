@@ -11,7 +11,7 @@ use crate::condense::HarmonicBlock;
 use crate::condense::tuned_factors::TunedFactors;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::complex_products::multiply;
+use crate::linalg::dense::complex_products::multiply;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 

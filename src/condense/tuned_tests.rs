@@ -5,7 +5,7 @@ use crate::condense::flexibility::{Slopes, Workspace};
 use crate::condense::test_chains::{DAMPED, N, chain};
 use crate::condense::tuned_plan::TunedPlan;
 use crate::interrupt::Interrupt;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::mistuning::{BladeProperty, Mistuning};
 use crate::model::structure::MatrixKind;

@@ -3,7 +3,7 @@
 use crate::condense::Condensed;
 use crate::condense::harmonic_block::{Artificial, HarmonicBlock, TiedValues};
 use crate::error::{Result, try_copy, try_push};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use num_complex::Complex64;
 use std::sync::Arc;
 

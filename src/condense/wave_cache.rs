@@ -12,7 +12,7 @@ use crate::condense::wave_poles::WavePoles;
 use crate::condense::{Condensed, FlexibilityWay, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::MotionRow;
 use crate::model::structure::MatrixKind;

@@ -4,7 +4,7 @@ use crate::condense::few_directions::{FewDirections, few_directions};
 use crate::condense::wave_modes::proportional;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Columns, Csc, Form, Symmetry, aligned, worst_pair};
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry, aligned, worst_pair};
 use crate::model::Model;
 use crate::model::reduced_wave::WaveKey;
 use crate::model::structure::MatrixKind;

@@ -9,7 +9,7 @@
 //! enters K_κ with its real part; its imaginary part adds to the low rank, and so does damping L Lᴴ of few directions beside
 //! αM + βK, see `condense::few_directions`.
 
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 

@@ -2,7 +2,7 @@
 //! [`crate::condense::quadratic_poles`], which computes them.
 
 use crate::condense::wave_modes::NEAR_RESONANCE;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -15,7 +15,7 @@ use crate::condense::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
 use crate::condense::wave_matrices::{Factors, WaveMatrices};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::block_krylov::SparseVector;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::Model;
 use crate::model::reduced_wave::{ReducedView, ReducedWave, WaveKey};
 use crate::model::sector_motion::MOTION_TERMS;

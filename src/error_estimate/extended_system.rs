@@ -4,8 +4,8 @@ use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
 use crate::error_estimate::work::{Sizes, Work};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::krylov::{KrylovSystem, Lengths};
-use crate::linalg::linear_system::{Border, LinearSystem};
+use crate::linalg::newton::linear_system::krylov::{KrylovSystem, Lengths};
+use crate::linalg::newton::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
 use crate::problem::newton_products::{PackedHarmonics, packed_up_to};
 use crate::problem::{Problem, Residual};
@@ -63,7 +63,9 @@ impl<P: Problem> ExtendedSystem<P> {
     /// A problem of these sizes at a parameter value with the dense backend, and the work that it may take.
     #[cfg(test)]
     pub fn dense(problem: P, parameter: f64, sizes: Sizes, work: Work) -> Result<Self> {
-        let system = Box::new(crate::linalg::linear_system::dense::DenseSystem::new(problem.size())?);
+        let system = Box::new(crate::linalg::newton::linear_system::dense::DenseSystem::new(
+            problem.size(),
+        )?);
         let harmonics = usize::MAX;
         let factored = Factored {
             block: harmonics,
@@ -285,9 +287,9 @@ mod tests {
     use crate::contact::Contact;
     use crate::error_estimate::work::{Sizes, Work};
     use crate::interrupt::Interrupt;
-    use crate::linalg::linear_system::{Jacobian, MatrixFree};
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
     use crate::linalg::norm;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::Model;
     use crate::model::structure::MatrixKind;
     use crate::options::SolverOptions;

@@ -15,7 +15,7 @@ use crate::error_estimate::mode_doubling::{ModeRatios, ModeSeries};
 use crate::error_estimate::work::{OF_A_START, Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};

@@ -3,7 +3,7 @@
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 pub use crate::model::influence::{AeroEntry, AeroForm, AeroInfluence};

@@ -1,7 +1,7 @@
 //! A matrix of a cyclic structure as its blocks between sectors, or per nodal diameter.
 
 use crate::error::{Result, try_push};
-use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 
 /// One of M, C, K in the form in which it was given.
 #[derive(Clone, Debug, Default)]

@@ -2,8 +2,8 @@
 //! stiffness of natural modes, the rest is the structural damping iD.
 
 use crate::error::{Result, fail, try_push};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Columns, Csc, Form, Symmetry};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::blocks::Blocks;
 use crate::model::structure::{MatrixKind, Structure};

@@ -13,11 +13,11 @@
 use crate::contact::Contact;
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::definite::resists_all_motion;
-use crate::linalg::fallible_matrix::{filled, zeros};
-use crate::linalg::hermitian;
-use crate::linalg::shifted_inverse::Inverse;
-use crate::linalg::sparse::Csc;
+use crate::linalg::dense::fallible_matrix::{filled, zeros};
+use crate::linalg::dense::hermitian;
+use crate::linalg::factors::shifted_inverse::Inverse;
+use crate::linalg::sparse_storage::definite::resists_all_motion;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::{inner, remove};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;

@@ -1,7 +1,7 @@
 //! Contents of a model, read back: blocks of its matrices, normal loads as they were given.
 
 use crate::error::{Result, fail};
-use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 

@@ -5,8 +5,8 @@
 //! e^{+ihφ} (Thomas 1979, doi:10.1002/nme.1620140107; Wildheim 1979, doi:10.1115/1.3424673).
 
 use crate::error::{Result, fail};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Columns, Csc, Form, Symmetry};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry};
 use crate::model::influence::AeroForm;
 use crate::model::part_of_turn::lag;
 use crate::model::reduced_wave::WaveKey;

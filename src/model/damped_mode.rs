@@ -6,9 +6,9 @@
 
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::factor::Factor;
-use crate::linalg::quadratic::quadratic;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::exact_sums::quadratic::quadratic;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::cyclic::Tied;
 use crate::model::linear_modes::ContactState;

@@ -7,7 +7,7 @@
 use crate::byte_stream::ByteWriter;
 use crate::contact::Contact;
 use crate::error::{Result, fail};
-use crate::linalg::sparse::Columns;
+use crate::linalg::sparse_storage::sparse::Columns;
 use crate::model::mechanical_model::Model;
 use crate::model::saved_matrix;
 use crate::model::saved_structure::save_degrees;
@@ -189,7 +189,7 @@ impl Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use num_complex::Complex64;
 
     fn model() -> Model {

@@ -7,8 +7,8 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Columns, Csc, Form};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form};
 use crate::model::influence::AeroForm;
 use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};

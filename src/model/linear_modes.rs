@@ -5,12 +5,12 @@
 use crate::contact::Role;
 use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::definite::resists_all_motion;
-use crate::linalg::eigen::{self, Pairs};
-use crate::linalg::held_rows::MovingRows;
-use crate::linalg::lanczos;
-use crate::linalg::quadratic::{ROUNDING, form, quadratic, terms};
-use crate::linalg::sparse::Csc;
+use crate::linalg::dense::eigen::{self, Pairs};
+use crate::linalg::exact_sums::quadratic::{ROUNDING, form, quadratic, terms};
+use crate::linalg::iterative::lanczos;
+use crate::linalg::sparse_storage::definite::resists_all_motion;
+use crate::linalg::sparse_storage::held_rows::MovingRows;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::quadratic_problem::Quadratic;
 use crate::model::static_tangents::StaticTangents;

@@ -5,7 +5,7 @@ use crate::contact::laws::iwan::Iwan;
 use crate::contact::patch::Patch;
 use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push, try_room};
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
 use crate::model::reduced_wave::KeptWaves;
 use crate::model::sector_faces::SectorDescription;
@@ -153,7 +153,7 @@ impl Model {
     }
 
     /// Sets the mass, damping, stiffness or structural matrix (of the sector itself), ndof × ndof. M must be symmetric or
-    /// Hermitian; the others may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
+    /// Hermitian; the others may be [`Part::General`](crate::linalg::sparse_storage::matrix_view::Part::General). Complex entries act
     /// on all harmonics above zero; the mean has the real part.
     ///
     /// # Errors

@@ -8,10 +8,10 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::factor::Factor;
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::matrix_view::{MatrixView, Part};
-use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part};
+use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::sector_matrices::{Entries, of_both_sectors};
 use crate::model::structure::{MatrixKind, Structure};

@@ -3,8 +3,8 @@
 
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::speed::Speed;

@@ -3,9 +3,9 @@
 
 use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::definite;
+use crate::linalg::exact_sums::quadratic::{ROUNDING, quadratic, terms};
 use crate::linalg::inner;
-use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
+use crate::linalg::sparse_storage::definite;
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};

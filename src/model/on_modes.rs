@@ -7,8 +7,8 @@
 use crate::contact::Role;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::blocks::Blocks;
 use crate::model::excitation::Excitation;

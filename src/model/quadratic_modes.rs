@@ -8,11 +8,11 @@
 
 use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::eigen;
-use crate::linalg::factor::Factor;
-use crate::linalg::held_rows::MovingRows;
-use crate::linalg::quadratic::quadratic;
-use crate::linalg::sparse::Csc;
+use crate::linalg::dense::eigen;
+use crate::linalg::exact_sums::quadratic::quadratic;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::held_rows::MovingRows;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::quadratic_problem::{Pair, Quadratic, REAL, is_one};
 use crate::model::quadratic_search::lowest_by_search;
 use nalgebra::{DMatrix, Schur};

@@ -1,9 +1,9 @@
 //! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
 
 use crate::error::Result;
+use crate::linalg::exact_sums::quadratic::{ROUNDING, quadratic, terms};
 use crate::linalg::inner;
-use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use num_complex::Complex64;
 
 /// Imaginary part over the modulus below which an eigenvalue is no vibration.

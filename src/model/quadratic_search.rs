@@ -6,10 +6,10 @@
 
 use crate::error::{Result, Status, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::definite::resists_all_motion;
-use crate::linalg::lanczos;
-use crate::linalg::near_shift::{Goal, Near, NearShift};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::iterative::lanczos;
+use crate::linalg::iterative::near_shift::{Goal, Near, NearShift};
+use crate::linalg::sparse_storage::definite::resists_all_motion;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::quadratic_problem::{ONE_VALUE, Pair, Quadratic, is_one};
 use num_complex::Complex64;
 

@@ -5,7 +5,7 @@
 //! holds whatever their constants are.
 
 use crate::error::{Error, Result, try_push, try_vec};
-use crate::linalg::block_krylov::SparseVector;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::spring::Row;
 use num_complex::Complex64;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -107,7 +107,7 @@ pub enum WaveDamping {
     General(Vec<Complex64>, Option<(f64, f64)>),
 }
 
-/// Part of the images of the last block that the basis does not hold; see [`crate::linalg::block_krylov`].
+/// Part of the images of the last block that the basis does not hold; see [`crate::linalg::iterative::block_krylov`].
 #[derive(Debug, Default)]
 pub struct Remainder {
     /// First column of the last block.

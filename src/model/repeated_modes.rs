@@ -2,7 +2,7 @@
 //! rule must choose one, and the result names the rule.
 
 use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::exact_sums::quadratic::quadratic;
 use crate::model::linear_modes::Pencil;
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;

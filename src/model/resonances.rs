@@ -3,11 +3,11 @@
 
 use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::eigen;
-use crate::linalg::held_rows::MovingRows;
-use crate::linalg::lanczos;
-use crate::linalg::quadratic::about_quadratic;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::dense::eigen;
+use crate::linalg::exact_sums::quadratic::about_quadratic;
+use crate::linalg::iterative::lanczos;
+use crate::linalg::sparse_storage::held_rows::MovingRows;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::quadratic_problem::Quadratic;
@@ -347,7 +347,7 @@ impl Widths {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
 
     #[test]
     fn damping_that_couples_two_close_modes_moves_their_half_widths() {

@@ -2,8 +2,8 @@
 
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::error::{Result, try_push, try_vec};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Columns, Csc};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "a loaded matrix";

@@ -1,8 +1,8 @@
 //! Matrices on the independent degrees of freedom: K₀ = T₀ᵀ K T₀ + T₁ᵀ K T₁, K₁ = T₀ᵀ K T₁, K₋₁ = T₁ᵀ K T₀.
 
 use crate::error::{Error, Result};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Columns, Csc, Form, Symmetry};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use num_complex::Complex64;

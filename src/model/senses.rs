@@ -2,8 +2,8 @@
 //! conjugate where all blocks between sectors are real, and their modes differ where something distinguishes the senses.
 
 use crate::error::{Result, fail};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::blocks::Blocks;
 use crate::model::influence::AeroInfluence;
 use crate::model::structure::{MatrixKind, Structure};

@@ -4,7 +4,7 @@
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 

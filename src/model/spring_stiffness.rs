@@ -2,7 +2,7 @@
 
 use crate::contact::Contact;
 use crate::error::{Result, try_push};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::Row;
 use crate::model::structure::MatrixKind;

@@ -2,9 +2,9 @@
 //! diameter.
 
 use crate::error::{Result, fail, try_push};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::matrix_view::{MatrixView, Part};
-use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part};
+use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::influence::{AeroInfluence, FORMS};

@@ -5,7 +5,7 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::mistuning::Mistuning;

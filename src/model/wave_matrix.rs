@@ -1,8 +1,8 @@
 //! A matrix of a wave, without a copy where it is one that the model keeps.
 
 use crate::error::Result;
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Columns, Csc};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc};
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 

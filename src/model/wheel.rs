@@ -8,8 +8,8 @@
 use crate::contact::Contact;
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::aero::AeroForm;
 use crate::model::copy;

@@ -19,7 +19,7 @@ use crate::condense::mode_flexibility::ModeFlexibility;
 use crate::contact::onset::Onset;
 use crate::error::{Result, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::{Jacobian, MatrixFree};
+use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::{inner, norm};
 use crate::model::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::contact::Contact;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;

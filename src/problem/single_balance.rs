@@ -73,7 +73,7 @@ mod tests {
     use crate::condense::test_chains::structure;
     use crate::contact::Contact;
     use crate::interrupt::Interrupt;
-    use crate::linalg::linear_system::Jacobian;
+    use crate::linalg::newton::linear_system::Jacobian;
     use crate::options::SolverOptions;
     use crate::problem::harmonic_balance::HarmonicBalance;
     use crate::problem::parametric_problem::{Problem, Residual};

@@ -13,7 +13,7 @@ use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
-use crate::linalg::quadratic::{ComplexSum, form, product};
+use crate::linalg::exact_sums::quadratic::{ComplexSum, form, product};
 use crate::model::spring::along;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;

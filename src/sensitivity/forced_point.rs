@@ -9,7 +9,7 @@ use crate::error::{Result, Status, boxed, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::model::reduced_wave::MotionRow;
 use crate::options::Response;
 use crate::problem::gauges::{Derivatives, Gauges};

@@ -2,7 +2,7 @@
 
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail};
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::speed::Speed;
 use crate::model::structure::MatrixKind;

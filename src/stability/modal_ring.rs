@@ -14,7 +14,7 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::fallible_matrix::{add_product, adjoint, filled, zeros};
+use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, zeros};
 use crate::model::contact_modes::ContactModes;
 use crate::model::structure::Structure;
 use crate::stability::closure::Closure;

@@ -5,7 +5,7 @@ use crate::contact::laws::polynomial::{Monomial, Polynomial};
 use crate::contact::laws::table::Table;
 use crate::contact::{Contact, ContactKind};
 use crate::interrupt::Interrupt;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::Waves;

@@ -5,7 +5,7 @@
 
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::sector_motion::{MOTION_TERMS, SectorMotion};
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;

@@ -4,8 +4,8 @@
 use crate::contact::time_piece::Mode;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::factor::Factor;
-use crate::linalg::sparse::Csc;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::model::structure::{MatrixKind, Structure};

@@ -6,7 +6,7 @@ use hbvib::analysis::time_response::{TimeResponse, time_response};
 use hbvib::contact::Contact;
 use hbvib::error::{Error, Status};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::TimeOptions;

@@ -2,7 +2,7 @@
 
 use crate::common::{B1, B2, BASE, D, NDOF, SECTORS, largest};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;

@@ -1,7 +1,7 @@
 //! Structures on which other programs for harmonic balance were measured.
 
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use std::f64::consts::PI;

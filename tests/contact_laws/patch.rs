@@ -7,7 +7,7 @@ use hbvib::contact::patch::Patch;
 use hbvib::contact::relative_motion::Frame;
 use hbvib::contact::{Contact, ContactKind, Role};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;

@@ -6,7 +6,7 @@ use hbvib::analysis::contact_evaluate;
 use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;

@@ -6,7 +6,7 @@ use crate::common::{self, B2, BASE, all_harmonics, harmonics, largest, one_mass,
 use hbvib::analysis::{estimate_at, forced_response, time_response};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;

@@ -8,7 +8,7 @@ use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions};

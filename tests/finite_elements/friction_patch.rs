@@ -7,7 +7,7 @@ use hbvib::analysis::forced_response;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::hooks::Hooks;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
+use hbvib::linalg::newton::linear_system::Jacobian;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::{ForcedOptions, SolverOptions};

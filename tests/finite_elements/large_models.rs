@@ -6,7 +6,7 @@ use crate::plate::Plate;
 use hbvib::contact::Contact;
 use hbvib::contact_evaluate;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::cholesky::{Definite, entries_of_factor};
+use hbvib::linalg::factors::cholesky::{Definite, entries_of_factor};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::sector_faces::{SectorDescription, SectorFrame};

@@ -10,7 +10,7 @@ use hbvib::condense::Condensed;
 use hbvib::contact::laws::table::Table;
 use hbvib::contact::{Contact, ContactKind, Role};
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

@@ -9,7 +9,7 @@ use faer::linalg::solvers::Solve;
 use hbvib::analysis::forced_response::forced_response;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::speed::Speed;
 use hbvib::model::structure::MatrixKind;

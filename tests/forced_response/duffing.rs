@@ -6,7 +6,7 @@ use hbvib::analysis::harmonic_residual::forced_residual;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;

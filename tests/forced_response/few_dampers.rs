@@ -5,7 +5,7 @@ use crate::reduced_structures::{plate, point};
 use hbvib::analysis::forced_response::forced_response;
 use hbvib::condense::FlexibilityWay::Modes;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};

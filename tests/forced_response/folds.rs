@@ -8,7 +8,7 @@ use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
 use hbvib::error::Result;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
+use hbvib::linalg::newton::linear_system::Jacobian;
 use hbvib::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 

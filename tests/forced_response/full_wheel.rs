@@ -5,7 +5,7 @@ use crate::common::{
     BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, largest, phase, relative_gap, slip, solve_at,
 };
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;

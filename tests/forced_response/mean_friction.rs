@@ -4,7 +4,7 @@
 use crate::common::{all_harmonics, harmonics, solve_at};
 use hbvib::analysis::contact_evaluate;
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;

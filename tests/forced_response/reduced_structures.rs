@@ -5,7 +5,7 @@ use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::interrupt::{Phase, PhaseReport};
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;

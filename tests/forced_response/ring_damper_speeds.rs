@@ -4,7 +4,7 @@
 
 use crate::common::{BASE, Blisk, data, harmonics, number, slip, sweep};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

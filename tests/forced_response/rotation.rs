@@ -10,7 +10,7 @@ use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::rotation::Speed;

@@ -5,7 +5,7 @@ use crate::common::{harmonics, solve_at, sweep};
 use hbvib::analysis::time_response::time_response;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;

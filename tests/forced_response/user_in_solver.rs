@@ -7,7 +7,7 @@ use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};

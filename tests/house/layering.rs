@@ -449,7 +449,10 @@ fn re_exports_lead_to_the_file_behind_them() {
         tree.resolve("problem::Problem").as_deref(),
         Some("problem::parametric_problem")
     );
-    assert_eq!(tree.resolve("linalg::lu::Lu").as_deref(), Some("linalg::lu"));
+    assert_eq!(
+        tree.resolve("linalg::factors::lu::Lu").as_deref(),
+        Some("linalg::factors::lu")
+    );
 }
 
 #[test]

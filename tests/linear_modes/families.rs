@@ -1,6 +1,6 @@
 //! Natural modes of structures with a family of close frequencies far from zero: equal blades in a ring, a chain on springs.
 
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;

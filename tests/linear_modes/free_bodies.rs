@@ -4,7 +4,7 @@
 use crate::common::{all_harmonics, sweep};
 use hbvib::analysis::linear_contacts::LinearContacts;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

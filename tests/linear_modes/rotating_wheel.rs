@@ -6,7 +6,7 @@ use crate::rotating_modes::first_order;
 use hbvib::analysis::linear_contacts::LinearContacts;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

@@ -1,7 +1,7 @@
 //! Crossings of Campbell diagrams in the sense that an engine order excites, and the whirl of modes that gyroscopic forces do
 //! not touch.
 
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::{
     AeroForm, Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, ModeOptions, Model,
     SolverOptions, Speed, campbell, damped_modes, nonlinear_mode,

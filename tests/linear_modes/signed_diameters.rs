@@ -3,7 +3,7 @@
 //! wheel is found, each once.
 
 use crate::rotating_modes::first_order;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::{
     AeroForm, Contact, ContactState, Hooks, Interference, LinearContacts, MatrixKind, Model, Speed, damped_modes,
     interference,

@@ -5,7 +5,7 @@ use crate::common::modes::{self, assert_wave, chain_frequency, chains, gap, mass
 use crate::common::refusal::refused;
 use crate::common::{BASE, NDOF, R, SECTORS, largest};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::repeated_modes::Multiple;

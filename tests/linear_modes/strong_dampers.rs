@@ -3,7 +3,7 @@
 
 use hbvib::analysis::linear_contacts::LinearContacts;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::rotation::Speed;

@@ -4,7 +4,7 @@
 use hbvib::analysis::linear_contacts::LinearContacts;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::rotation::Speed;

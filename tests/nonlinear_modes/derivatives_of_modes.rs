@@ -10,7 +10,7 @@ use hbvib::condense::Condensed;
 use hbvib::contact::laws::table::Table;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
+use hbvib::linalg::newton::linear_system::Jacobian;
 use hbvib::model::rotation::Speed;
 use hbvib::model::static_tangents::StaticTangents;
 use hbvib::options::{DampingForm, SolverOptions};

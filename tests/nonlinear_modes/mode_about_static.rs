@@ -11,7 +11,7 @@ use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

@@ -3,7 +3,7 @@
 use crate::common::{all_harmonics, harmonics};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeChoice, ModeGuess, ModeOptions};

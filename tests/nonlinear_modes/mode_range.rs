@@ -4,7 +4,7 @@
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
 use crate::common::{self, BASE, Blisk, harmonics};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;

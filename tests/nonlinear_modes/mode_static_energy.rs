@@ -6,7 +6,7 @@ use crate::common::mode_cases::{N, Skewed, damping, follow, wave};
 use crate::common::{all_harmonics, phase};
 use crate::mode_about_static::pressed_sector;
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::spring::Spring;

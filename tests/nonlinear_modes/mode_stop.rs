@@ -4,7 +4,7 @@
 use crate::common::mode_cases::{follow, only};
 use crate::common::{all_harmonics, harmonics};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeOptions, SolverOptions};

@@ -5,7 +5,7 @@ use crate::common::{B2, BASE, Blisk, harmonics, sweep};
 use hbvib::analysis::{nonlinear_mode, synthesise};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeOptions, SolverOptions, SynthesisOptions};

@@ -7,7 +7,7 @@ use hbvib::analysis::synthesis::SynthesisPoint;
 use hbvib::analysis::{nonlinear_mode, synthesise};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};

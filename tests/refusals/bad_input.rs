@@ -6,7 +6,7 @@ use crate::common::{BASE, harmonics, solve_at};
 use hbvib::analysis::harmonic_residual::{contact_evaluate, forced_residual};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;

@@ -9,7 +9,7 @@ use hbvib::analysis::time_response::time_response;
 use hbvib::analysis::verify;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

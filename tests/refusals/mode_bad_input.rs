@@ -7,7 +7,7 @@ use hbvib::analysis::nonlinear_mode;
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{Amplitude, ModeChoice, ModeOptions, SolverOptions};

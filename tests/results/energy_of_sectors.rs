@@ -4,7 +4,7 @@
 use crate::common::energy::{close, energy, exactly, maximum, mean, work};
 use crate::common::{BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, phase, slip, solve_at};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;

@@ -8,7 +8,7 @@ use crate::common::stopping::{Analysis, Lateness, of_branch, of_call, random, st
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{

@@ -7,7 +7,7 @@ use core::ops::Range;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::eigen;
+use hbvib::linalg::dense::eigen;
 use hbvib::model::Model;
 use hbvib::options::SolverOptions;
 use hbvib::results::Branch;

@@ -8,7 +8,7 @@ use hbvib::analysis::forced_residual;
 use hbvib::contact::laws::table::Table;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;

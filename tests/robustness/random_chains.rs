@@ -7,7 +7,7 @@ use hbvib::analysis::forced_response;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::eigen;
+use hbvib::linalg::dense::eigen;
 use hbvib::model::Model;
 use hbvib::options::{ForcedOptions, SolverOptions};
 use hbvib::results::Branch;

@@ -3,7 +3,7 @@
 use crate::common::{all_harmonics, harmonics, sweep};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;

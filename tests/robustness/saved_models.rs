@@ -6,7 +6,7 @@ use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
 use hbvib::contact::laws::table::Table;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Values};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part, Values};
 use hbvib::model::Model;
 use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
 use hbvib::model::speed::Speed;

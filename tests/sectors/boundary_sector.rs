@@ -1,6 +1,6 @@
 //! A small finite-element sector with both faces: 36 nodes, curved faces, no mirror symmetry.
 
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::sector_faces::{Positions, SectorDescription, SectorFrame};
 use hbvib::model::structure::MatrixKind;

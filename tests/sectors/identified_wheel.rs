@@ -5,7 +5,7 @@ use hbvib::analysis::{IdentifiedPattern, MeasuredModes, wheel_identify};
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::mistuning::{BladeProperty, Mistuning};

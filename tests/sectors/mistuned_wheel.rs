@@ -7,7 +7,7 @@ use hbvib::analysis::{forced_response, wheel_peaks};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::contents::Block;
 use hbvib::model::linear_modes::ContactState;

@@ -8,7 +8,7 @@ use hbvib::analysis::{forced_residual, forced_response, nonlinear_mode, verify};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::sector_faces::SectorFrame;

@@ -5,7 +5,7 @@ use crate::common::refusal::refused;
 use hbvib::contact::Contact;
 use hbvib::contact::relative_motion::Frame;
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::sector_faces::{SectorDescription, SectorFrame};

@@ -6,7 +6,7 @@ use crate::sector_contacts::jenkins;
 use hbvib::analysis::forced_response;
 use hbvib::condense::FlexibilityWay;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::mistuning::{BladeProperty, Mistuning};

@@ -6,7 +6,7 @@ use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
 use crate::sector_contacts::{PAIR, Pair, jenkins};
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::mistuning::{BladeProperty, Mistuning};

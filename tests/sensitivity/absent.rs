@@ -5,7 +5,7 @@ use crate::common::laws::Plate;
 use crate::common::{BASE, one_mass};
 use crate::design::{Design, Results, tight};
 use hbvib::contact::{Contact, ContactKind};
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
 use hbvib::{Constant, Parameter, Quantity, Reason, Status, User, sensitivity};

@@ -6,7 +6,7 @@ use crate::common::{BASE, Blisk};
 use crate::design::{Change, Design, Results, tight};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
 use hbvib::model::structure::MatrixKind;

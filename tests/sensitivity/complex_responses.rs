@@ -1,7 +1,7 @@
 //! Derivatives of complex amplitudes equal closed forms of a linear oscillator and differences of converged solutions.
 
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{Component, ForcedOptions, Measure, Response, SolverOptions};

@@ -2,7 +2,7 @@
 
 use crate::design::{Results, tight};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::{Call, Constant, ContactKind, Parameter, Quantity, User, UserForce, sensitivity};

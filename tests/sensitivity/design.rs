@@ -2,7 +2,7 @@
 
 use crate::common::{BETA, Blisk, SECTORS, harmonics};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;

@@ -3,7 +3,7 @@
 use crate::common::{BASE, BETA, one_mass};
 use crate::design::Design;
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::{Constant, FitData, FitOptions, Hooks, Parameter, Response, SolverOptions, Unknown, fit, predict};

@@ -2,7 +2,7 @@
 
 use crate::common::{data, number};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;

@@ -9,7 +9,7 @@ use hbvib::analysis::{floquet, time_response, verify};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{FloquetOptions, ModeOptions, TimeOptions, VerifyOptions, Waves};

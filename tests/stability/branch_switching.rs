@@ -4,7 +4,7 @@ use crate::common::peers::structure;
 use crate::common::{all_harmonics, data, harmonics, largest, one_mass};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};

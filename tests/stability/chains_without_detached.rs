@@ -4,7 +4,7 @@ use crate::common::depth::some_of;
 use crate::common::harmonics;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions, Waves};

@@ -3,7 +3,7 @@
 use crate::common::{BASE, SECTORS, Wheel, harmonics, solve_at};
 use crate::{multipliers, of_class, ordinary};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::Waves;

@@ -4,7 +4,7 @@ use crate::common::{all_harmonics, harmonics, solve_at};
 use crate::{multipliers, ordinary};
 use hbvib::Polynomial;
 use hbvib::contact::{Contact, ContactKind};
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::Waves;

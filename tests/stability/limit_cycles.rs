@@ -6,7 +6,7 @@ use crate::common::{BASE, harmonics};
 use crate::{multipliers, of_class, ordinary};
 use hbvib::MultiplierClass;
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeChoice, ModeOptions, Waves};

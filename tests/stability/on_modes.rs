@@ -6,7 +6,7 @@ use hbvib::analysis::floquet;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Error;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{FloquetOptions, SolverOptions, Waves};

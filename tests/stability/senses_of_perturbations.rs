@@ -2,7 +2,7 @@
 //! contacts stuck the multipliers of the wheel are e^{λT} with the eigenvalues λ of all signed diameters, and a flow and its
 //! mirror image have the same limit cycles in opposite waves.
 
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::options::{FloquetOptions, Waves};
 use hbvib::{
     AeroForm, Contact, ForcedOptions, Hooks, LinearContacts, MatrixKind, ModeOptions, Model, MultiplierClass,

@@ -5,7 +5,7 @@ use crate::common::{SECTORS, Wheel, all_harmonics, harmonics, relative_gap, slip
 use hbvib::analysis::time_response::{TimeResponse, time_response};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;

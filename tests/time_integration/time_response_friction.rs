@@ -7,7 +7,7 @@ use crate::common::laws_in_time::{
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
 use hbvib::analysis::time_response::TimeResponse;
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{SteadyMethod, TimeOptions};

@@ -7,7 +7,7 @@ use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::hooks::{Hooks, Progress};
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{SteadyMethod, TimeOptions};

@@ -4,7 +4,7 @@ use crate::analysis::fit::fit_unknowns::{Named, Unknowns};
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::hermitian::eigen;
+use crate::linalg::dense::hermitian::eigen;
 use crate::sensitivity::Parameter;
 use num_complex::Complex64;
 

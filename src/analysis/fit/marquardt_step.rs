@@ -2,7 +2,7 @@
 
 use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 const CONTEXT: &str = "a step of a fit";
 

@@ -8,7 +8,7 @@ use crate::analysis::fit::fit_unknowns::Named;
 use crate::analysis::fit::predicted_data::Predictor;
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::hooks::Hooks;
-use crate::linalg::hermitian::eigen;
+use crate::linalg::dense::hermitian::eigen;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::sensitivity::Parameter;

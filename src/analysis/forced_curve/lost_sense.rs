@@ -12,7 +12,7 @@ use crate::error::{Result, Status};
 use crate::error_estimate::Estimate;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::resonances::Resonance;
 use crate::model::structure::MatrixKind;

@@ -5,7 +5,7 @@ use crate::analysis::synthesis::{Load, Refinement, State, form};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::inner;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::results::Branch;

@@ -4,7 +4,7 @@ use crate::analysis::synthesis::{Load, form};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
 use crate::model::structure::MatrixKind;

@@ -1,7 +1,7 @@
 //! The mode at one amplitude as an oscillator under a force.
 
 use crate::linalg::inner;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::reduced_wave::MotionRow;
 use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;

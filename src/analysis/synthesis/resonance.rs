@@ -10,7 +10,7 @@ use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
 use crate::problem::{Problem, Residual};
 use crate::results::energy::balance;

@@ -7,7 +7,7 @@ use crate::contact::plane_path::{PlaneInstant, SlipPanel};
 use crate::contact::radau::{POINTS, RadauTables, STAGES};
 use crate::fourier::safe_newton;
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 /// Newton iterations of a panel, after which it is halved.
 const FRICTION_3D_SLIP_ITERATIONS: usize = 12;

@@ -4,7 +4,7 @@ use super::Case;
 use super::one_mass::{answer, at, by_default, in_time};
 use crate::common::{B1, B2, Blisk, D, NDOF, R, SECTORS, harmonics};
 use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;

@@ -6,7 +6,7 @@ use super::one_mass::{at, by_default, in_time, rubbing, structure};
 use crate::common::{all_harmonics, harmonics, solve_at};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 

@@ -6,7 +6,7 @@ use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Result;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions};

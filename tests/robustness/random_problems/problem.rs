@@ -2,7 +2,7 @@
 
 use super::law::{LAWS, Law, Sizes};
 use super::random::Random;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use num_complex::Complex64;
