@@ -7,9 +7,8 @@ use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::Law;
 use hbvib::contact::laws::friction_2d::Friction2d;
 use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::error::Result;
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::{Interrupt, Result};
 use std::time::Instant;
 
 /// Motions of one direction whose harmonics fall with the square of their number.

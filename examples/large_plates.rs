@@ -9,11 +9,8 @@ mod brick;
 #[path = "support/plate.rs"]
 mod plate;
 
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::error::Result;
-use hbvib::hooks::Hooks;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
+use hbvib::options::Flexibility;
+use hbvib::{ContactState, ForcedOptions, Hooks, Result, SolverOptions, forced_response};
 use plate::Plate;
 use std::f64::consts::TAU;
 use std::process::ExitCode;

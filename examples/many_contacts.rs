@@ -12,9 +12,8 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use hbvib::interrupt::Interrupt;
+use hbvib::{Interrupt, SolverOptions};
 
-use hbvib::SolverOptions;
 use hbvib::condense::Condensed;
 use hbvib::linalg::newton::bordered::Bordered;
 use hbvib::linalg::newton::linear_system::Jacobian;

@@ -59,6 +59,8 @@ mod adaptivity;
 pub mod aft;
 #[doc(hidden)]
 pub mod analysis;
+#[doc(hidden)]
+pub mod at_a_point;
 mod byte_stream;
 #[doc(hidden)]
 pub mod capi;
@@ -84,6 +86,8 @@ pub mod results;
 pub mod sensitivity;
 #[doc(hidden)]
 pub mod stability;
+#[doc(hidden)]
+pub mod studies;
 #[doc(hidden)]
 pub mod time_integration;
 
@@ -113,46 +117,31 @@ pub use contact::force_derivative::Constant;
 pub use sensitivity::{Parameter, Reason};
 
 // Analyses.
-pub use analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
-pub use analysis::band_curve::{BandPoint, band_curve};
-pub use analysis::batch::{Batch, batch};
-pub use analysis::campbell::{Campbell, Crossing, campbell};
-pub use analysis::campbell_response::{CampbellResonance, campbell_response};
-pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
-pub use analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
-pub use analysis::damped_modes::{DampedModes, damped_modes};
-pub use analysis::design_peak::DesignPeak;
-pub use analysis::fit::{
-    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
-    fit_profile, predict,
-};
-pub use analysis::floquet::floquet;
+pub use analysis::forced::point_error::{estimate_at, estimate_at_with};
 pub use analysis::forced_response::forced_response;
-pub use analysis::freedom::{FreeSlider, freedom, freedom_with};
-pub use analysis::harmonic_residual::{
+pub use analysis::in_time::run_through::sweep;
+pub use analysis::in_time::time_response::time_response;
+pub use analysis::in_time::verify::{Verification, verify};
+pub use analysis::linear::damped_modes::{DampedModes, damped_modes};
+pub use analysis::linear::linear_contacts::LinearContacts;
+pub use analysis::linear::static_history::{LoadHistory, StaticStep, static_history};
+pub use analysis::modes::nonlinear_mode::nonlinear_mode;
+pub use analysis::over_parameter::parameter_range::{Follow, ParameterRange};
+pub use analysis::over_parameter::parameter_response::parameter_response;
+pub use analysis::perturbed::smallest_kick::{Kick, smallest_kick};
+pub use analysis::residual_states::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
+pub use analysis::residual_states::band_curve::{BandPoint, band_curve};
+pub use analysis::residual_states::freedom::{FreeSlider, freedom, freedom_with};
+pub use analysis::residual_states::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
+pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
+pub use at_a_point::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use at_a_point::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
+pub use at_a_point::floquet::floquet;
+pub use at_a_point::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
-pub use analysis::interference::{Interference, interference};
-pub use analysis::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
-pub use analysis::life_load::{BestLoad, best_load_for_life};
-pub use analysis::linear_contacts::LinearContacts;
-pub use analysis::mission::{Mission, MissionCrossing, mission};
-pub use analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
-pub use analysis::nonlinear_mode::nonlinear_mode;
-pub use analysis::parameter_range::{Follow, ParameterRange};
-pub use analysis::parameter_response::parameter_response;
-pub use analysis::point_error::{estimate_at, estimate_at_with};
-pub use analysis::response_of_motion::response_of;
-pub use analysis::run_through::sweep;
-pub use analysis::run_up::{RunUp, RunUpTurn, run_up};
-pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
-pub use analysis::smallest_kick::{Kick, smallest_kick};
-pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
-pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
-pub use analysis::time_response::time_response;
-pub use analysis::verify::{Verification, verify};
-pub use analysis::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
-pub use analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
+pub use at_a_point::response_of_motion::response_of;
+pub use at_a_point::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 #[doc(inline)]
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
@@ -161,6 +150,21 @@ pub use options::{
     LifeFollow, LifeOptions, MissionOptions, ModeChoice, ModeOptions, Response, RunUpOptions, SolverOptions,
     SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
 };
+pub use studies::batch::{Batch, batch};
+pub use studies::campbell::{Campbell, Crossing, campbell};
+pub use studies::campbell_response::{CampbellResonance, campbell_response};
+pub use studies::design_peak::DesignPeak;
+pub use studies::fit::{
+    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
+    fit_profile, predict,
+};
+pub use studies::interference::{Interference, interference};
+pub use studies::mission::{Mission, MissionCrossing, mission};
+pub use studies::run_up::{RunUp, RunUpTurn, run_up};
+pub use studies::wear::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
+pub use studies::wear::life_load::{BestLoad, best_load_for_life};
+pub use studies::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
+pub use studies::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 
 // Results.
 pub use condense::Reduction;

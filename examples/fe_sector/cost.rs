@@ -5,12 +5,11 @@ use std::f64::consts::TAU;
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use hbvib::interrupt::Interrupt;
+use hbvib::{Interrupt, Model, SolverOptions};
 
 use hbvib::condense::Condensed;
 use hbvib::condense::flexibility::Workspace;
 use hbvib::linalg::factors::lu::Lu;
-use hbvib::{Model, SolverOptions};
 
 use crate::memory::peak_memory;
 use crate::response::Response;

@@ -3,17 +3,16 @@
 //! All times are minima: read them as ratios.
 
 use super::model;
-use hbvib::SolverOptions;
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::condense::Condensed;
 use hbvib::continuation::Metric;
 use hbvib::continuation::corrector::{Corrector, Outcome};
-use hbvib::interrupt::Interrupt;
 use hbvib::linalg::newton::bordered::Bordered;
 use hbvib::linalg::newton::linear_system::Jacobian;
 use hbvib::linalg::norm;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
 use hbvib::problem::{InitialGuess, Problem, Residual};
+use hbvib::{Interrupt, SolverOptions};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::hint::black_box;

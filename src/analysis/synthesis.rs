@@ -15,10 +15,10 @@ mod mode_motions;
 mod oscillator;
 mod resonance;
 
-pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, Motions};
+pub(crate) use crate::analysis::synthesis::mode_motions::{ForceExtremum, Motions};
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
-pub(super) use crate::analysis::synthesis::oscillator::{Load, State, form};
-pub(super) use crate::analysis::synthesis::resonance::Refinement;
+pub(crate) use crate::analysis::synthesis::oscillator::{Load, State, form};
+pub(crate) use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse_storage::sparse::Csc;
@@ -128,7 +128,7 @@ pub fn synthesise_with(
 }
 
 /// The same as [`synthesise_with`], with the motions on request.
-pub(super) fn with_motions(
+pub(crate) fn with_motions(
     branch: &Branch,
     model: &Model,
     options: &SynthesisOptions,
@@ -213,7 +213,7 @@ pub(super) fn with_motions(
 ///
 /// # Errors
 /// As [`synthesise`].
-pub(super) fn load_of(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Option<Load>> {
+pub(crate) fn load_of(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Option<Load>> {
     options.check()?;
     let Some(data) = branch.mode_data() else {
         return fail!(

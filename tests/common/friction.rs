@@ -1,13 +1,13 @@
 //! Motions in two directions under friction with a varying normal load, and the law marched over
 //! samples, for its tests.
 
+use hbvib::Interrupt;
 use hbvib::aft::Evaluation;
 use hbvib::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use hbvib::contact::Piece;
 use hbvib::contact::laws::friction_2d::Friction2d;
 use hbvib::contact::piece::CoupledPiece;
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluation {

@@ -1,6 +1,6 @@
 //! Friction in a plane, for its tests: random motions, one law, and comparisons of numbers.
 
-use hbvib::interrupt::Interrupt;
+use hbvib::Interrupt;
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::plane_friction::PlaneFrictionEvaluator;

@@ -3,12 +3,9 @@
 use hbvib::aft::Evaluation;
 use hbvib::aft::memoryless::MemorylessEvaluator;
 use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::samples::Samples;
-use hbvib::error::{Error, Status};
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::{Call, Error, Interrupt, Monomial, Polynomial, Status, User, UserForce};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -3,13 +3,13 @@
 
 use crate::common::plane::{OMEGA, Random, evaluate, gap, largest, law, short};
 use crate::common::plane_step::stepped;
+use hbvib::Interrupt;
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::law::Law;
 use hbvib::contact::laws::friction_2d::Friction2d;
 use hbvib::contact::laws::friction_3d::Friction3d;
 use hbvib::contact::laws::jenkins::Jenkins;
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

@@ -7,9 +7,8 @@ use hbvib::contact::law::Hysteretic;
 use hbvib::contact::law::{Form, Law};
 use hbvib::contact::linearisation::Range;
 use hbvib::contact::march::March;
-use hbvib::error::Result;
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::{Interrupt, Result};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

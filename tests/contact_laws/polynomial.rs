@@ -5,11 +5,10 @@ use crate::common::pointwise::{
     term, van_der_pol,
 };
 use hbvib::aft::{Evaluation, Evaluator};
+use hbvib::contact::Law;
 use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::{Contact, Law};
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::{Contact, Interrupt, Polynomial};
 
 #[test]
 fn a_cubic_polynomial_is_the_cubic_spring() {

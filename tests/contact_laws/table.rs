@@ -5,14 +5,11 @@ use crate::common::stencil::{Stencil, config};
 use hbvib::aft::piecewise_exact::Exact;
 use hbvib::aft::piecewise_sampled::Sampled;
 use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::Contact;
 use hbvib::contact::law::{Law, PiecewiseLinear};
-use hbvib::contact::laws::table::Table;
 use hbvib::contact::piece::Piece;
-use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
 use hbvib::fourier::TurningPoints;
-use hbvib::interrupt::Interrupt;
+use hbvib::{Contact, Interrupt, Status, Table};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 

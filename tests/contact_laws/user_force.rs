@@ -4,12 +4,9 @@ use crate::common::pointwise::{Pendulum, dense, evaluate, gap, motion, pendulum,
 use hbvib::aft::Evaluation;
 use hbvib::aft::memoryless::MemorylessEvaluator;
 use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::samples::automatic_samples;
-use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::{Call, Interrupt, Polynomial, Status, User, UserForce};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 

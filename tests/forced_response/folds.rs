@@ -6,10 +6,9 @@ use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::continuation::special_points::{Locator, SpecialPoint};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
-use hbvib::error::Result;
-use hbvib::interrupt::Interrupt;
 use hbvib::linalg::newton::linear_system::Jacobian;
 use hbvib::problem::{Homotopy, InitialGuess, Problem, Residual};
+use hbvib::{Interrupt, Result};
 use num_complex::Complex64;
 
 const DAMPING: f64 = 0.05;

@@ -1,16 +1,10 @@
 //! A structure on a basis responds as by factors: random structures of every kind, and what forces other ways.
 
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::{Phase, PhaseReport};
-use hbvib::linalg::sparse_storage::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::options::Flexibility;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Phase, PhaseReport, SolverOptions,
+    Spring, Status, forced_response,
+};
 use num_complex::Complex64;
 use std::cell::Cell;
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 23] = [
+const LAYERS: [(&str, u8); 25] = [
     ("shortage", 0),
     ("error", 0),
     ("byte_stream", 0),
@@ -28,8 +28,10 @@ const LAYERS: [(&str, u8); 23] = [
     ("sensitivity", 7),
     ("adaptivity", 7),
     ("analysis", 8),
-    ("capi", 9),
-    ("lib", 10),
+    ("at_a_point", 9),
+    ("studies", 10),
+    ("capi", 11),
+    ("lib", 12),
 ];
 
 /// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, interrupts and streams of bytes
@@ -55,6 +57,8 @@ const ONLY: [(&str, &[&str]); 2] = [
         "capi",
         &[
             "analysis",
+            "at_a_point",
+            "studies",
             "sensitivity",
             "model",
             "results",

@@ -7,17 +7,13 @@ use crate::common::mode_cases::{N, Skewed};
 use crate::common::rotating::{rotate, speeds};
 use crate::common::stencil::{Checked, Stencil, config};
 use hbvib::condense::Condensed;
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::interrupt::Interrupt;
 use hbvib::linalg::newton::linear_system::Jacobian;
-use hbvib::model::rotation::Speed;
 use hbvib::model::static_tangents::StaticTangents;
-use hbvib::options::{DampingForm, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
 use hbvib::problem::homotopy::{Path, PathHomotopy};
 use hbvib::problem::static_state::StaticState;
 use hbvib::problem::{Problem, Residual};
+use hbvib::{Contact, ContactKind, DampingForm, Interrupt, SolverOptions, Speed, Table};
 use num_complex::Complex64;
 use proptest::prelude::*;
 

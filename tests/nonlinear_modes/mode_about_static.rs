@@ -4,19 +4,12 @@
 use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic, only};
 use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::analysis::linear_contacts::{LinearContacts, linear_modes};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeChoice, ModeGuess, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::analysis::linear::linear_contacts::linear_modes;
+use hbvib::options::ModeGuess;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions,
+    Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

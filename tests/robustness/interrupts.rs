@@ -5,20 +5,12 @@
 
 use crate::common::laws;
 use crate::common::stopping::{Analysis, Lateness, of_branch, of_call, random, stop_when};
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{
-    Flexibility, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions,
-    VerifyOptions,
-};
-use hbvib::results::Branch;
+use hbvib::options::Flexibility;
 use hbvib::{
-    ContactState, Interrupt, Phase, PhaseReport, Progress, contact_evaluate_with, estimate_at_with,
-    forced_residual_with, forced_response, nonlinear_mode, synthesise_with, time_response, verify,
+    Branch, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, ModeChoice, ModeOptions,
+    Model, Phase, PhaseReport, Progress, Result, SolverOptions, Status, SteadyMethod, SynthesisOptions, TimeOptions,
+    VerifyOptions, contact_evaluate_with, estimate_at_with, forced_residual_with, forced_response, nonlinear_mode,
+    synthesise_with, time_response, verify,
 };
 use num_complex::Complex64;
 use std::cell::RefCell;

@@ -5,13 +5,7 @@ use crate::boundary_sector::{BoundarySector, N, dofs};
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
 use crate::sector_contacts::{PAIR, Pair, jenkins};
-use hbvib::error::Status;
-use hbvib::linalg::sparse_storage::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::mistuning::{BladeProperty, Mistuning};
-use hbvib::model::sector_faces::SectorFrame;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{BladeProperty, ContactState, MatrixKind, MatrixView, Mistuning, Model, SectorFrame, Status};
 use num_complex::Complex64;
 
 const DELTA: [f64; N] = [

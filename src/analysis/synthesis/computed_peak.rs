@@ -1,7 +1,7 @@
 //! The computed resonance next to a synthesised one: the forced response with the harmonics of the mode, from the
 //! motion of the mode.
 
-use crate::analysis::phase_direction::phase_direction;
+use crate::analysis::forced::phase_direction::phase_direction;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
 use crate::continuation::corrector::{Corrector, Outcome};
