@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use hbvib::{Interrupt, Model, SolverOptions};
 
 use hbvib::condense::Condensed;
-use hbvib::condense::flexibility::Workspace;
+use hbvib::condense::by_factors::flexibility::Workspace;
 use hbvib::linalg::factors::lu::Lu;
 
 use crate::memory::peak_memory;

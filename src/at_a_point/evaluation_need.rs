@@ -1,6 +1,6 @@
 //! Memory that evaluations at a given motion need, counted before any of it is requested.
 
-use crate::condense::memory_limit::{beyond, mega, within};
+use crate::condense::blocks::memory_limit::{beyond, mega, within};
 use crate::contact::Contact;
 use crate::contact::law::Form;
 use crate::error::Result;

@@ -8,7 +8,7 @@
 //! the mesh, they are checked in geometric steps.
 
 use crate::condense::Condensed;
-use crate::condense::flexibility::Workspace;
+use crate::condense::by_factors::flexibility::Workspace;
 use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
 use crate::fourier::HarmonicSet;

@@ -47,7 +47,7 @@ pub(super) struct ExtendedSystem<P> {
     sectors: Option<usize>,
     /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
     pub stalled: bool,
-    /// Whether the equations are those of exchanged motions, see [`crate::condense::exchange`].
+    /// Whether the equations are those of exchanged motions, see [`crate::condense::blocks::exchange`].
     pub is_monotone: bool,
     /// Residual that steps may leave.
     goal: f64,

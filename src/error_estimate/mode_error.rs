@@ -1,6 +1,6 @@
 //! The error of a point of a nonlinear mode, including those of its frequency and damping ratio.
 
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};

@@ -75,7 +75,7 @@ pub struct SolverOptions {
     /// Free sliders of each stored point of a forced response, with the derivatives of its amplitude by their places (see
     /// [`freedom`](crate::freedom())). A nonlinear mode refuses it.
     pub freedom: bool,
-    /// Sliders that have exchanged motions, see [`crate::condense::exchange`]; an analysis sets it.
+    /// Sliders that have exchanged motions, see [`crate::condense::blocks::exchange`]; an analysis sets it.
     pub exchange: Exchanged,
     /// Harmonics that are carried beyond those which forces and laws excite by themselves; an analysis with a guess sets it.
     pub content: Content,

@@ -15,7 +15,7 @@ mod functional;
 mod mode_products;
 
 use crate::condense::Condensed;
-use crate::condense::mode_flexibility::ModeFlexibility;
+use crate::condense::by_modes::mode_flexibility::ModeFlexibility;
 use crate::contact::onset::Onset;
 use crate::error::{Result, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;

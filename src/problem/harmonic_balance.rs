@@ -5,8 +5,8 @@
 
 use crate::condense::Condensed;
 use crate::condense::FlexibilityWay;
+use crate::condense::by_modes::modal_table::ModalTable;
 use crate::condense::frequency_cache::FrequencyCache;
-use crate::condense::modal_table::ModalTable;
 use crate::error::{Result, Status, boxed, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

@@ -1,8 +1,8 @@
 //! The motion of all degrees of freedom at a point, from the relative motions of the contacts.
 
 use crate::condense::Resolution;
-use crate::condense::flexibility::Workspace;
-use crate::condense::near_rigid_motion;
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_factors::near_rigid_motion;
 use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::problem::contact_forces::ContactForces;

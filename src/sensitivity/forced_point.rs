@@ -2,8 +2,8 @@
 //!
 //! One transposed solution of Newton's matrix, and one of the structure per harmonic.
 
-use crate::condense::flexibility::Workspace;
-use crate::condense::near_rigid_motion;
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_factors::near_rigid_motion;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, boxed, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;

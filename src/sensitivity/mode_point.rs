@@ -1,7 +1,7 @@
 //! The adjoint of the frequency or of the damping ratio of a nonlinear mode at a fixed amplitude.
 
 use crate::condense::Condensed;
-use crate::condense::flexibility::Workspace;
+use crate::condense::by_factors::flexibility::Workspace;
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;

@@ -10,7 +10,7 @@
 //! [`fold_point`]: crate::sensitivity::fold_point
 //! [`extremum_point`]: crate::sensitivity::extremum_point
 
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference, Resolution};
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};

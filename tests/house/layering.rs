@@ -447,7 +447,7 @@ fn re_exports_lead_to_the_file_behind_them() {
     let tree = Tree::read();
     assert_eq!(
         tree.resolve("condense::Condensed").as_deref(),
-        Some("condense::condensed")
+        Some("condense::blocks::condensed")
     );
     assert_eq!(
         tree.resolve("problem::Problem").as_deref(),

@@ -4,7 +4,7 @@
 //! lapses with all perturbations. The corrected solution of an error estimate is found at the contacts alone, and lies near.
 
 use crate::condense::ModelCache;
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::error::{Result, boxed, try_vec};
 use crate::error_estimate::Solved;
 use crate::error_estimate::forced_response_error::ForcedEstimator;

@@ -1,6 +1,6 @@
 //! Error of stored points, see [`crate::error_estimate`].
 
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Artificial, Condensed, ModelCache};
 use crate::error::{Result, fail, try_push};
 use crate::error_estimate::forced_response_error::ForcedEstimator;

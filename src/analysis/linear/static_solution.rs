@@ -1,8 +1,9 @@
 //! The static state of a model under constant forces and preload, from which a nonlinear mode starts.
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::condense::flexibility::Workspace;
-use crate::condense::{Condensed, near_rigid_motion};
+use crate::condense::Condensed;
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_factors::near_rigid_motion;
 use crate::contact::{Contact, Form, Role};
 use crate::continuation::Settings;
 use crate::continuation::initial_point;

@@ -14,7 +14,7 @@ use crate::analysis::modes::mode_equations::LinearStart;
 use crate::analysis::modes::mode_guess;
 use crate::analysis::modes::mode_path::{Onset, course, trace};
 use crate::analysis::modes::mode_start::ModeStart;
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};

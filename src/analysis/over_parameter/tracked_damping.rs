@@ -7,7 +7,7 @@
 
 use crate::analysis::linear::static_solution::{NEEDS_SPEED, static_state};
 use crate::analysis::modes::mode_equations::{Equations, LinearStart};
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};

@@ -2,7 +2,7 @@
 //! march.
 
 use crate::aft::hysteretic::HystereticEvaluator;
-use crate::condense::memory_limit::{beyond, mega};
+use crate::condense::blocks::memory_limit::{beyond, mega};
 use crate::contact::law::{Hysteretic, Memoryless};
 use crate::contact::samples::Samples;
 use crate::error::{Result, try_copy, try_vec};

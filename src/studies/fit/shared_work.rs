@@ -1,6 +1,6 @@
 //! Work that the data sets of a fit share at the same values of the parameters: they differ in the level of the force alone.
 
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::error::{Result, try_push};
 use crate::sensitivity::WaveMatrices;
 

@@ -4,7 +4,7 @@ use super::follow;
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced::forced_discretised::ForcedDiscretised;
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::contact::Contact;
 use crate::continuation::Point;
 use crate::continuation::step_control::Detail;
