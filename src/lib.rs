@@ -103,14 +103,14 @@ pub use contact::{Contact, ContactKind};
 #[doc(inline)]
 pub use linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
-pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
 pub use model::damper::{Damper, DamperFace, DamperPlace};
-pub use model::linear_modes::{ContactState, LinearModes};
-pub use model::mistuning::{BladeProperty, Mistuning};
-pub use model::sector_faces::{SectorDescription, SectorFrame};
-pub use model::speed::Speed;
-pub use model::spring::Spring;
-pub use model::structure::MatrixKind;
+pub use model::matrices::aero::{AeroEntry, AeroForm, AeroInfluence};
+pub use model::matrices::sector_faces::{SectorDescription, SectorFrame};
+pub use model::matrices::speed::Speed;
+pub use model::matrices::spring::Spring;
+pub use model::matrices::structure::MatrixKind;
+pub use model::natural_modes::linear_modes::{ContactState, LinearModes};
+pub use model::wheels::mistuning::{BladeProperty, Mistuning};
 
 // Parameters.
 pub use contact::force_derivative::Constant;

@@ -5,7 +5,7 @@ use crate::continuation::{Point, PointAt};
 use crate::error::Result;
 use crate::error_estimate::Estimate;
 use crate::interrupt::Interrupt;
-use crate::model::resonances::Resonance;
+use crate::model::natural_modes::resonances::Resonance;
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
 use crate::results::{Branch, SpecialKind, Verdict};

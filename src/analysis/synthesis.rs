@@ -23,7 +23,7 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::SynthesisOptions;
 use crate::results::mode_branch::ModeData;
 use crate::results::{Branch, Recovery};

@@ -5,7 +5,7 @@ use crate::contact::Contact;
 use crate::contact::law::Form;
 use crate::error::Result;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::SolverOptions;
 
 /// Bytes above which the evaluation of a law is refused, and the same without the matrices that a Jacobian of the caller asks for.

@@ -10,9 +10,9 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, along};
-use crate::model::structure::MatrixKind;
-use crate::model::wave::Wave;
+use crate::model::matrices::spring::{Row, along};
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
 

@@ -9,7 +9,7 @@ use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use core::ptr;
 
 /// Layouts of a matrix view.

@@ -12,7 +12,7 @@ use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
 use crate::linalg::sparse_storage::sparse::Columns;
 use crate::model::Model;
-use crate::model::contents::Block;
+use crate::model::saved::contents::Block;
 
 /// Blocks of a matrix, by the sectors of their columns.
 #[repr(C)]

@@ -16,7 +16,7 @@ use crate::at_a_point::{self, Quantity};
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::sensitivity::{Parameter, Reason};
 use core::ptr;
 

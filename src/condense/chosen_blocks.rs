@@ -8,7 +8,7 @@ use crate::condense::on_a_basis::wave_reduction::{Request, reduced_blocks};
 use crate::condense::tuned_wheel::tuned_plan::TunedPlan;
 use crate::error::{Result, try_push};
 use crate::interrupt::{Interrupt, Phase};
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::{DampingForm, Flexibility};
 use num_complex::Complex64;
 use std::sync::Arc;

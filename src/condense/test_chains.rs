@@ -3,8 +3,8 @@
 use crate::contact::Contact;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::spring::Spring;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::spring::Spring;
+use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Degrees of freedom.

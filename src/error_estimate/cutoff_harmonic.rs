@@ -335,7 +335,7 @@ mod tests {
     use crate::interrupt::Interrupt;
     use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::Model;
-    use crate::model::structure::MatrixKind;
+    use crate::model::matrices::structure::MatrixKind;
     use crate::options::SolverOptions;
     use num_complex::Complex64;
     use std::sync::Arc;

@@ -291,7 +291,7 @@ mod tests {
     use crate::linalg::norm;
     use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::Model;
-    use crate::model::structure::MatrixKind;
+    use crate::model::matrices::structure::MatrixKind;
     use crate::options::SolverOptions;
     use crate::problem::harmonic_balance::HarmonicBalance;
 

@@ -11,7 +11,7 @@ use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use std::ops::Range;
 
 const CONTEXT: &str = "a damper";

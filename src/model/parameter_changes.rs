@@ -6,9 +6,9 @@ use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::blocks::Blocks;
-use crate::model::sector_matrices::{self, of_independent};
-use crate::model::structure::{MatrixKind, Structure};
+use crate::model::matrices::blocks::Blocks;
+use crate::model::matrices::sector_matrices::{self, of_independent};
+use crate::model::matrices::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
 impl Model {

@@ -21,7 +21,7 @@ use crate::error::{Result, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::{inner, norm};
-use crate::model::spring::{Row, along};
+use crate::model::matrices::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};

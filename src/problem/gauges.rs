@@ -12,7 +12,7 @@ use crate::condense::by_factors::near_rigid_motion;
 use crate::error::{Result, try_extend, try_push, try_vec};
 use crate::fourier::{Reader, Reading};
 use crate::interrupt::Interrupt;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use crate::options::{Measure, Response};
 use crate::problem::contact_forces::ContactForces;
 use num_complex::Complex64;

@@ -8,7 +8,7 @@ use crate::linalg::newton::linear_system::dense::DenseSystem;
 use crate::linalg::newton::linear_system::krylov::KrylovSystem;
 use crate::linalg::newton::linear_system::{Border, Jacobian, LinearSystem};
 use crate::model::Model;
-use crate::model::mistuning::{BladeProperty, Mistuning};
+use crate::model::wheels::mistuning::{BladeProperty, Mistuning};
 use crate::options::SolverOptions;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::{Problem, Residual};

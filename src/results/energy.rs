@@ -14,8 +14,8 @@ use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
 use crate::linalg::exact_sums::quadratic::{ComplexSum, form, product};
-use crate::model::spring::along;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::spring::along;
+use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

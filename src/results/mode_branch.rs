@@ -1,7 +1,7 @@
 //! Data of a nonlinear mode beside the points that every branch has.
 
 use crate::error::{Error, Result, try_copy, try_extend, try_push};
-use crate::model::repeated_modes::Multiple;
+use crate::model::natural_modes::repeated_modes::Multiple;
 use crate::options::Amplitude;
 use crate::problem::epmc::{Gauge, LinearMode};
 use std::f64::consts::PI;

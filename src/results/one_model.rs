@@ -2,7 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::model::Model;
-use crate::model::fingerprint::Use;
+use crate::model::saved::fingerprint::Use;
 use crate::results::Branch;
 use crate::results::origin::Origin;
 

@@ -1,6 +1,6 @@
 //! The model of a branch as it was when the branch was solved.
 
-use crate::model::fingerprint::Fingerprint;
+use crate::model::saved::fingerprint::Fingerprint;
 
 /// The model of a branch, and whether its wave is that of the branch.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
 use crate::linalg::newton::linear_system::Jacobian;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use crate::options::Response;
 use crate::problem::gauges::{Derivatives, Gauges};
 use crate::problem::harmonic_balance::HarmonicBalance;

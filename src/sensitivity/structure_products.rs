@@ -10,9 +10,9 @@ use crate::linalg::inner;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::aero::AeroForm;
-use crate::model::structure::MatrixKind;
-use crate::model::wave::Wave;
+use crate::model::matrices::aero::AeroForm;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 

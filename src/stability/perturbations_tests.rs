@@ -7,7 +7,7 @@ use crate::contact::{Contact, ContactKind};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::Waves;
 use crate::stability::closures;
 use crate::time_integration::{EventLoop, Observers, State};

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, Status, fail, try_copy, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 
 /// Relative accuracy of a crossing.
 const CAMPBELL_TOLERANCE: f64 = 1e-13;

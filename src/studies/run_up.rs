@@ -17,7 +17,7 @@ use crate::analysis::synthesis::{Load, SynthesisPeak, load_of, synthesise_with};
 use crate::error::{Result, fail};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::{RunUpOptions, SynthesisOptions};
 use crate::results::Branch;
 use crate::studies::run_up::chirp::Chirp;

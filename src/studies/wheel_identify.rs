@@ -5,8 +5,8 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factors::lu::Lu;
 use crate::model::Model;
-use crate::model::mistuning::{BladeProperty, Mistuning};
-use crate::model::tuned_family::TunedFamily;
+use crate::model::few_motions::tuned_family::TunedFamily;
+use crate::model::wheels::mistuning::{BladeProperty, Mistuning};
 use crate::studies::mode_adjustment::{Observed, Reduced};
 use num_complex::Complex64;
 

@@ -8,7 +8,7 @@ use crate::common::rotating::{rotate, speeds};
 use crate::common::stencil::{Checked, Stencil, config};
 use hbvib::condense::Condensed;
 use hbvib::linalg::newton::linear_system::Jacobian;
-use hbvib::model::static_tangents::StaticTangents;
+use hbvib::model::natural_modes::static_tangents::StaticTangents;
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
 use hbvib::problem::homotopy::{Path, PathHomotopy};
 use hbvib::problem::static_state::StaticState;

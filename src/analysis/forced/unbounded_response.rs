@@ -1,5 +1,5 @@
 //! Refusal of a forced response without bounded solution: an undamped resonance forced beyond its slip capacity,
-//! which [`crate::model::slip_capacity`] proves of the model. The check runs if no solution was found, and if a
+//! which [`crate::model::natural_modes::slip_capacity`] proves of the model. The check runs if no solution was found, and if a
 //! branch ends on its way to infinity.
 
 use crate::error::{Error, Result, Status};

@@ -8,11 +8,11 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::linear_modes::ContactState;
-use crate::model::quadratic_problem::Quadratic;
-use crate::model::speed::Speed;
-use crate::model::structure::MatrixKind;
-use crate::model::wave::Wave;
+use crate::model::matrices::speed::Speed;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::linear_modes::ContactState;
+use crate::model::natural_modes::quadratic_problem::Quadratic;
 use num_complex::Complex64;
 
 /// Relative distance of two eigenvalues that count as one.

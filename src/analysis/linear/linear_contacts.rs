@@ -5,7 +5,7 @@ use crate::analysis::linear::static_solution::static_state;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::linear_modes::{ContactState, LinearModes};
+use crate::model::natural_modes::linear_modes::{ContactState, LinearModes};
 use crate::options::SolverOptions;
 use crate::problem::static_state::StaticState;
 

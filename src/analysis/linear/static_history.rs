@@ -12,7 +12,7 @@ use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::SolverOptions;
 
 const CONTEXT: &str = "the static states of a load history";

@@ -23,7 +23,7 @@ use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::model::repeated_modes::Multiple;
+use crate::model::natural_modes::repeated_modes::Multiple;
 use crate::options::{Content, Flexibility, ModeOptions, SolverOptions, check_highest};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;

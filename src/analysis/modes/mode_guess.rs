@@ -4,7 +4,7 @@
 use crate::analysis::forced::forced_discretised::relative_motion;
 use crate::condense::Resolution;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
-use crate::model::spring::along;
+use crate::model::matrices::spring::along;
 use crate::options::ModeGuess;
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use num_complex::Complex64;

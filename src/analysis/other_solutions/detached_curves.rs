@@ -14,7 +14,7 @@ use crate::error::{Error, Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::linear_modes::{ContactState, LinearModes};
+use crate::model::natural_modes::linear_modes::{ContactState, LinearModes};
 use crate::options::{Content, Flexibility, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
 use crate::results::{Branch, Descent, Recovery};
 use core::cell::Cell;

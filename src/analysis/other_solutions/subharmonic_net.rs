@@ -10,7 +10,7 @@ use crate::analysis::forced::start_net::Net;
 use crate::analysis::other_solutions::branch_switching::{Found, Tree};
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
-use crate::model::linear_modes::ContactState;
+use crate::model::natural_modes::linear_modes::ContactState;
 use crate::options::Content;
 use crate::results::{Branch, Descent, Recovery};
 use core::cell::Cell;

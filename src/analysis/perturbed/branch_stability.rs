@@ -9,7 +9,7 @@ use crate::error::{Result, Status};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::{FloquetOptions, Waves};
 use crate::results::{Floquet, MultiplierClass, Recovery, Verdict};
 use crate::time_integration::{State, System};

@@ -11,9 +11,9 @@ use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{filled, zero_vector};
 use crate::model::Model;
-use crate::model::contact_modes::{ContactModes, ForceOfWave};
-use crate::model::on_modes::forces_of_harmonics;
-use crate::model::structure::Structure;
+use crate::model::few_motions::on_modes::forces_of_harmonics;
+use crate::model::matrices::structure::Structure;
+use crate::model::natural_modes::contact_modes::{ContactModes, ForceOfWave};
 use crate::options::FloquetOptions;
 use crate::results::{Floquet, Multiplier};
 use crate::stability::{

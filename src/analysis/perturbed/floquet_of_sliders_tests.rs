@@ -6,7 +6,7 @@ use crate::analysis::perturbed::floquet_on_modes::{KeptModes, floquet_of};
 use crate::analysis::perturbed::two_numbers_of_modes::{change, error_of_radius};
 use crate::hooks::Hooks;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::{ForcedOptions, SolverOptions, Waves};
 use crate::results::Recovery;
 

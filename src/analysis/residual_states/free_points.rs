@@ -11,7 +11,7 @@ use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::{Exchanged, SolverOptions};
 use crate::results::Branch;
 use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};

@@ -2,7 +2,7 @@
 
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::sparse::Csc;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;
 

@@ -10,10 +10,10 @@ use crate::error::{Result, fail, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::degree_map::DegreeMap;
-use crate::model::reduced_wave::MotionRow;
-use crate::model::sector_motion::MOTION_TERMS;
-use crate::model::structure::Structure;
+use crate::model::few_motions::reduced_wave::MotionRow;
+use crate::model::matrices::degree_map::DegreeMap;
+use crate::model::matrices::sector_motion::MOTION_TERMS;
+use crate::model::matrices::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -7,11 +7,11 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::reduced_wave::{MotionRow, ReducedView};
-use crate::model::sector_motion::MOTION_TERMS;
-use crate::model::spring::Row;
-use crate::model::structure::MatrixKind;
-use crate::model::wave::Wave;
+use crate::model::few_motions::reduced_wave::{MotionRow, ReducedView};
+use crate::model::matrices::sector_motion::MOTION_TERMS;
+use crate::model::matrices::spring::Row;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use num_complex::Complex64;
 use std::sync::Arc;
 

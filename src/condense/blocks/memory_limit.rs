@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, Status};
 use crate::linalg::factors::factor::Factor;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Arrays of matrix entries that each harmonic has where no basis is used.

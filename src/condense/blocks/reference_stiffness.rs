@@ -9,9 +9,9 @@ use crate::condense::blocks::relative_coordinates::AssembledDirection;
 use crate::error::{Result, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::Model;
-use crate::model::spring::Row;
-use crate::model::structure::MatrixKind;
-use crate::model::wave::Wave;
+use crate::model::matrices::spring::Row;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use num_complex::Complex64;
 
 /// Stiffness of a contact over that of the structure above which it is near-rigid.

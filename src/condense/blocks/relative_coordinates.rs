@@ -3,7 +3,7 @@
 use crate::error::{Result, try_push, try_room, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::spring::along;
+use crate::model::matrices::spring::along;
 use num_complex::Complex64;
 
 /// Keys between two checks of a stop, and operations of one of them.

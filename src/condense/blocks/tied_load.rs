@@ -10,7 +10,7 @@
 use crate::contact::{Contact, Law};
 use crate::error::{Result, fail};
 use crate::model::Model;
-use crate::model::speed::{Speed, SpeedLoad};
+use crate::model::matrices::speed::{Speed, SpeedLoad};
 use std::sync::Arc;
 
 /// Smallest r: the motion over it stays finite.

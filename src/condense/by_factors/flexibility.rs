@@ -9,7 +9,7 @@ use crate::condense::tuned_wheel::tuned_table::Outputs;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 pub(crate) const CONTEXT: &str = "the contact flexibility";

@@ -17,7 +17,7 @@ use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
 use crate::linalg::factors::lu::Lu;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the flexibility from modes";

@@ -14,7 +14,7 @@ use crate::condense::by_modes::sum_terms::{Denominator, Source};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::sparse_storage::sparse::Csc;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;

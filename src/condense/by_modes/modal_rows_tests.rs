@@ -9,7 +9,7 @@ use crate::contact::Contact;
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::SolverOptions;
 
 const N: usize = 150;

@@ -12,7 +12,7 @@ use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, Status, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
-use crate::model::sector_motion::MOTION_TERMS;
+use crate::model::matrices::sector_motion::MOTION_TERMS;
 use num_complex::Complex64;
 use std::sync::Arc;
 

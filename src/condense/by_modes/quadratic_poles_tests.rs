@@ -10,8 +10,8 @@ use crate::condense::by_modes::sum_terms::Source;
 use crate::condense::test_chains::{N, chain};
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::speed::Speed;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::speed::Speed;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::SolverOptions;
 
 const RESPONSE: usize = 4;

@@ -10,7 +10,7 @@
 //! αM + βK, see `condense::few_directions`.
 
 use crate::linalg::sparse_storage::sparse::Csc;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 /// Relative deviation of a damping matrix from αM + βK that is rounding.

@@ -18,7 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::hermitian;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::iterative::block_krylov::SparseVector;
-use crate::model::reduced_wave::{ReducedView, Remainder, WaveDamping};
+use crate::model::few_motions::reduced_wave::{ReducedView, Remainder, WaveDamping};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the certificate of the flexibility";

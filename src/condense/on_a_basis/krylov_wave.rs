@@ -14,8 +14,8 @@ use crate::linalg::iterative::block_krylov::{BlockKrylov, SparseVector};
 use crate::linalg::sparse_storage::row_index::Row;
 use crate::linalg::sparse_storage::sparse::{Columns, Csc};
 use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
-use crate::model::reduced_wave::{Basis, ReducedPencil, ReducedWave, Remainder, WaveDamping};
-use crate::model::wave_matrix::WaveMatrix;
+use crate::model::few_motions::reduced_wave::{Basis, ReducedPencil, ReducedWave, Remainder, WaveDamping};
+use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -7,9 +7,9 @@ use crate::condense::blocks::harmonic_block::Artificial;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::reduced_wave::{MotionRow, ReducedView, WaveDamping};
-use crate::model::spring::Row;
-use crate::model::wave::Wave;
+use crate::model::few_motions::reduced_wave::{MotionRow, ReducedView, WaveDamping};
+use crate::model::matrices::spring::Row;
+use crate::model::matrices::wave::Wave;
 use num_complex::Complex64;
 use std::sync::Arc;
 

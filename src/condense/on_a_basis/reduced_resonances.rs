@@ -6,9 +6,9 @@ use crate::error::{Result, Status, try_copy, try_extend};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::quadratic_problem::Quadratic;
-use crate::model::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};
-use crate::model::wave::Wave;
+use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::quadratic_problem::Quadratic;
+use crate::model::natural_modes::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the resonances";

@@ -6,9 +6,9 @@ use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry, aligned, worst_pair};
 use crate::model::Model;
-use crate::model::reduced_wave::WaveKey;
-use crate::model::structure::MatrixKind;
-use crate::model::wave_matrix::WaveMatrix;
+use crate::model::few_motions::reduced_wave::WaveKey;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 
 /// Relative deviation from a Hermitian matrix that is rounding.

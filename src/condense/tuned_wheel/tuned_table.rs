@@ -12,7 +12,7 @@ use crate::condense::tuned_wheel::tuned_factors::TunedFactors;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products::multiply;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the contact flexibility of a wheel";

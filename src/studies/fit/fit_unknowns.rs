@@ -3,7 +3,7 @@
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::sensitivity::Parameter;
 use core::fmt;
 

@@ -6,7 +6,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::results::Branch;
 use crate::studies::run_up::other_modes::OtherModes;
 use crate::time_integration::Element;

@@ -6,8 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::linear_modes::ContactState;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::natural_modes::linear_modes::ContactState;
 use crate::time_integration::Element;
 use num_complex::Complex64;
 

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::{Duty, ForcedOptions, LifeFollow, LifeOptions, SolverOptions};
 use crate::results::{Branch, Special};
 use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, work_at_fixed_motion};
