@@ -9,8 +9,7 @@ mod brick;
 #[path = "support/plate.rs"]
 mod plate;
 
-use hbvib::options::Flexibility;
-use hbvib::{ContactState, ForcedOptions, Hooks, Result, SolverOptions, forced_response};
+use hbvib::{ContactState, Flexibility, ForcedOptions, Hooks, Result, SolverOptions, forced_response};
 use plate::Plate;
 use std::f64::consts::TAU;
 use std::process::ExitCode;

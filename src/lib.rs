@@ -51,45 +51,30 @@
 #![deny(unsafe_code)]
 
 // The numerics below, under the paths that they have in this crate.
-#[doc(hidden)]
-pub use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
+use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
 
 mod adaptivity;
-#[doc(hidden)]
-pub mod aft;
-#[doc(hidden)]
-pub mod analysis;
-#[doc(hidden)]
-pub mod at_a_point;
+mod aft;
+mod analysis;
+mod at_a_point;
 mod byte_stream;
 #[doc(hidden)]
 pub mod capi;
+mod condense;
+mod contact;
+mod continuation;
+mod error_estimate;
+mod hooks;
 #[doc(hidden)]
-pub mod condense;
-#[doc(hidden)]
-pub mod contact;
-#[doc(hidden)]
-pub mod continuation;
-#[doc(hidden)]
-pub mod error_estimate;
-#[doc(hidden)]
-pub mod hooks;
-#[doc(hidden)]
-pub mod model;
-#[doc(hidden)]
-pub mod options;
-#[doc(hidden)]
-pub mod problem;
-#[doc(hidden)]
-pub mod results;
-#[doc(hidden)]
-pub mod sensitivity;
-#[doc(hidden)]
-pub mod stability;
-#[doc(hidden)]
-pub mod studies;
-#[doc(hidden)]
-pub mod time_integration;
+pub mod internals;
+mod model;
+mod options;
+mod problem;
+mod results;
+mod sensitivity;
+mod stability;
+mod studies;
+mod time_integration;
 
 // Models.
 pub use contact::laws::iwan::Iwan;
@@ -146,9 +131,9 @@ pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 #[doc(inline)]
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
-    Amplitude, BatchOptions, CampbellResponseOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions,
-    LifeFollow, LifeOptions, MissionOptions, ModeChoice, ModeOptions, Response, RunUpOptions, SolverOptions,
-    SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
+    Amplitude, BatchOptions, CampbellResponseOptions, Component, DampingForm, Duty, Flexibility, FloquetOptions,
+    ForcedOptions, LifeFollow, LifeOptions, MissionOptions, ModeChoice, ModeGuess, ModeOptions, Response, RunUpOptions,
+    SolverOptions, SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
 };
 pub use studies::batch::{Batch, batch};
 pub use studies::campbell::{Campbell, Crossing, campbell};

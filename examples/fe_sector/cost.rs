@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use hbvib::{Interrupt, Model, SolverOptions};
 
-use hbvib::condense::Condensed;
-use hbvib::condense::by_factors::flexibility::Workspace;
-use hbvib::linalg::factors::lu::Lu;
+use hbvib::internals::Condensed;
+use hbvib::internals::Lu;
+use hbvib::internals::Workspace;
 
 use crate::memory::peak_memory;
 use crate::response::Response;

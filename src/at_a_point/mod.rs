@@ -10,10 +10,10 @@ pub mod response_of_motion;
 pub mod sensitivity_analysis;
 
 pub use crate::at_a_point::check_jacobian::{JacobianGap, Tangent, check_jacobian};
-pub use crate::at_a_point::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
+pub use crate::at_a_point::complex_sensitivity::complex_sensitivity_with;
 pub use crate::at_a_point::floquet::floquet;
 pub use crate::at_a_point::harmonic_residual::{
-    contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
+    contact_evaluate_with, forced_residual_with,
 };
 pub use crate::at_a_point::response_of_motion::response_of;
-pub use crate::at_a_point::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
+pub use crate::at_a_point::sensitivity_analysis::{Quantity, sensitivity_with};

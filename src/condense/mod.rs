@@ -15,8 +15,7 @@ pub use blocks::harmonic_block::{Artificial, HarmonicBlock};
 pub use blocks::model_cache::ModelCache;
 pub use blocks::reduction::Reduction;
 pub use blocks::resolution::Resolution;
-pub use blocks::sweep::Sweep;
-pub use blocks::tied_load::{LoadedLaw, TiedLoad};
+pub use blocks::tied_load::LoadedLaw;
 pub use on_a_basis::reduced_resonances::reduced_resonances;
 
 #[cfg(test)]

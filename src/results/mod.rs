@@ -47,6 +47,6 @@ pub(crate) use recovery::Recovery;
 pub use response_series::{ResponseSeries, SeenWithError};
 pub use special::Special;
 pub(crate) use stored_fields::PointField;
-pub use time_history::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
+pub use time_history::{ContactLoop, ContactSummary, MOST_TIMES};
 pub(crate) use verdict::Verdict;
-pub use verdict::{Bifurcation, BifurcationKind, Stretch, UNIT};
+pub use verdict::{Bifurcation, BifurcationKind, Stretch};

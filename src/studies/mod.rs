@@ -14,16 +14,15 @@ pub mod wear;
 pub mod wheel_identify;
 pub mod wheel_peaks;
 
-pub use crate::studies::batch::{Batch, batch};
-pub use crate::studies::campbell_response::{CampbellResonance, campbell_response};
+pub use crate::studies::campbell_response::campbell_response;
 pub use crate::studies::design_peak::DesignPeak;
 pub use crate::studies::fit::{
-    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
+    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Profiled, Scale, Suspicion, Unknown, fit,
     fit_profile, predict,
 };
-pub use crate::studies::mission::{Mission, MissionCrossing, mission};
-pub use crate::studies::run_up::{RunUp, RunUpTurn, run_up};
-pub use crate::studies::wear::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
-pub use crate::studies::wear::life_load::{BestLoad, best_load_for_life};
-pub use crate::studies::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
-pub use crate::studies::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
+pub use crate::studies::mission::mission;
+pub use crate::studies::run_up::run_up;
+pub use crate::studies::wear::life::{Life, LifeEventKind, life};
+pub use crate::studies::wear::life_load::best_load_for_life;
+pub use crate::studies::wheel_identify::{MeasuredModes, wheel_identify};
+pub use crate::studies::wheel_peaks::{BladePeak, wheel_peaks};

@@ -2,12 +2,12 @@
 //! samples, for its tests.
 
 use hbvib::Interrupt;
-use hbvib::aft::Evaluation;
-use hbvib::aft::varying_normal_load::VaryingNormalLoadEvaluator;
-use hbvib::contact::Piece;
-use hbvib::contact::laws::friction_2d::Friction2d;
-use hbvib::contact::piece::CoupledPiece;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::CoupledPiece;
+use hbvib::internals::Evaluation;
+use hbvib::internals::Friction2d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Piece;
+use hbvib::internals::VaryingNormalLoadEvaluator;
 use std::f64::consts::TAU;
 
 pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluation {

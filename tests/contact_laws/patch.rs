@@ -2,7 +2,7 @@
 
 use crate::common::refusal::{refused, unharmed};
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
-use hbvib::contact::Role;
+use hbvib::internals::Role;
 use hbvib::{Contact, ContactKind, Frame, MatrixKind, MatrixView, Model, Patch, Polynomial, Status};
 use num_complex::Complex64;
 

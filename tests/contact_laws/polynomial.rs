@@ -4,10 +4,10 @@ use crate::common::pointwise::{
     at_one_time, coupled, dense, evaluate, evaluate_with, gap, largest, mixed, motion, quintic, sets, suits, tensor,
     term, van_der_pol,
 };
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::Law;
-use hbvib::contact::law::Memoryless;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::Memoryless;
+use hbvib::internals::{Evaluation, Evaluator};
 use hbvib::{Contact, Interrupt, Polynomial};
 
 #[test]

@@ -3,10 +3,10 @@
 
 use crate::beam::{Beam, STEEL, Y, Z};
 use crate::brick;
-use hbvib::condense::{Condensed, Reference};
-use hbvib::linalg::newton::linear_system::Jacobian;
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem, Residual};
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::Jacobian;
+use hbvib::internals::{Condensed, Reference};
+use hbvib::internals::{InitialGuess, Problem, Residual};
 use hbvib::{Branch, ContactState, ForcedOptions, Hooks, Interrupt, Model, SolverOptions, forced_response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

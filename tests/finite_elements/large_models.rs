@@ -3,10 +3,9 @@
 
 use crate::common::{all_harmonics, processor_time, sweep};
 use crate::plate::Plate;
-use hbvib::linalg::factors::cholesky::{Definite, entries_of_factor};
-use hbvib::options::Flexibility;
+use hbvib::internals::{Definite, entries_of_factor};
 use hbvib::{
-    Contact, ContactState, Interrupt, MatrixKind, Model, SectorDescription, SectorFrame, SolverOptions,
+    Contact, ContactState, Flexibility, Interrupt, MatrixKind, Model, SectorDescription, SectorFrame, SolverOptions,
     contact_evaluate,
 };
 use num_complex::Complex64;

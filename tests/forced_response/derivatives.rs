@@ -5,10 +5,10 @@
 use crate::common;
 use crate::common::rotating::{rotate, speeds};
 use crate::common::stencil::{Checked, Stencil, config, pairs, parts};
-use hbvib::condense::Condensed;
-use hbvib::contact::Role;
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem, Residual};
+use hbvib::internals::Condensed;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::Role;
+use hbvib::internals::{InitialGuess, Problem, Residual};
 use hbvib::{Contact, ContactKind, Interrupt, MatrixKind, MatrixView, Model, Part, Speed, Table, forced_residual};
 use num_complex::Complex64;
 use proptest::prelude::*;

@@ -2,9 +2,9 @@
 //! of its describing function, with many against the motion marched in time.
 
 use crate::common::{self, harmonics, relative_gap, solve_at, sweep};
-use hbvib::condense::{Condensed, Reference};
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem};
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::{Condensed, Reference};
+use hbvib::internals::{InitialGuess, Problem};
 use hbvib::{Contact, ContactState, Interrupt, MatrixKind, MatrixView, Model, forced_residual};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -2,9 +2,8 @@
 //! single frequencies do, on both sides of each size at which the way changes, at first, last and requested points.
 
 use crate::reduced_structures::{plate, point};
-use hbvib::condense::FlexibilityWay::Modes;
-use hbvib::options::Flexibility;
-use hbvib::{ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
+use hbvib::internals::FlexibilityWay::Modes;
+use hbvib::{Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
 
 /// Damping of a plate.
 #[derive(Clone, Copy, Debug)]

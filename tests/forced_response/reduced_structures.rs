@@ -1,9 +1,8 @@
 //! A structure on a basis responds as by factors: random structures of every kind, and what forces other ways.
 
-use hbvib::options::Flexibility;
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Phase, PhaseReport, SolverOptions,
-    Spring, Status, forced_response,
+    Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Phase, PhaseReport,
+    SolverOptions, Spring, Status, forced_response,
 };
 use num_complex::Complex64;
 use std::cell::Cell;
@@ -510,7 +509,7 @@ fn a_plate_with_many_resonances_responds_as_by_factors() {
     assert_eq!(branch.status(), Status::Ok);
     let reduction = branch.reduction();
     assert!(
-        reduction.basis == 0 && reduction.flexibility_way == hbvib::condense::FlexibilityWay::Modes,
+        reduction.basis == 0 && reduction.flexibility_way == hbvib::internals::FlexibilityWay::Modes,
         "{:?}",
         reduction.flexibility_way
     );

@@ -3,9 +3,9 @@
 //! differences and integration in time.
 
 use crate::common::{BASE, Blisk, all_harmonics, data, harmonics, number, relative_gap, solve_at, sweep};
-use hbvib::condense::Condensed;
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{Problem, Residual};
+use hbvib::internals::Condensed;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::{Problem, Residual};
 use hbvib::{
     Contact, ContactState, Hooks, Interrupt, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, Status,
     TimeOptions, forced_residual, time_response,

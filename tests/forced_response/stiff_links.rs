@@ -3,10 +3,9 @@
 //! factor η; and contacts that press and hardly vibrate.
 
 use crate::common::depth::some_of;
-use hbvib::options::Flexibility;
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Status, Storage, Values,
-    forced_response,
+    Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Status,
+    Storage, Values, forced_response,
 };
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 25] = [
+const LAYERS: [(&str, u8); 26] = [
     ("shortage", 0),
     ("error", 0),
     ("byte_stream", 0),
@@ -31,7 +31,8 @@ const LAYERS: [(&str, u8); 25] = [
     ("at_a_point", 9),
     ("studies", 10),
     ("capi", 11),
-    ("lib", 12),
+    ("internals", 12),
+    ("lib", 13),
 ];
 
 /// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, interrupts and streams of bytes

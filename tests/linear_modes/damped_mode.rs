@@ -4,9 +4,9 @@
 use crate::common::modes::{assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};
 use crate::common::refusal::refused;
 use crate::common::{self, BASE, largest};
-use hbvib::model::matrices::wave::Wave;
-use hbvib::model::natural_modes::damped_mode::DampedMode;
-use hbvib::model::natural_modes::mode_selection::SelectedMode;
+use hbvib::internals::DampedMode;
+use hbvib::internals::SelectedMode;
+use hbvib::internals::Wave;
 use hbvib::{Contact, DampingForm, MatrixKind, MatrixView, ModeChoice, Model, Part, Status};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;

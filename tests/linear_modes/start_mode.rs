@@ -4,7 +4,7 @@
 use crate::common::modes::{self, assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};
 use crate::common::refusal::refused;
 use crate::common::{BASE, NDOF, R, SECTORS, largest};
-use hbvib::model::natural_modes::repeated_modes::Multiple;
+use hbvib::internals::Multiple;
 use hbvib::{ContactState, MatrixKind, MatrixView, ModeChoice, Model, Part, Spring, Status};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

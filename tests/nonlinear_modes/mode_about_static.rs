@@ -4,11 +4,10 @@
 use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic, only};
 use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
-use hbvib::analysis::linear::linear_contacts::linear_modes;
-use hbvib::options::ModeGuess;
+use hbvib::internals::linear_modes;
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions,
-    Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
+    Branch, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeGuess,
+    ModeOptions, Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
 };
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;

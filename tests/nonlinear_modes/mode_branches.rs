@@ -1,10 +1,9 @@
 //! Curves that branch off from nonlinear modes, against closed forms.
 
 use crate::common::{all_harmonics, harmonics};
-use hbvib::options::ModeGuess;
 use hbvib::{
-    BifurcationKind, Branch, Contact, ContactKind, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model,
-    Polynomial, nonlinear_mode,
+    BifurcationKind, Branch, Contact, ContactKind, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions,
+    Model, Polynomial, nonlinear_mode,
 };
 use num_complex::Complex64;
 

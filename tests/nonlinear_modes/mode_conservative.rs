@@ -2,9 +2,8 @@
 //! against time integration.
 
 use crate::common::{data, harmonics, number};
-use hbvib::options::ModeGuess;
 use hbvib::{
-    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, SolverOptions, Status,
+    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions, Model, SolverOptions, Status,
     nonlinear_mode,
 };
 use num_complex::Complex64;

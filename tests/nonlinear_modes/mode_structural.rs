@@ -3,10 +3,10 @@
 
 use crate::common::mode_cases::{follow, only};
 use crate::common::{BASE, harmonics};
-use hbvib::condense::Condensed;
-use hbvib::linalg::newton::linear_system::Jacobian;
-use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
-use hbvib::problem::{Problem, Residual};
+use hbvib::internals::Condensed;
+use hbvib::internals::Jacobian;
+use hbvib::internals::{Epmc, Gauge, LinearMode};
+use hbvib::internals::{Problem, Residual};
 use hbvib::{
     Contact, ContactState, DampingForm, Hooks, Interrupt, MatrixKind, MatrixView, ModeOptions, Model, Part,
     SolverOptions, Speed,
@@ -193,7 +193,7 @@ fn the_derivatives_of_a_mode_contain_the_speed_that_follows_its_frequency() {
         omega: start.omega,
         damping: 0.01,
         shape: start.shape.clone(),
-        rest: hbvib::problem::static_state::StaticState::default(),
+        rest: hbvib::internals::StaticState::default(),
     };
     let gauge = Gauge {
         contact: None,

@@ -3,7 +3,7 @@
 
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
 use crate::common::{self, B2, BASE, Blisk, NDOF, SECTORS, all_harmonics, harmonics, phase, relative_gap};
-use hbvib::model::natural_modes::repeated_modes::Multiple;
+use hbvib::internals::Multiple;
 use hbvib::{Branch, DampingForm, ModeChoice, ModeOptions, Model};
 use num_complex::Complex64;
 

@@ -4,7 +4,7 @@ use crate::common::peers::structure;
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
 use core::ops::Range;
-use hbvib::linalg::dense::eigen;
+use hbvib::internals::eigen;
 use hbvib::{Branch, Contact, Interrupt, Model, SolverOptions, Status};
 use nalgebra::DMatrix;
 use num_complex::Complex64;

@@ -3,7 +3,7 @@
 use crate::common::peers::structure;
 use crate::common::{all_harmonics, harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
-use hbvib::linalg::dense::eigen;
+use hbvib::internals::eigen;
 use hbvib::{Branch, Contact, ForcedOptions, Hooks, Interrupt, Model, SolverOptions, forced_response};
 use nalgebra::DMatrix;
 use num_complex::Complex64;

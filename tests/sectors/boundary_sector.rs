@@ -1,6 +1,6 @@
 //! A small finite-element sector with both faces: 36 nodes, curved faces, no mirror symmetry.
 
-use hbvib::model::matrices::sector_faces::Positions;
+use hbvib::internals::Positions;
 use hbvib::{MatrixKind, MatrixView, Model, SectorDescription, SectorFrame};
 use nalgebra::DMatrix;
 use serde_json::Value;

@@ -3,7 +3,7 @@
 
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::model::saved::contents::Block;
+use hbvib::internals::Block;
 use hbvib::{
     BladeProperty, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Mistuning, Model, Response,
     SolverOptions, Spring, Status, forced_response, wheel_peaks,

@@ -3,11 +3,10 @@
 use crate::boundary_sector::{BoundarySector, N};
 use crate::common::{all_harmonics, harmonics, relative_gap, slip};
 use crate::sector_contacts::jenkins;
-use hbvib::condense::FlexibilityWay;
-use hbvib::options::Flexibility;
+use hbvib::internals::FlexibilityWay;
 use hbvib::{
-    BladeProperty, Branch, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Mistuning, Model, Response,
-    SectorFrame, SolverOptions, forced_response,
+    BladeProperty, Branch, ContactState, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Mistuning, Model,
+    Response, SectorFrame, SolverOptions, forced_response,
 };
 
 const DELTA: [f64; N] = [

@@ -108,7 +108,7 @@ fn a_mistuned_wheel_of_faces_is_that_of_the_sector_from_its_blocks() {
     let (all, own) = (expected.ndof(), pair.origin.len());
     let mut stiffness = vec![0.0; all * all];
     let known = expected
-        .block(MatrixKind::Stiffness, hbvib::model::saved::contents::Block::Own)
+        .block(MatrixKind::Stiffness, hbvib::internals::Block::Own)
         .unwrap()
         .unwrap();
     for j in 0..all {

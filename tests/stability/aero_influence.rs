@@ -437,7 +437,7 @@ fn bad_influence_is_refused() {
         refused(verified, Status::Unsupported, &words);
     }
     let krylov = hbvib::SolverOptions {
-        flexibility: hbvib::options::Flexibility::Krylov,
+        flexibility: hbvib::Flexibility::Krylov,
         ..harmonics(5)
     };
     let range = hbvib::ForcedOptions {

@@ -22,8 +22,6 @@ const LISTED: usize = 3;
 /// Degrees of freedom up to which natural frequencies are computed for a check.
 const MOST: usize = 20_000;
 
-/// Relative difference of an expected value.
-
 /// Reads and checks a job.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! Real entries of the matrices of a file, and products with them.
 
 use crate::outcome::Outcome;
-use hbvib::linalg::sparse_storage::sparse::Csc;
+use hbvib::internals::Csc;
 use hbvib_io::{Matrix, Symmetry};
 use num_complex::Complex64;
 

@@ -26,7 +26,7 @@ use crate::basis_motions::Motions;
 use crate::outcome::Outcome;
 use crate::pencil::{Modes, Pencil, TOGETHER, factored};
 use hbvib::Interrupt;
-use hbvib::linalg::sparse_storage::sparse::{Csc, Form};
+use hbvib::internals::{Csc, MatrixForm as Form};
 use hbvib_io::Matrices;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -2,8 +2,8 @@
 
 use crate::entries::Entries;
 use crate::outcome::Outcome;
-use hbvib::linalg::factors::factor::Factor;
-use hbvib::linalg::sparse_storage::sparse::Csc;
+use hbvib::internals::Csc;
+use hbvib::internals::Factor;
 use hbvib::{ContactState, Interrupt, LinearModes, MatrixKind, MatrixView, Model, Part, Storage, Values};
 use hbvib_io::Matrices;
 use num_complex::Complex64;

@@ -6,7 +6,7 @@ use crate::entries::Entries;
 use crate::free_interface::FreeInterface;
 use crate::outcome::Outcome;
 use crate::pencil::Modes;
-use hbvib::linalg::sparse_storage::sparse::Csc;
+use hbvib::internals::Csc;
 use hbvib_io::{Matrices, Matrix, Symmetry};
 use num_complex::Complex64;
 

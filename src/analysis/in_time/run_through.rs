@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::options::SweepOptions;
 use crate::time_integration::run_through;
 
-pub use crate::time_integration::{FrequencySweep, SweepTurn};
+pub use crate::time_integration::FrequencySweep;
 
 /// Integrates the motion of a plain model from its periodic motion at the first frequency on, while the frequency changes at a constant
 /// rate.
