@@ -12,8 +12,6 @@ pub mod sensitivity_analysis;
 pub use crate::at_a_point::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::at_a_point::complex_sensitivity::complex_sensitivity_with;
 pub use crate::at_a_point::floquet::floquet;
-pub use crate::at_a_point::harmonic_residual::{
-    contact_evaluate_with, forced_residual_with,
-};
+pub use crate::at_a_point::harmonic_residual::{contact_evaluate_with, forced_residual_with};
 pub use crate::at_a_point::response_of_motion::response_of;
 pub use crate::at_a_point::sensitivity_analysis::{Quantity, sensitivity_with};

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the residual of the independent degrees of freedom";
 
 /// Receivers of a residual, its Jacobian and its derivative by ω, see
-/// [`forced_residual`](crate::analysis::forced_residual).
+/// [`forced_residual`](crate::at_a_point::harmonic_residual::forced_residual).
 pub type ResidualArrays<'a> = (&'a mut [Complex64], Option<&'a mut [f64]>, Option<&'a mut [Complex64]>);
 
 /// Memory for the residual of the independent degrees of freedom.

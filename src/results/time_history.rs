@@ -66,7 +66,7 @@ impl Branch {
     /// caller's unit.
     ///
     /// # Errors
-    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..= [`MOST_TIMES`],
+    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..= 2²⁴,
     /// `OutOfMemory`; `Singular` at an undamped resonance that moves no contact.
     pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
         self.time_history_with(point, dof, n, &Interrupt::none())

@@ -17,8 +17,8 @@ pub mod wheel_peaks;
 pub use crate::studies::campbell_response::campbell_response;
 pub use crate::studies::design_peak::DesignPeak;
 pub use crate::studies::fit::{
-    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Profiled, Scale, Suspicion, Unknown, fit,
-    fit_profile, predict,
+    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Profiled, Scale, Suspicion, Unknown, fit, fit_profile,
+    predict,
 };
 pub use crate::studies::mission::mission;
 pub use crate::studies::run_up::run_up;
