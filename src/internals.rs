@@ -51,5 +51,5 @@ pub use crate::problem::harmonic_balance::HarmonicBalance;
 pub use crate::problem::homotopy::{Path, PathHomotopy};
 pub use crate::problem::static_state::StaticState;
 pub use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
-pub use crate::results::energy::balance;
+pub use crate::results::motions::energy::balance;
 pub use crate::studies::further_threads::{STACK, Together};

@@ -160,7 +160,7 @@ pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 #[doc(inline)]
 pub use fourier::{Measure, Reading};
-pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
+pub use results::stored::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,
     LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch, Turn,

@@ -25,7 +25,7 @@ use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::options::SynthesisOptions;
-use crate::results::mode_branch::ModeData;
+use crate::results::stored::mode_branch::ModeData;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 

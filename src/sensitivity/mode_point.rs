@@ -8,7 +8,7 @@ use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Problem, Residual};
-use crate::results::mode_branch::ModePoint;
+use crate::results::stored::mode_branch::ModePoint;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 

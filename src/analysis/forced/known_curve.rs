@@ -9,7 +9,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::Branch;
-use crate::results::mode_branch::ModeField;
+use crate::results::stored::mode_branch::ModeField;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -12,7 +12,7 @@ use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::{ModeOptions, SolverOptions};
-use crate::results::mode_branch::ModeField;
+use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Bifurcation, Branch, Descent, Recovery, Searched};
 use core::cell::Cell;
 

@@ -27,7 +27,7 @@ use crate::model::natural_modes::repeated_modes::Multiple;
 use crate::options::{Content, Flexibility, ModeOptions, SolverOptions, check_highest};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
-use crate::results::mode_branch::{ModeData, ModeInfo};
+use crate::results::stored::mode_branch::{ModeData, ModeInfo};
 use crate::results::{Branch, Descent};
 
 /// One curve: that of the linear mode, that of the guess, or the one that an entry leads to.

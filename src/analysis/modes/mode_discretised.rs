@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
 use crate::problem::epmc::Epmc;
-use crate::results::mode_branch::{ModeData, ModePoint};
+use crate::results::stored::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
 use num_complex::Complex64;
 

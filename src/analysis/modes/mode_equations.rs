@@ -10,8 +10,8 @@ use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
 use crate::problem::{Problem, Residual};
 use crate::results::Resolution;
-use crate::results::energy::{self, Balance};
-use crate::results::mode_branch::ModePoint;
+use crate::results::motions::energy::{self, Balance};
+use crate::results::stored::mode_branch::ModePoint;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the nonlinear mode";

@@ -10,7 +10,7 @@ use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::mode_selection::SelectedMode;
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::epmc::{Gauge, LinearMode};
-use crate::results::mode_branch::{ModeData, ModeInfo};
+use crate::results::stored::mode_branch::{ModeData, ModeInfo};
 
 /// Motion that counts as zero, relative to the largest of the mode.
 const NODE: f64 = 1e-9;

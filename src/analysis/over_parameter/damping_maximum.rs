@@ -12,7 +12,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{DampingForm, ModeChoice, ModeOptions, SolverOptions};
-use crate::results::mode_branch::ModeData;
+use crate::results::stored::mode_branch::ModeData;
 use crate::results::{Branch, ParameterData};
 use crate::sensitivity::Parameter;
 

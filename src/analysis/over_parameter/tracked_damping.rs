@@ -23,7 +23,7 @@ use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
-use crate::results::mode_branch::ModePoint;
+use crate::results::stored::mode_branch::ModePoint;
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::tracked::{Tracked, Unknowns, by_differences};
 use crate::sensitivity::{ModePointAdjoint, ModeQuantity, Parameter, TotalDerivative, design};

@@ -12,7 +12,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::{ModeChoice, ModeOptions, SolverOptions};
 use crate::results::Branch;
-use crate::results::mode_branch::ModeField;
+use crate::results::stored::mode_branch::ModeField;
 
 const CONTEXT: &str = "the band of a nonlinear mode";
 

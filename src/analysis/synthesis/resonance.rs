@@ -13,8 +13,8 @@ use crate::linalg::inner;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
 use crate::problem::{Problem, Residual};
-use crate::results::energy::balance;
-use crate::results::mode_branch::{ModeData, ModePoint};
+use crate::results::motions::energy::balance;
+use crate::results::stored::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 

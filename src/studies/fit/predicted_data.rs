@@ -13,7 +13,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
-use crate::results::mode_branch::ModeField;
+use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Branch, Special};
 use crate::sensitivity::{Parameter, Reason, design_with_bases};
 use crate::studies::fit::fit_data::{DataKind, FitData};
