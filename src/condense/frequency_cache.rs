@@ -261,7 +261,7 @@ impl FrequencyCache {
             return Ok(());
         }
         let may_lack = !condensed.has_exchanges();
-        let keeps = self.modal_slopes && may_lack && condensed.coordinates() > ALL_MODAL_SLOPES_UP_TO;
+        let keeps = self.modal_slopes && has_slopes_along(condensed);
         let of_modes = self.modal_slopes && !keeps;
         let exactly = self.takes_factors(condensed);
         let workspace = &mut self.workspace;
@@ -356,6 +356,31 @@ fn of_wave(
     Ok(Some((modal, worst)))
 }
 
+/// Whether tables from modes have slopes along a motion alone.
+fn has_slopes_along(condensed: &Condensed) -> bool {
+    !condensed.has_exchanges() && condensed.coordinates() > ALL_MODAL_SLOPES_UP_TO
+}
+
+/// Whether the slopes along a motion that a table from modes has at a frequency, evaluated last, are those of a factorisation.
+fn agree_along(
+    modal: &ModalTable,
+    (condensed, i, omega): (&Condensed, usize, f64),
+    (work, workspace): (&mut ModalWork, &mut Workspace),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let coordinates = condensed.coordinates();
+    let mut forces = Vec::new();
+    for c in 0..coordinates {
+        // Forces of all phases move every mode.
+        try_push(&mut forces, Complex64::cis(c as f64), CONTEXT)?;
+    }
+    let zeros = || try_vec(coordinates + 1, Complex64::ZERO, CONTEXT);
+    let (mut by_modes, mut exact) = (zeros()?, zeros()?);
+    modal.slope_along(omega, work, &forces, &mut by_modes);
+    workspace.slope_along(condensed, (i, omega), &forces, &mut exact, interrupt)?;
+    Ok(worst_column(&by_modes, &exact, coordinates + 1).1 <= OF_SLOPES)
+}
+
 /// The error of a factorisation at a frequency, 0 where it need not be known; `None` where a table from modes does not agree with it, in
 /// its slope too where that is to be checked: then nothing more of it is.
 fn agreement(
@@ -366,6 +391,13 @@ fn agreement(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<f64>> {
     let outputs = condensed.coordinates() + 1;
+    if *checks_slope && has_slopes_along(condensed) {
+        if !modal.evaluate((omega, false), work, table, interrupt)? {
+            return Ok(Some(0.0));
+        }
+        // Where they do not agree along a motion, the whole table shows which is right.
+        *checks_slope = !agree_along(modal, (condensed, i, omega), (work, workspace), interrupt)?;
+    }
     if !modal.evaluate((omega, *checks_slope), work, table, interrupt)? {
         return Ok(Some(0.0));
     }
