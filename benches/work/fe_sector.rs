@@ -3,9 +3,10 @@
 use crate::calibration::Unit;
 use crate::sector::{Sector, Size};
 use crate::{Row, Work};
-use hbvib::analysis::modes::nonlinear_mode;
-use hbvib::options::{ModeChoice, ModeOptions};
-use hbvib::{Error, ForcedOptions, Hooks, Model, Result, SolverOptions, Status, forced_response};
+use hbvib::{
+    Error, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Result, SolverOptions, Status, forced_response,
+    nonlinear_mode,
+};
 use std::f64::consts::TAU;
 use std::path::Path;
 
