@@ -12,6 +12,7 @@
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_push, try_vec};
+use crate::linalg::dot;
 use crate::linalg::linear_system::Ring;
 use crate::problem::contact_forces::ContactForces;
 use core::f64::consts::TAU;
@@ -121,9 +122,22 @@ impl RingBlocks {
         }
     }
 
-    /// Adds a share of the Jacobian of a coordinate minus κ, in the time of its sector.
-    fn add_contact(&mut self, (condensed, forces): (&Condensed, &ContactForces<'_>), c: usize, share: f64) {
-        let (m, k) = (self.m, self.coordinates);
+    /// Share of the Jacobians of contacts minus κ, by their norm, in which sectors differ from the mean of all: a turn of time leaves
+    /// their squares as they are, so that the squares of the differences are those of all less those of the mean.
+    pub fn unlikeness(&mut self, condensed: &Condensed, forces: &ContactForces<'_>) -> f64 {
+        let (n, k) = (self.sectors, self.coordinates);
+        self.jacobian.fill(0.0);
+        let (share, mut squares) = (1.0 / n as f64, 0.0);
+        for c in (0..n * k).filter(|&c| !forces.is_eliminated(c)) {
+            squares += share * self.add_contact((condensed, forces), c, share);
+        }
+        let of_mean = dot(&self.jacobian, &self.jacobian);
+        (1.0 - of_mean / squares).max(0.0).sqrt()
+    }
+
+    /// Adds a share of the Jacobian of a coordinate minus κ, in the time of its sector; returns the sum of its squares.
+    fn add_contact(&mut self, (condensed, forces): (&Condensed, &ContactForces<'_>), c: usize, share: f64) -> f64 {
+        let (m, k, mut squares) = (self.m, self.coordinates, 0.0);
         let (s, j) = (c / k, c % k);
         let first = m % 2;
         for (by, block) in forces.blocks_of_force(c) {
@@ -139,6 +153,7 @@ impl RingBlocks {
                     }
                 }
             }
+            squares += dot(&self.block, &self.block);
             // Λ^{−s} J Λˢ: columns, then rows.
             for (i, lag) in self.pairs.iter().enumerate() {
                 let turn = Complex64::cis(lag.arg() * s as f64);
@@ -164,6 +179,7 @@ impl RingBlocks {
                 }
             }
         }
+        squares
     }
 
     /// B_p of the means, column-major.
