@@ -31,8 +31,9 @@ pub struct KrylovSystem {
     most_products: usize,
     /// Products of the last solution.
     products: usize,
-    /// Products for each digit with the factors of the matrix itself.
+    /// Products for each digit with the factors of the matrix itself, and whether those stored are.
     of_own_factors: f64,
+    are_own: bool,
     /// Sign of det K M⁻¹ that the last solution showed.
     positive: bool,
     column: Vec<f64>,
@@ -184,6 +185,7 @@ impl KrylovSystem {
             most_products,
             products: 0,
             of_own_factors: 0.0,
+            are_own: false,
             positive: true,
             column: try_vec(n, 0.0, CONTEXT)?,
             scales: (1.0, 1.0),
@@ -324,6 +326,7 @@ impl LinearSystem for KrylovSystem {
         self.column.copy_from_slice(border.column);
         self.row.copy_from_slice(border.row);
         self.scales = border.scales;
+        self.are_own = false;
         interrupt.check()?;
         if let Some(wheel) = &mut self.wheel {
             wheel.set_border(operator(jacobian)?, border)?;
@@ -349,6 +352,7 @@ impl LinearSystem for KrylovSystem {
     }
 
     fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.are_own = true;
         if let Some(wheel) = &mut self.wheel {
             let border = Border {
                 column: &self.column,
@@ -372,7 +376,9 @@ impl LinearSystem for KrylovSystem {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let solved = self.iterate(jacobian, (tolerance, self.most_products), b, interrupt)?;
-        self.of_own_factors = self.products as f64 / -tolerance.log10();
+        if self.are_own {
+            self.of_own_factors = self.products as f64 / -tolerance.log10();
+        }
         Ok(solved)
     }
 
