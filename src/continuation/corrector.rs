@@ -216,8 +216,8 @@ impl Corrector {
                 }
                 return self.finish(problem, v, metric, (iteration, residual));
             }
-            // The damping test compares steps by one matrix, that of the iteration.
-            let reuse = iteration > 0 && !damped;
+            // The damping test compares steps by one matrix, that of the iteration: an iterative solution is by it with any factors.
+            let reuse = iteration > 0 && (!damped || !self.system.is_direct());
             if !residual.is_finite() || !self.newton_step(problem, metric, row, reuse, interrupt)? {
                 return Ok(Outcome::Failed);
             }

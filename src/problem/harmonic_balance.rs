@@ -195,6 +195,9 @@ impl<'a> HarmonicBalance<'a> {
         };
         self.forces.set_scale(scale);
         let interrupt = self.forces.interrupt();
+        if let Some(ring) = &mut self.products.ring {
+            ring.forget();
+        }
         self.forces.evaluate(u, omega)?;
         // Where all contacts stick no force of theirs is left beside κ y.
         let acts = path.is_some() || (0..self.condensed.coordinates()).any(|c| !self.forces.is_inactive(c));

@@ -6,6 +6,7 @@
 
 pub mod contact_forces;
 mod contact_jacobian;
+mod contact_rank;
 pub mod epmc;
 pub mod gauges;
 pub mod harmonic_balance;

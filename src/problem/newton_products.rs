@@ -4,7 +4,7 @@
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::dense::complex_columns;
-use crate::linalg::newton::linear_system::{MatrixFree, Ring};
+use crate::linalg::newton::linear_system::{Forces, MatrixFree, Ring};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::{Problem, put};
 use crate::problem::ring_blocks::RingBlocks;
@@ -103,6 +103,10 @@ impl MatrixFree for HarmonicBalance<'_> {
             );
         }
         ring.fill(self.condensed, wave, matrix)
+    }
+
+    fn forces(&mut self) -> Option<&mut dyn Forces> {
+        self.products.ring.is_some().then_some(self)
     }
 
     fn keep(&mut self) -> Result<()> {

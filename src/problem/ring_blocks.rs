@@ -12,6 +12,7 @@
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_push, try_vec};
+use crate::linalg::dot;
 use crate::linalg::newton::linear_system::Ring;
 use crate::problem::contact_forces::ContactForces;
 use core::f64::consts::TAU;
@@ -35,6 +36,8 @@ pub(super) struct RingBlocks {
     flexibility: Vec<Complex64>,
     /// One block of a contact.
     block: Vec<f64>,
+    /// Share of the contact Jacobians in which sectors differ from A, where A is that of the motion evaluated last.
+    unlikeness: Option<f64>,
 }
 
 impl RingBlocks {
@@ -76,6 +79,7 @@ impl RingBlocks {
             jacobian: try_vec(order.saturating_mul(order), 0.0, CONTEXT)?,
             floors: try_vec(coordinates, 0.0, CONTEXT)?,
             block: try_vec(m * m, 0.0, CONTEXT)?,
+            unlikeness: None,
         }))
     }
 
@@ -95,13 +99,12 @@ impl RingBlocks {
         (flexibility, stride): (impl Fn(usize) -> &'g [Complex64], usize),
     ) {
         let (n, k) = (self.sectors, self.coordinates);
-        self.jacobian.fill(0.0);
+        self.unlikeness(condensed, forces);
         self.floors.fill(0.0);
         self.flexibility.fill(Complex64::ZERO);
         let share = 1.0 / n as f64;
         for c in (0..n * k).filter(|&c| !forces.is_eliminated(c)) {
             self.floors[c % k] += share * forces.mean_floor(c);
-            self.add_contact((condensed, forces), c, share);
         }
         for (i, lag) in self.lags.iter().enumerate() {
             let table = flexibility(i);
@@ -121,9 +124,30 @@ impl RingBlocks {
         }
     }
 
-    /// Adds a share of the Jacobian of a coordinate minus κ, in the time of its sector.
-    fn add_contact(&mut self, (condensed, forces): (&Condensed, &ContactForces<'_>), c: usize, share: f64) {
-        let (m, k) = (self.m, self.coordinates);
+    /// Tells that the forces are evaluated at another motion.
+    pub fn forget(&mut self) {
+        self.unlikeness = None;
+    }
+
+    /// Share of the Jacobians of contacts minus κ, by their norm, in which sectors differ from the mean of all: a turn of time leaves
+    /// their squares as they are, so that the squares of the differences are those of all less those of the mean.
+    pub fn unlikeness(&mut self, condensed: &Condensed, forces: &ContactForces<'_>) -> f64 {
+        if let Some(known) = self.unlikeness {
+            return known;
+        }
+        let (n, k) = (self.sectors, self.coordinates);
+        self.jacobian.fill(0.0);
+        let (share, mut squares) = (1.0 / n as f64, 0.0);
+        for c in (0..n * k).filter(|&c| !forces.is_eliminated(c)) {
+            squares += share * self.add_contact((condensed, forces), c, share);
+        }
+        let of_mean = dot(&self.jacobian, &self.jacobian);
+        *self.unlikeness.insert((1.0 - of_mean / squares).max(0.0).sqrt())
+    }
+
+    /// Adds a share of the Jacobian of a coordinate minus κ, in the time of its sector; returns the sum of its squares.
+    fn add_contact(&mut self, (condensed, forces): (&Condensed, &ContactForces<'_>), c: usize, share: f64) -> f64 {
+        let (m, k, mut squares) = (self.m, self.coordinates, 0.0);
         let (s, j) = (c / k, c % k);
         let first = m % 2;
         for (by, block) in forces.blocks_of_force(c) {
@@ -139,6 +163,7 @@ impl RingBlocks {
                     }
                 }
             }
+            squares += dot(&self.block, &self.block);
             // Λ^{−s} J Λˢ: columns, then rows.
             for (i, lag) in self.pairs.iter().enumerate() {
                 let turn = Complex64::cis(lag.arg() * s as f64);
@@ -164,6 +189,7 @@ impl RingBlocks {
                 }
             }
         }
+        squares
     }
 
     /// B_p of the means, column-major.

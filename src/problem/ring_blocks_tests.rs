@@ -6,7 +6,7 @@ use crate::condense::test_chains::chain;
 use crate::interrupt::Interrupt;
 use crate::linalg::newton::linear_system::dense::DenseSystem;
 use crate::linalg::newton::linear_system::krylov::KrylovSystem;
-use crate::linalg::newton::linear_system::{Border, Jacobian, LinearSystem};
+use crate::linalg::newton::linear_system::{Border, Forces, Jacobian, LinearSystem};
 use crate::model::Model;
 use crate::model::wheels::mistuning::{BladeProperty, Mistuning};
 use crate::options::SolverOptions;
@@ -24,8 +24,9 @@ fn condensed(model: &Model, harmonics: usize) -> Condensed {
     Condensed::new(model, &options, (0.6, 0.9), &Interrupt::none()).unwrap()
 }
 
+/// A wheel as it is and mistuned; where the sectors are unlike, most contacts of some of them stick.
 #[test]
-fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one() {
+fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one_as_terms_of_low_rank_are() {
     let sector = chain(SECTORS, (0.01, 1e-3));
     let mut mistuned = sector.wheel().unwrap();
     let delta: Vec<f64> = (0..SECTORS).map(|s| 0.1 * (1.7 * s as f64).sin()).collect();
@@ -33,7 +34,11 @@ fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one()
         .mistune(&sector, &Mistuning::Blade(BladeProperty::Stiffness, &[8]), &delta)
         .unwrap();
     let none = Interrupt::none();
-    for (wheel, noise, most) in [(&sector.wheel().unwrap(), 0.0, 2), (&mistuned, 0.2, 60)] {
+    for (wheel, (noise, unlike), most) in [
+        (&sector.wheel().unwrap(), (0.0, false), 2),
+        (&mistuned, (0.2, false), 60),
+        (&mistuned, (0.2, true), 12),
+    ] {
         let condensed = condensed(wheel, 9);
         let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9), 0, None, &none).unwrap();
         let (n, set) = (problem.unknowns(), condensed.set());
@@ -44,7 +49,8 @@ fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one()
                 let x = |q: usize| (0.9 * (7 * h + 3 * (c % k) + q) as f64).sin() / (h * h) as f64;
                 let lag = sector.structure().phase(h, (c / k) as i64);
                 let own = noise * (1.3 * (c + 5 * i) as f64).sin() / (h * h) as f64;
-                set.set(u, i, lag * Complex64::new(x(0), x(1)) + own);
+                let size = if unlike { 0.05_f64.powi((c / k % 3) as i32) } else { 1.0 };
+                set.set(u, i, (lag * Complex64::new(x(0), x(1)) + own) * size);
             }
         }
         let mut at = Residual::new(n).unwrap();
@@ -57,6 +63,9 @@ fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one()
             scales: (0.7, 3.0),
             row: &row,
         };
+        let unlikeness = problem.unlikeness().unwrap();
+        assert_eq!(unlikeness > 0.5, unlike, "{unlikeness}");
+        assert!(noise > 0.0 || unlikeness < 1e-6, "{unlikeness}");
         let sectors = problem.matrix_free().unwrap().ring().unwrap();
         let mut ring = KrylovSystem::of_ring(n, (m, sectors), 240).unwrap();
         let mut dense = DenseSystem::new(n).unwrap();
@@ -69,7 +78,7 @@ fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one()
         let size = y.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
         let gap = x.iter().zip(&y).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs())) / size;
         println!(
-            "{n} unknowns, slip {slip:.2}: {} products, gap {gap:.1e}",
+            "{n} unknowns, slip {slip:.2}, unlike {unlikeness:.2}: {} products, gap {gap:.1e}",
             ring.products()
         );
         assert!(slip > 0.1 && (1..=most).contains(&ring.products()));

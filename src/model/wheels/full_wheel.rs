@@ -7,11 +7,13 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
-use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::matrices::influence::AeroForm;
 use crate::model::matrices::speed::Speed;
 use crate::model::matrices::structure::{MatrixKind, Structure};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the matrices of the wheel";
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
 const FULL_WHEEL_ROUNDING: f64 = 1e-14;
@@ -50,11 +52,7 @@ impl Structure {
             if factor == 0.0 {
                 return Ok(());
             }
-            try_push(
-                &mut parts,
-                (factor, self.given_around(which, interrupt)?),
-                "the matrices of the wheel",
-            )
+            try_push(&mut parts, (factor, self.given_around(which, interrupt)?), CONTEXT)
         };
         add(1.0, which)?;
         let speed = match self.speed {
@@ -72,7 +70,7 @@ impl Structure {
         }
         if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
             let modal = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
-            try_push(&mut parts, (1.0, modal), "the matrices of the wheel")?;
+            try_push(&mut parts, (1.0, modal), CONTEXT)?;
         }
         let aero = match which {
             MatrixKind::Damping => self.aero_around(AeroForm::Velocity, interrupt)?,
@@ -80,15 +78,11 @@ impl Structure {
             _ => None,
         };
         if let Some(aero) = aero {
-            try_push(&mut parts, (1.0, aero), "the matrices of the wheel")?;
+            try_push(&mut parts, (1.0, aero), CONTEXT)?;
         }
         let mut terms = Vec::new();
         for (factor, a) in &parts {
-            try_push(
-                &mut terms,
-                ((*factor).into(), a, Form::Plain),
-                "the matrices of the wheel",
-            )?;
+            try_push(&mut terms, ((*factor).into(), a, Form::Plain), CONTEXT)?;
         }
         interrupt.check()?;
         let own = Csc::sum(self.ndof() * self.repeating_sectors(), &terms)?;
@@ -119,32 +113,37 @@ impl Structure {
     fn sectors_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let blocks = &self.blocks[which as usize];
-        let mut entries = Vec::new();
-        let mut place = |a: &KeptMatrix, offset: usize, transposed: bool| -> Result<()> {
-            for s in 0..sectors {
-                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.stored() as u64)?;
-                let (row, column) = (s * ndof, (s + offset) % sectors * ndof);
-                for j in 0..a.order() {
-                    for (i, v) in a.column(j) {
-                        let (i, j) = if transposed { (j, i) } else { (i, j) };
-                        try_push(&mut entries, (row + i, column + j, v), "the matrices of the wheel")?;
-                    }
+        // Each block with the distance from the sector of its columns to that of its rows.
+        let mut parts = Vec::new();
+        if let Some(own) = &blocks.own {
+            try_push(&mut parts, (0, own.expanded()?), CONTEXT)?;
+        }
+        if let Some(next) = &blocks.next {
+            try_push(&mut parts, (sectors - 1, next.expanded()?), CONTEXT)?;
+        }
+        match (&blocks.previous, &blocks.next) {
+            (Some(previous), _) => try_push(&mut parts, (1, previous.expanded()?), CONTEXT)?,
+            (None, Some(next)) => {
+                let transposed = Csc::sum(ndof, &[(Complex64::ONE, next, Form::Transposed)])?;
+                try_push(&mut parts, (1, transposed), CONTEXT)?;
+            }
+            (None, None) => {}
+        }
+        let stored: usize = parts.iter().map(|(_, a)| a.values.len()).sum();
+        let order = ndof * sectors;
+        Csc::from_columns((order, order), stored.saturating_mul(sectors), |column, entries| {
+            let (t, j) = (column / ndof, column % ndof);
+            if j == 0 {
+                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * stored as u64)?;
+            }
+            for (place, (distance, a)) in parts.iter().enumerate() {
+                let row = (t + distance) % sectors * ndof;
+                for (i, v) in a.column(j) {
+                    try_push(entries, (row + i, place, v), CONTEXT)?;
                 }
             }
             Ok(())
-        };
-        if let Some(own) = &blocks.own {
-            place(own, 0, false)?;
-        }
-        if let Some(next) = &blocks.next {
-            place(next, 1, false)?;
-        }
-        match (&blocks.previous, &blocks.next) {
-            (Some(previous), _) => place(previous, sectors - 1, false)?,
-            (None, Some(next)) => place(next, sectors - 1, true)?,
-            (None, None) => {}
-        }
-        Csc::from_triplets(ndof * sectors, ndof * sectors, entries)
+        })
     }
 
     /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
@@ -160,7 +159,7 @@ impl Structure {
         let mut waves = Vec::new();
         for d in 0..sectors {
             interrupt.check()?;
-            try_push(&mut waves, wave(self, d * divisor)?, "the matrices of the wheel")?;
+            try_push(&mut waves, wave(self, d * divisor)?, CONTEXT)?;
         }
         let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
         let mut entries = Vec::new();
@@ -169,7 +168,7 @@ impl Structure {
             for (d, a) in waves.iter().enumerate() {
                 interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.values.len() as u64)?;
                 let turn = self.wave_phase((d * divisor) as i64, -(offset as i64));
-                try_push(&mut terms, (share * turn, a, Form::Plain), "the matrices of the wheel")?;
+                try_push(&mut terms, (share * turn, a, Form::Plain), CONTEXT)?;
             }
             let block = Csc::sum(ndof, &terms)?;
             for j in 0..ndof {
@@ -183,7 +182,7 @@ impl Structure {
                     interrupt.check_before(sectors as u64)?;
                     for s in 0..sectors {
                         let entry = (s * ndof + i, (s + offset) % sectors * ndof + j, v);
-                        try_push(&mut entries, entry, "the matrices of the wheel")?;
+                        try_push(&mut entries, entry, CONTEXT)?;
                     }
                 }
             }

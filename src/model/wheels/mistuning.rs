@@ -6,7 +6,7 @@
 //! the clamped blade by exactly its factors (component mode mistuning: Lim, Bladh, Castanier & Pierre, AIAA Journal 45, 2007,
 //! 2285 to 2298).
 
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
@@ -145,23 +145,15 @@ impl Model {
     ) -> Result<()> {
         let (n, sectors) = (sector.structure().ndof(), sector.structure().sectors());
         let all = n * sectors;
-        let mut placed = Vec::new();
-        for s in 0..sectors {
-            let factor = factor(s);
-            if factor == 0.0 {
-                continue;
-            }
-            for &(i, j, v) in entries {
-                let entry = ((i + s * n) % all, (j + s * n) % all, factor * v);
-                try_push(&mut placed, entry, CONTEXT)?;
-            }
+        let mut factors = try_vec(sectors, 0.0, CONTEXT)?;
+        for (s, to) in factors.iter_mut().enumerate() {
+            *to = factor(s);
         }
-        if placed.is_empty() {
+        if entries.is_empty() || factors.iter().all(|f| *f == 0.0) {
             return Ok(());
         }
-        let added = Csc::from_triplets(all, all, placed)?;
-        // Overlapping shares of neighbours are summed in an order that rounding may tell.
-        let added = symmetrised(added, MIRROR_ROUNDING)?;
+        let of_sector = Csc::from_triplets(all, all, try_copy(entries, CONTEXT)?)?;
+        let added = around(&symmetrised(of_sector, MIRROR_ROUNDING)?, n, &factors)?;
         let blocks = self.changed_structure().blocks_mut(kind)?;
         let added = KeptMatrix::new(added)?;
         let one = Complex64::ONE;
@@ -296,6 +288,21 @@ impl Structure {
     }
 }
 
+/// Σ_s f_s A_s with the matrix A of sector 0, over the degrees of freedom of the wheel, moved to sector s; n degrees of freedom a
+/// sector. Sums go by s in each entry, so that the matrix is exactly symmetric where A is.
+fn around(of_sector: &Csc, n: usize, factors: &[f64]) -> Result<Csc> {
+    let all = of_sector.cols;
+    let count = of_sector.values.len() * factors.iter().filter(|f| **f != 0.0).count();
+    Csc::from_columns((all, all), count, |column, entries| {
+        for (s, &factor) in factors.iter().enumerate().filter(|(_, f)| **f != 0.0) {
+            for (i, v) in of_sector.column((column + all - s * n) % all) {
+                try_push(entries, ((i + s * n) % all, s, factor * v), CONTEXT)?;
+            }
+        }
+        Ok(())
+    })
+}
+
 /// Entries of Tᵀ A T with y = T x = x_b + X x_r.
 fn relative(form: &Csc, x: &[Complex64], blade: &[usize], root: &[usize]) -> Result<Entries> {
     let nb = blade.len();
@@ -322,4 +329,45 @@ fn relative(form: &Csc, x: &[Complex64], blade: &[usize], root: &[usize]) -> Res
         }
     }
     Ok(entries)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_matrix_of_a_sector_stands_in_all_with_their_factors_and_stays_symmetric() {
+        let (n, sectors) = (3, 4);
+        let all = n * sectors;
+        // Of sector 0 with both of its neighbours, so that matrices of neighbours overlap.
+        let place = |k: usize| (k + all - n) % all;
+        let mut entries = Vec::new();
+        for i in 0..3 * n {
+            for j in 0..=i {
+                let v = Complex64::from((0.7 * (i * 9 + j) as f64).sin());
+                entries.push((place(i), place(j), v));
+                if i != j {
+                    entries.push((place(j), place(i), v));
+                }
+            }
+        }
+        let factors = [0.3, 0.0, -0.7, 1.1];
+        let of_sector = Csc::from_triplets(all, all, entries.clone()).unwrap();
+        let found = around(&of_sector, n, &factors).unwrap();
+        let mut exact = vec![Complex64::ZERO; all * all];
+        for (s, f) in factors.iter().enumerate() {
+            for &(i, j, v) in &entries {
+                exact[(j + s * n) % all * all + (i + s * n) % all] += *f * v;
+            }
+        }
+        for i in 0..all {
+            for j in 0..all {
+                assert!((found.get(i, j) - exact[j * all + i]).norm() < 1e-15, "{i}, {j}");
+                assert_eq!(found.get(i, j).re.to_bits(), found.get(j, i).re.to_bits());
+            }
+        }
+        // Entries that no sector has are not stored.
+        let stored = exact.iter().filter(|v| **v != Complex64::ZERO).count();
+        assert_eq!(found.values.len(), stored);
+    }
 }

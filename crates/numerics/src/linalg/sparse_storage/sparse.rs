@@ -198,6 +198,40 @@ impl Csc {
         Ok(a)
     }
 
+    /// A matrix whose columns are filled one after another with entries (row, place, value), `stored` of them at most in all: those of
+    /// one row are summed in the order of their places, which are different.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; those of `fill`.
+    pub fn from_columns(
+        (rows, cols): (usize, usize),
+        stored: usize,
+        mut fill: impl FnMut(usize, &mut Vec<(usize, usize, Complex64)>) -> Result<()>,
+    ) -> Result<Self> {
+        const CONTEXT: &str = "a sparse matrix";
+        let mut a = Self {
+            rows,
+            cols,
+            col_ptr: try_vec(cols + 1, 0, CONTEXT)?,
+            row_idx: try_room(stored, CONTEXT)?,
+            values: try_room(stored, CONTEXT)?,
+        };
+        let mut entries = Vec::new();
+        for j in 0..cols {
+            entries.clear();
+            fill(j, &mut entries)?;
+            entries.sort_unstable_by_key(|&(i, place, _)| (i, place));
+            for same in entries.chunk_by(|a, b| a.0 == b.0) {
+                let (i, _, first) = same[0];
+                let sum = same[1..].iter().fold(first, |sum, (_, _, v)| sum + v);
+                try_push(&mut a.row_idx, i, CONTEXT)?;
+                try_push(&mut a.values, sum, CONTEXT)?;
+            }
+            a.col_ptr[j + 1] = a.row_idx.len();
+        }
+        Ok(a)
+    }
+
     /// The zero matrix of order n.
     ///
     /// # Errors

@@ -2,13 +2,14 @@
 //! strongly, then by those of the mean coupling of each pair of numbers by itself, and by the identity beyond.
 //!
 //! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
-//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead.
+//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead, or the terms of `rank_factors`.
 
 use crate::error::{Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::iterative::gmres::Gmres;
 use crate::linalg::newton::linear_system::dense::DenseSystem;
+use crate::linalg::newton::linear_system::rank_factors::RankFactors;
 use crate::linalg::newton::linear_system::sector_waves::RingFactors;
 use crate::linalg::newton::linear_system::{Border, Jacobian, LinearSystem, MatrixFree, Ring};
 use num_complex::Complex64;
@@ -24,14 +25,15 @@ pub struct KrylovSystem {
     block: DenseSystem,
     lengths: Lengths,
     pairs: Pairs,
-    /// Factors of the waves of a wheel, instead of block and pairs.
-    ring: Option<Box<RingFactors>>,
+    /// Factors of a wheel, instead of block and pairs.
+    wheel: Option<Box<WheelFactors>>,
     memory: Gmres,
     most_products: usize,
     /// Products of the last solution.
     products: usize,
-    /// Products for each digit with the factors of the matrix itself.
+    /// Products for each digit with the factors of the matrix itself, and whether those stored are.
     of_own_factors: f64,
+    are_own: bool,
     /// Sign of det K M⁻¹ that the last solution showed.
     positive: bool,
     column: Vec<f64>,
@@ -41,6 +43,50 @@ pub struct KrylovSystem {
     reduced: Vec<f64>,
     product: Vec<f64>,
     scaled: Vec<f64>,
+}
+
+/// Factors of a wheel: those of its waves, or those of terms of low rank where they were factored last.
+struct WheelFactors {
+    waves: RingFactors,
+    rank: RankFactors,
+    by_rank: bool,
+}
+
+impl WheelFactors {
+    fn factor(&mut self, operator: &mut dyn MatrixFree, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.by_rank = match operator.forces() {
+            Some(forces) => self.rank.factor(forces, interrupt)?,
+            None => false,
+        };
+        if self.by_rank {
+            return Ok(());
+        }
+        self.waves.factor(operator, interrupt)
+    }
+
+    fn set_border(&mut self, operator: &mut dyn MatrixFree, border: Border<'_>) -> Result<()> {
+        match operator.forces().filter(|_| self.by_rank) {
+            Some(forces) => return self.rank.set_border(forces, border),
+            None => self.waves.set_border(border),
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, operator: &mut dyn MatrixFree, v: &mut [f64]) -> Result<()> {
+        match operator.forces().filter(|_| self.by_rank) {
+            Some(forces) => return self.rank.solve(forces, v),
+            None => self.waves.solve(v),
+        }
+        Ok(())
+    }
+
+    fn is_positive(&self) -> bool {
+        if self.by_rank {
+            self.rank.is_positive()
+        } else {
+            self.waves.is_positive()
+        }
+    }
 }
 
 /// Lengths within the groups of unknowns.
@@ -133,12 +179,13 @@ impl KrylovSystem {
         Ok(Self {
             block: DenseSystem::new(order)?,
             pairs: Pairs::new(groups, lengths)?,
-            ring: None,
+            wheel: None,
             lengths,
             memory: Gmres::default(),
             most_products,
             products: 0,
             of_own_factors: 0.0,
+            are_own: false,
             positive: true,
             column: try_vec(n, 0.0, CONTEXT)?,
             scales: (1.0, 1.0),
@@ -154,9 +201,15 @@ impl KrylovSystem {
     /// # Errors
     /// `OutOfMemory`.
     pub fn of_ring(n: usize, (group, ring): (usize, Ring<'_>), most_products: usize) -> Result<Self> {
-        let factors = boxed(|| RingFactors::new(n, group, ring))?;
+        let factors = boxed(|| {
+            Ok(WheelFactors {
+                waves: RingFactors::new(n, group, ring)?,
+                rank: RankFactors::new(n, group, ring.sectors)?,
+                by_rank: false,
+            })
+        })?;
         Ok(Self {
-            ring: Some(factors),
+            wheel: Some(factors),
             ..Self::new(n, Lengths::of_ring(group), most_products)?
         })
     }
@@ -172,13 +225,14 @@ impl KrylovSystem {
 
     /// v ← M⁻¹ v
     fn precondition(
-        (block, pairs, ring): (&mut DenseSystem, &mut Pairs, &mut Option<Box<RingFactors>>),
+        (block, pairs, wheel): (&mut DenseSystem, &mut Pairs, &mut Option<Box<WheelFactors>>),
+        jacobian: &mut dyn Jacobian,
         lengths: Lengths,
         reduced: &mut [f64],
         v: &mut [f64],
-    ) {
-        if let Some(ring) = ring {
-            return ring.solve(v);
+    ) -> Result<()> {
+        if let Some(wheel) = wheel {
+            return wheel.solve(operator(jacobian)?, v);
         }
         for (to, from) in reduced.iter_mut().zip(Self::of_block(v, lengths)) {
             *to = from;
@@ -195,6 +249,7 @@ impl KrylovSystem {
             }
         }
         behind.copy_from_slice(&reduced[reduced.len() - behind.len()..]);
+        Ok(())
     }
 
     /// Solves by GMRES with the factors made last, in at most so many products.
@@ -210,7 +265,7 @@ impl KrylovSystem {
         self.products = 0;
         self.positive = true;
         let is_direct = self.is_direct();
-        let (factors, reduced) = ((&mut self.block, &mut self.pairs, &mut self.ring), &mut self.reduced);
+        let (factors, reduced) = ((&mut self.block, &mut self.pairs, &mut self.wheel), &mut self.reduced);
         if !is_direct {
             let border = (&self.column[..], self.scales, &self.row[..]);
             let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
@@ -218,7 +273,7 @@ impl KrylovSystem {
                 interrupt.check()?;
                 preconditioned.copy_from_slice(v);
                 let factors = (&mut *factors.0, &mut *factors.1, &mut *factors.2);
-                Self::precondition(factors, lengths, reduced, preconditioned);
+                Self::precondition(factors, jacobian, lengths, reduced, preconditioned)?;
                 product(jacobian, border, scaled, preconditioned, out)
             })?;
             let Some(solved) = solved else {
@@ -227,7 +282,7 @@ impl KrylovSystem {
             };
             (self.products, self.positive) = (solved.products, solved.positive);
         }
-        Self::precondition(factors, lengths, reduced, b);
+        Self::precondition(factors, jacobian, lengths, reduced, b)?;
         Ok(true)
     }
 
@@ -271,9 +326,10 @@ impl LinearSystem for KrylovSystem {
         self.column.copy_from_slice(border.column);
         self.row.copy_from_slice(border.row);
         self.scales = border.scales;
+        self.are_own = false;
         interrupt.check()?;
-        if let Some(ring) = &mut self.ring {
-            ring.set_border(border);
+        if let Some(wheel) = &mut self.wheel {
+            wheel.set_border(operator(jacobian)?, border)?;
             return operator(jacobian)?.keep();
         }
         let is_direct = self.is_direct();
@@ -296,14 +352,15 @@ impl LinearSystem for KrylovSystem {
     }
 
     fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
-        if let Some(ring) = &mut self.ring {
-            ring.factor(operator(jacobian)?, interrupt)?;
-            ring.set_border(Border {
+        self.are_own = true;
+        if let Some(wheel) = &mut self.wheel {
+            let border = Border {
                 column: &self.column,
                 scales: self.scales,
                 row: &self.row,
-            });
-            return Ok(());
+            };
+            wheel.factor(operator(jacobian)?, interrupt)?;
+            return wheel.set_border(operator(jacobian)?, border);
         }
         if !self.is_direct() {
             self.pairs.factor(self.lengths, operator(jacobian)?, interrupt)?;
@@ -319,7 +376,9 @@ impl LinearSystem for KrylovSystem {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let solved = self.iterate(jacobian, (tolerance, self.most_products), b, interrupt)?;
-        self.of_own_factors = self.products as f64 / -tolerance.log10();
+        if self.are_own {
+            self.of_own_factors = self.products as f64 / -tolerance.log10();
+        }
         Ok(solved)
     }
 
@@ -357,8 +416,8 @@ impl LinearSystem for KrylovSystem {
 
     /// det K = det M · det K M⁻¹, and the determinant of a complex matrix taken as a real one is positive.
     fn is_positive(&self) -> bool {
-        let factors = match &self.ring {
-            Some(ring) => ring.is_positive(),
+        let factors = match &self.wheel {
+            Some(wheel) => wheel.is_positive(),
             None => self.block.is_positive(),
         };
         factors == self.positive

@@ -7,12 +7,16 @@
 //! where J = ∂R/∂u belongs to a problem, r = ∂R/∂p is its derivative by the parameter, s_u and s_p are the units of
 //! unknowns and parameter, and t is the row of one further condition. One file a backend: [`dense`] factors the whole
 //! matrix, [`krylov`] iterates with products, and factors the block of the strongly coupled unknowns and the mean
-//! coupling of those beyond it, or, of a wheel, the waves that equal sectors would have.
+//! coupling of those beyond it, or, of a wheel, the waves that equal sectors would have, or the terms of low rank by which its
+//! contacts differ from stuck ones.
 
 pub mod automatic;
 mod continuum;
+mod crosses;
 pub mod dense;
+mod eliminated_border;
 pub mod krylov;
+mod rank_factors;
 mod sector_waves;
 
 use crate::error::{Result, fail};
@@ -94,6 +98,11 @@ pub trait MatrixFree {
         fail!(Internal, "a matrix that has no sectors")
     }
 
+    /// J by the forces of its groups, where it is that of a wheel.
+    fn forces(&mut self) -> Option<&mut dyn Forces> {
+        None
+    }
+
     /// Keeps J as it is at the point evaluated last, for [`Self::multiply`]; the problem may then be evaluated
     /// elsewhere.
     ///
@@ -106,6 +115,40 @@ pub trait MatrixFree {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()>;
+}
+
+/// A Jacobian J = D + G F with a diagonal D, a flexibility G, and the derivatives F of forces in groups by motions in groups.
+pub trait Forces {
+    /// Number of groups.
+    fn groups(&self) -> usize;
+
+    /// Share of F, by its norm, in which sectors differ from their mean at the point evaluated last.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    fn unlikeness(&mut self) -> Result<f64>;
+
+    /// Takes the rows of F of one group at the point evaluated last to `rows`, a block of columns for each motion that it adds to
+    /// `motions`, none where all are zero; returns the stiffness that the numbers are compared with.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    fn rows(&mut self, force: usize, rows: &mut Vec<f64>, motions: &mut Vec<usize>) -> Result<f64>;
+
+    /// u = G w for forces w of one group.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    fn response_of(&mut self, force: usize, w: &[f64], u: &mut [f64]) -> Result<()>;
+
+    /// u ← u − D⁻¹ G w
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    fn subtract_response(&mut self, w: &[f64], u: &mut [f64]) -> Result<()>;
+
+    /// u ← D⁻¹ u
+    fn divide(&self, u: &mut [f64]);
 }
 
 /// Sectors whose groups of unknowns stand one after another.

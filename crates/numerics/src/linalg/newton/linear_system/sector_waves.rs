@@ -13,8 +13,8 @@
 
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::dot;
 use crate::linalg::factors::lu::Lu;
+use crate::linalg::newton::linear_system::eliminated_border::EliminatedBorder;
 use crate::linalg::newton::linear_system::{Border, MatrixFree, Ring};
 use core::f64::consts::TAU;
 use num_complex::Complex64;
@@ -44,11 +44,7 @@ pub(super) struct RingFactors {
     matrix: Vec<Complex64>,
     spectrum: Vec<Complex64>,
     local: Vec<f64>,
-    /// z = B⁻¹ r, the row t, the units, and t_p − s_p/s_u t_u z.
-    border: Vec<f64>,
-    row: Vec<f64>,
-    scales: (f64, f64),
-    rest: f64,
+    border: EliminatedBorder,
 }
 
 impl RingFactors {
@@ -87,10 +83,7 @@ impl RingFactors {
             spectrum: try_vec(order * waves.len(), Complex64::ZERO, CONTEXT)?,
             waves,
             local: try_vec(order, 0.0, CONTEXT)?,
-            border: try_vec(n, 0.0, CONTEXT)?,
-            row: try_vec(n + 1, 0.0, CONTEXT)?,
-            scales: (1.0, 1.0),
-            rest: 1.0,
+            border: EliminatedBorder::new(n)?,
         })
     }
 
@@ -136,27 +129,16 @@ impl RingFactors {
 
     /// Takes over the border of the matrix.
     pub fn set_border(&mut self, border: Border<'_>) {
-        let mut z = core::mem::take(&mut self.border);
-        z.copy_from_slice(border.column);
-        self.solve_inner(&mut z);
-        self.row.copy_from_slice(border.row);
-        self.scales = border.scales;
-        let n = z.len();
-        self.rest = self.row[n] - self.scales.1 / self.scales.0 * dot(&self.row[..n], &z);
-        self.border = z;
+        let mut column = self.border.column(border);
+        self.solve_inner(&mut column);
+        self.border.set(border, column);
     }
 
     /// v ← M⁻¹ v with M = [B s_u, r s_p; tᵀ].
     pub fn solve(&mut self, v: &mut [f64]) {
-        let n = self.border.len();
+        let n = v.len() - 1;
         self.solve_inner(&mut v[..n]);
-        let (unit, of_parameter) = self.scales;
-        let left = v[n] - dot(&self.row[..n], &v[..n]) / unit;
-        let along = if self.rest == 0.0 { left } else { left / self.rest };
-        for (x, z) in v[..n].iter_mut().zip(&self.border) {
-            *x = (*x - z * (of_parameter * along)) / unit;
-        }
-        v[n] = along;
+        self.border.solve(v);
     }
 
     /// Whether det M is positive. Complex waves come in conjugate pairs.
@@ -165,7 +147,7 @@ impl RingFactors {
             Wave::Real(lu) => !lu.is_positive(),
             Wave::Complex(_) | Wave::Singular => false,
         });
-        (real.count() + usize::from(self.rest < 0.0)).is_multiple_of(2)
+        real.count().is_multiple_of(2) == self.border.keeps_sign()
     }
 
     /// u ← B⁻¹ u

@@ -1,0 +1,144 @@
+//! Factors of a matrix that is the identity but for terms of low rank: a preconditioner where sectors of a wheel are unlike.
+//!
+//! With J = D + G U Vᵀ, D diagonal, the matrix C = I + Vᵀ D⁻¹ G U has the order of the rank alone, and
+//!
+//! > J⁻¹ = D⁻¹ (1 − G U C⁻¹ Vᵀ D⁻¹),  det J = det D · det C.
+//!
+//! A contact that slips for a part of the period loses its stiffness there: its Jacobian differs from the stuck one by a matrix
+//! whose rank grows with that part and hardly with the harmonics. The iteration finds what the terms leave.
+
+use crate::error::{Result, Status, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::newton::linear_system::crosses::Crosses;
+use crate::linalg::newton::linear_system::eliminated_border::EliminatedBorder;
+use crate::linalg::newton::linear_system::{Border, Forces};
+
+const CONTEXT: &str = "the linear system of low rank";
+
+/// Products that a matrix takes with waves where sectors differ in a share u of the contact Jacobian, for steps, tests of steps and
+/// tangents: this number over (1 − u)², at most so many. Tuned: for four digits wheels of 24 sectors take 6 products at 0.13, 13 at
+/// 0.4 and 80 at 0.8, for ten digits twice as many; a matrix has two or three solutions, of an estimate two.
+const PRODUCTS_OF_WAVES: f64 = 13.0;
+const MOST_PRODUCTS_OF_WAVES: f64 = 150.0;
+
+/// Vectors of a basis that such a product is made orthogonal to, on average.
+const BASIS_OF_WAVES: usize = 40;
+
+/// Share of the contact Jacobian below which waves serve better, whatever the rank.
+const ALIKE_SECTORS: f64 = 0.3;
+
+/// Factors of C, with memory.
+pub(super) struct RankFactors {
+    crosses: Crosses,
+    lu: Option<Lu<f64>>,
+    /// Length of a group.
+    group: usize,
+    /// Multiplications of a product with waves.
+    of_product: f64,
+    x: Vec<f64>,
+    u: Vec<f64>,
+    border: EliminatedBorder,
+}
+
+impl RankFactors {
+    /// Memory for `n` unknowns of so many sectors.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize, group: usize, sectors: usize) -> Result<Self> {
+        Ok(Self {
+            crosses: Crosses::default(),
+            lu: None,
+            group,
+            // The product itself, its waves and their transforms, and its orthogonalisation.
+            of_product: n as f64 * (4 * (n / sectors.max(1)) + 4 * sectors + 4 * BASIS_OF_WAVES) as f64,
+            x: Vec::new(),
+            u: Vec::new(),
+            border: EliminatedBorder::new(n)?,
+        })
+    }
+
+    /// Factors a Jacobian; `false` where its waves serve better.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn factor(&mut self, forces: &mut dyn Forces, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let unlikeness = forces.unlikeness()?;
+        if unlikeness < ALIKE_SECTORS {
+            return Ok(false);
+        }
+        let most = self.most(unlikeness, forces.groups() * self.group);
+        let Some(rank) = self.crosses.find(forces, self.group, most)? else {
+            return Ok(false);
+        };
+        if self.u.is_empty() {
+            self.u = try_vec(forces.groups() * self.group, 0.0, CONTEXT)?;
+        }
+        let known = self.lu.take().filter(|_| rank <= self.x.len());
+        let lu = if let Some(known) = known {
+            known
+        } else {
+            // A quarter more for the ranks of the next points.
+            let order = rank + rank / 4;
+            self.x = try_vec(order, 0.0, CONTEXT)?;
+            Lu::new(order, 1)?
+        };
+        let lu = self.lu.insert(lu);
+        lu.set_order(rank);
+        self.crosses.fill_core(forces, (self.group, &mut self.u), lu.matrix())?;
+        match lu.factor(interrupt) {
+            Err(e) if e.status == Status::Singular => Ok(false),
+            factored => factored.map(|()| true),
+        }
+    }
+
+    /// Highest rank of n unknowns whose factors take no more multiplications than iterations with waves.
+    fn most(&self, unlikeness: f64, n: usize) -> usize {
+        let products = (PRODUCTS_OF_WAVES / (1.0 - unlikeness).powi(2)).min(MOST_PRODUCTS_OF_WAVES);
+        let of_rank = |rank: usize| (rank * rank) as f64 * (rank as f64 / 3.0 + self.group as f64);
+        (1..n)
+            .take_while(|rank| of_rank(*rank) <= products * self.of_product)
+            .count()
+    }
+
+    /// Takes over the border of the matrix.
+    ///
+    /// # Errors
+    /// Those of the forces.
+    pub fn set_border(&mut self, forces: &mut dyn Forces, border: Border<'_>) -> Result<()> {
+        let mut column = self.border.column(border);
+        let solved = self.solve_inner(forces, &mut column);
+        self.border.set(border, column);
+        solved
+    }
+
+    /// v ← M⁻¹ v with M = [J s_u, r s_p; tᵀ].
+    ///
+    /// # Errors
+    /// Those of the forces.
+    pub fn solve(&mut self, forces: &mut dyn Forces, v: &mut [f64]) -> Result<()> {
+        let n = v.len() - 1;
+        self.solve_inner(forces, &mut v[..n])?;
+        self.border.solve(v);
+        Ok(())
+    }
+
+    /// u ← J⁻¹ u
+    fn solve_inner(&mut self, forces: &mut dyn Forces, u: &mut [f64]) -> Result<()> {
+        let Some(lu) = &self.lu else { return Ok(()) };
+        let x = &mut self.x[..lu.order()];
+        forces.divide(u);
+        self.crosses.reduce(self.group, u, x);
+        lu.solve(x);
+        // u is D⁻¹ u already.
+        self.crosses.expand(self.group, x, &mut self.u);
+        forces.subtract_response(&self.u, u)
+    }
+
+    /// Whether det M is positive.
+    pub fn is_positive(&self) -> bool {
+        let core = self.lu.as_ref().is_none_or(Lu::is_positive);
+        core == self.border.keeps_sign()
+    }
+}
