@@ -19,6 +19,7 @@ pub mod campbell_response;
 pub mod check_jacobian;
 mod coarse_start;
 pub mod complex_sensitivity;
+mod condition_noise;
 pub mod damped_modes;
 mod damping_maximum;
 mod deflated_curves;
