@@ -13,6 +13,7 @@ use crate::linalg::kept_matrix::KeptMatrix;
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
+use crate::model::sector_digest::SectorUse;
 use crate::model::sector_matrices::{Entries, of_both_sectors};
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wheel::symmetrised;
@@ -81,6 +82,19 @@ impl Model {
                 sector.ndof()
             );
         }
+        let has_damping = matches!(
+            what,
+            Mistuning::Blade(BladeProperty::Damping, _)
+                | Mistuning::Matrix(MatrixKind::Damping | MatrixKind::Structural, _)
+        );
+        self.check_sector(
+            sector,
+            if has_damping {
+                SectorUse::DampingPattern
+            } else {
+                SectorUse::Pattern
+            },
+        )?;
         let mut changed = self.try_clone()?;
         match *what {
             Mistuning::Blade(property, dofs) => {

@@ -35,6 +35,7 @@ mod saved_matrix;
 mod saved_model;
 mod saved_structure;
 pub mod sector_faces;
+pub mod sector_digest;
 mod sector_matrices;
 pub mod sector_motion;
 mod senses;

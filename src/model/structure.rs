@@ -8,6 +8,7 @@ use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::influence::{AeroInfluence, FORMS};
+use crate::model::sector_digest::SectorDigest;
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
 use crate::model::speed::Speed;
@@ -76,6 +77,8 @@ pub struct Structure {
     pub(super) modal_damping: Vec<Option<KeptMatrix>>,
     /// Sectors and engine order, where this is a whole wheel: what its equations may be taken for, and no result depends on.
     pub(super) wheel: Option<(usize, i64)>,
+    /// The sector that a whole wheel was made of; `None` where that is not known, as after loading.
+    pub(super) sector: Option<SectorDigest>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],
 }
@@ -99,6 +102,7 @@ impl Structure {
             speed: Speed::Fixed(0.0),
             modal_damping: Vec::new(),
             wheel: None,
+            sector: None,
             aero: Default::default(),
         })
     }
