@@ -6,8 +6,7 @@ use crate::analysis::fit::fit_options::FitOptions;
 use crate::analysis::fit::fit_result::sizes;
 use crate::analysis::fit::fit_search::{Search, State};
 use crate::analysis::fit::fit_unknowns::{Unknown, Unknowns};
-use crate::analysis::fit::predicted_data::Predictor;
-use crate::analysis::fit::preparation::{check, of_fit};
+use crate::analysis::fit::preparation::{check, predictor};
 use crate::analysis::fit::searches::{Searched, searched};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
@@ -97,14 +96,7 @@ pub fn fit_profile(
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Results, 0.0)?;
     let own = model.separate_clone()?;
-    let predictor = Predictor {
-        model: &own,
-        parameters,
-        scopes: &all.scopes,
-        data,
-        solver: of_fit(solver, data),
-        interrupt: &interrupt,
-    };
+    let predictor = predictor(&own, (parameters, &all.scopes), data, solver, &interrupt);
     let search = Search {
         predictor: &predictor,
         unknowns: &all,

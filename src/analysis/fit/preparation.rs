@@ -2,8 +2,10 @@
 
 use crate::analysis::fit::fit_data::{DataKind, FitData};
 use crate::analysis::fit::fit_options::FitOptions;
+use crate::analysis::fit::predicted_data::Predictor;
 use crate::analysis::fit::prediction::check_parameters;
 use crate::error::{Result, fail};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::sensitivity::Parameter;
@@ -33,8 +35,27 @@ pub(super) fn check(
     Ok(())
 }
 
+/// The numbers of the data by a model of the fit's own, so that bases of waves are shared by all its designs, and the caller's model is
+/// left as it is. `scopes` are those of the unknowns.
+pub(super) fn predictor<'a>(
+    own: &'a Model,
+    (parameters, scopes): (&'a [Parameter<'a>], &'a [Option<usize>]),
+    data: &'a [FitData<'a>],
+    solver: &SolverOptions,
+    interrupt: &'a Interrupt<'a>,
+) -> Predictor<'a> {
+    Predictor {
+        model: own,
+        parameters,
+        scopes,
+        data,
+        solver: of_fit(solver, data),
+        interrupt,
+    }
+}
+
 /// The options of the solver with the tolerance of the data.
-pub(super) fn of_fit(solver: &SolverOptions, data: &[FitData<'_>]) -> SolverOptions {
+fn of_fit(solver: &SolverOptions, data: &[FitData<'_>]) -> SolverOptions {
     SolverOptions {
         tolerance: tolerance_of(data, solver.tolerance),
         ..*solver
