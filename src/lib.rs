@@ -100,6 +100,7 @@ pub use contact::{Contact, ContactKind};
 pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
+pub use model::blade_modes::BladeModes;
 pub use model::damper::{Damper, DamperFace, DamperPlace};
 pub use model::linear_modes::{ContactState, LinearModes};
 pub use model::mistuning::{BladeProperty, Mistuning};

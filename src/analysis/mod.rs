@@ -75,6 +75,7 @@ pub mod parameter_response;
 mod perturbed_motion;
 mod phase_direction;
 pub mod point_error;
+mod range_ends;
 mod record_peak;
 mod residual_numbering;
 pub mod response_of_motion;

@@ -1,6 +1,7 @@
 //! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
 pub mod aero;
+pub mod blade_modes;
 mod blocks;
 mod complex_stiffness;
 pub(crate) mod contact_modes;
@@ -34,8 +35,8 @@ pub mod rotation;
 mod saved_matrix;
 mod saved_model;
 mod saved_structure;
-pub mod sector_faces;
 pub mod sector_digest;
+pub mod sector_faces;
 mod sector_matrices;
 pub mod sector_motion;
 mod senses;
