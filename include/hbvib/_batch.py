@@ -40,7 +40,7 @@ class DesignPeaks(NamedTuple):
     >>> watched = [0, hbvib.Response(0, "rms", component="velocity")]
     >>> batch = model.batch((0.8, 1.6), hbvib.Parameter("preload"), [0.5, 1.0], responses=watched, harmonics=9)
     >>> [peaks.amplitude.round(2).tolist() for peaks in batch.responses]
-    [[1.39, 0.58], [1.02, 0.51]]
+    [[1.39, 0.58], [1.01, 0.51]]
     """
     response: Response
     amplitude: FloatArray
