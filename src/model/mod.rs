@@ -1,6 +1,7 @@
 //! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
 pub mod aero;
+mod blade_basis;
 pub mod blade_modes;
 mod blocks;
 mod complex_stiffness;
