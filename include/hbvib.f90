@@ -534,9 +534,11 @@ module hbvib
 
    !> Numbers of the peaks of a wheel.
    type, bind(c) :: hbvib_wheel_info
-      integer(c_int32_t) :: struct_size = 48, reserved = 0
+      integer(c_int32_t) :: struct_size = 72, reserved = 0
       integer(c_int64_t) :: blade = 0
       real(c_double) :: largest = 0, tuned = 0, tuned_omega = 0, amplification = 0
+      integer(c_int64_t) :: beyond = 0
+      real(c_double) :: end_amplitude = 0, end_omega = 0
    end type hbvib_wheel_info
 
    !> Options of hbvib_band.
@@ -2087,6 +2089,14 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_batch_response_peaks
 
+      function hbvib_batch_response_ends(batch, response, capacity, amplitude, omega) bind(c) result(status)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int64_t), value :: response, capacity
+         real(c_double), intent(inout), optional :: amplitude(*), omega(*)
+         integer(c_int32_t) :: status
+      end function hbvib_batch_response_ends
+
       function hbvib_batch_status(batch, design) bind(c) result(status)
          import
          type(c_ptr), value :: batch
@@ -2147,6 +2157,25 @@ module hbvib
          integer(c_int64_t), intent(inout), optional :: degrees
          integer(c_int32_t) :: status
       end function hbvib_wheel_identify
+
+      function hbvib_wheel_blade_modes(cyclic, n_dofs, dofs, modes, families, hooks, n_points, points, weights_len, weights, &
+         ndof, numbers, first, left_out, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: cyclic
+         integer(c_int64_t), value :: n_dofs
+         integer(c_int64_t), intent(in) :: dofs(*)
+         integer(c_int64_t), value :: modes, families
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int64_t), value :: n_points
+         integer(c_int64_t), intent(in) :: points(*)
+         integer(c_int64_t), value :: weights_len
+         real(c_double), intent(inout), optional :: weights(*)
+         integer(c_int64_t), value :: ndof
+         integer(c_int64_t), intent(inout), optional :: numbers, first
+         real(c_double), intent(inout), optional :: left_out(*)
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_wheel_blade_modes
 
       function hbvib_branch_freedom(model, branch, point, capacity, contact, direction, place, derivative, count, &
          hooks) bind(c) result(status)

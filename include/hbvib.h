@@ -927,11 +927,12 @@ typedef enum {
 /// sectors    length of delta, the number of sectors.
 /// delta      of each sector, finite; with dofs at least -1.
 /// Errors: HBVIB_E_ARGUMENT (kind, dofs twice or none that moves, neither dofs nor direction, or
-/// both; delta with dofs; a load below 0), HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION
-/// (another model or number of sectors, n_dofs), HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the
-/// stiffness of the clamped blade), HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an
-/// attachment that is too large), those of hbvib_model_set_matrix for the direction; HBVIB_E_NULL,
-/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
+/// both; delta with dofs; a load below 0; matrices of `cyclic` that the wheel was not made of),
+/// HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION (another model or number of sectors, n_dofs),
+/// HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the stiffness of the clamped blade),
+/// HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an attachment that is too large), those of
+/// hbvib_model_set_matrix for the direction; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
 HBVIB_NODISCARD
 hbvib_status hbvib_wheel_mistune(hbvib_model *wheel,
                                  const hbvib_model *cyclic,
@@ -4646,6 +4647,24 @@ hbvib_status hbvib_batch_response_peaks(const hbvib_batch *batch,
                                         double *amplitude,
                                         double *omega);
 
+/// The larger value of a response of each design at the two ends of the range, in the order of
+/// their values. Where it is above the highest peak of hbvib_batch_response_peaks, or there is
+/// none, the highest peak lies beyond that end.
+///
+/// response   number of the response of hbvib_batch_options, from 0.
+/// capacity   numbers that fit into each array: at least the number of designs.
+/// amplitude  receives measures, NaN where the design failed; or NULL.
+/// omega      receives the angular frequency of the end; or NULL.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity: the arrays are untouched),
+/// HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any
+/// number on one batch.
+HBVIB_NODISCARD
+hbvib_status hbvib_batch_response_ends(const hbvib_batch *batch,
+                                       int64_t response,
+                                       int64_t capacity,
+                                       double *amplitude,
+                                       double *omega);
+
 /// The status of a design, whose sentence hbvib_last_error then has: HBVIB_OK;
 /// HBVIB_STOPPED_NO_PEAK without a maximum; another positive number where the branch ended early
 /// and may have higher maxima beyond; HBVIB_STOPPED_BY_CALLER where it was not solved; negative
@@ -4680,8 +4699,16 @@ typedef struct {
   double tuned;
   /// Angular frequency of the peak of the tuned wheel.
   double tuned_omega;
-  /// Amplification factor: largest over tuned.
+  /// Amplification factor: largest over tuned; NaN where one of both lies beyond an end of the
+  /// range.
   double amplification;
+  /// Blades whose response is larger at an end of the range than at each of their peaks.
+  int64_t beyond;
+  /// Largest response of a blade at an end of the range: above `largest`, the highest peak of the
+  /// wheel lies beyond that end.
+  double end_amplitude;
+  /// Angular frequency of that end.
+  double end_omega;
 } hbvib_wheel_info;
 
 /// Fills the numbers of the peaks of a wheel with zeros.
@@ -4713,9 +4740,13 @@ hbvib_status hbvib_wheel_info_init(hbvib_wheel_info *i, size_t size_of_i);
 /// info         receives the numbers of the largest one; fill it by hbvib_wheel_info_init before;
 ///              or NULL.
 /// out          receives the response of the wheel, whose response s is that of blade s; or NULL.
-/// Positive statuses are those of hbvib_forced_response, of the response of the wheel.
+/// HBVIB_STOPPED_NO_PEAK: the highest peak of the wheel, or of the tuned one, lies beyond an end of
+/// the range, as a blade is larger there than at each peak within; everything is written, and the
+/// amplification is NaN. Other positive statuses are those of hbvib_forced_response, of the
+/// response of the wheel.
 /// Errors: HBVIB_E_DIMENSION (the wheel of another model, capacity), HBVIB_E_INDEX (blade),
-/// HBVIB_E_ARGUMENT (range), those of hbvib_forced_response. Threads: any number on one model.
+/// HBVIB_E_ARGUMENT (range; the wheel of another model), those of hbvib_forced_response. Threads:
+/// any number on one model.
 HBVIB_NODISCARD
 hbvib_status hbvib_wheel_peaks(const hbvib_model *wheel,
                                const hbvib_model *cyclic,
@@ -4787,6 +4818,56 @@ hbvib_status hbvib_wheel_identify(const hbvib_model *cyclic,
                                   double *covariance,
                                   double *chi2,
                                   int64_t *degrees);
+
+/// Makes a sector whose blade moves in its lowest cantilever modes, with everything else held, and
+/// as the rest carries it along (Craig and Bampton): 10 to 20 modes of a finite-element blade. In
+/// the wheel of it a pattern of the modes (hbvib_wheel_mistune with their numbers as dofs) is
+/// exactly one of the stiffness of the blade, of a rank of modes a blade. The new sector has the
+/// degrees of freedom that are left, in their order, then the modes; right faces and fixed degrees
+/// of freedom have no number there. Contacts, springs, damping, wave and speed are taken over, and
+/// forces on the blade act on the modes.
+///
+/// cyclic       the model of the sector; stays as it is.
+/// n_dofs       number of degrees of freedom of the blade.
+/// dofs         all of them but those of its root and those with contacts and springs.
+/// modes        number of modes, 1 .. n_dofs - 1.
+/// families     tuned modes of each nodal diameter whose error is told, at least 1.
+/// hooks        phase and cancellation; NULL: none.
+/// n_points     number of degrees of freedom whose motion is asked for, 0 with points NULL.
+/// points       their numbers in `cyclic`, for responses as the tip of a blade.
+/// weights_len  numbers that fit into weights, at least n_points times the degrees of freedom of
+///              the new sector: for each point ndof - n_dofs + modes are enough.
+/// weights      receives the weights of these that make the motion of each point, point after
+///              point; or NULL.
+/// ndof         degrees of freedom of `cyclic`: length of numbers.
+/// numbers      receives the new number of each, -1 where it has none; or NULL.
+/// first        receives the number of the first mode, or NULL.
+/// left_out     receives the largest relative error of a frequency of the tuned modes by the modes
+///              of the blade that are left out, as estimated; infinity where one lies above the
+///              first of these; or NULL.
+/// out          receives the new sector; untouched on error. Free it by hbvib_model_free.
+/// Errors: HBVIB_E_ARGUMENT (modes, families; dofs twice, fixed, on the right face, with a contact
+/// or spring, or coupled to another sector), HBVIB_E_INDEX, HBVIB_E_DIMENSION (lengths),
+/// HBVIB_E_SINGULAR (a blade that is not held), HBVIB_E_UNSUPPORTED (matrices of single diameters,
+/// modal damping, aerodynamic forces, a stiffness without symmetry), those of hbvib_linear_modes;
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one
+/// model.
+HBVIB_NODISCARD
+hbvib_status hbvib_wheel_blade_modes(const hbvib_model *cyclic,
+                                     int64_t n_dofs,
+                                     const int64_t *dofs,
+                                     int64_t modes,
+                                     int64_t families,
+                                     const hbvib_hooks *hooks,
+                                     int64_t n_points,
+                                     const int64_t *points,
+                                     int64_t weights_len,
+                                     double *weights,
+                                     int64_t ndof,
+                                     int64_t *numbers,
+                                     int64_t *first,
+                                     double *left_out,
+                                     hbvib_model **out);
 
 /// The sliders of a stored point of a forced response that stick through the period and change its
 /// vibration: each may lie anywhere within the limit of its friction, and every such state is a

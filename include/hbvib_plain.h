@@ -916,6 +916,9 @@ struct hbvib_wheel_info {
   double tuned;
   double tuned_omega;
   double amplification;
+  int64_t beyond;
+  double end_amplitude;
+  double end_omega;
 };
 struct hbvib_band_options {
   uint32_t struct_size;
@@ -1207,11 +1210,13 @@ hbvib_status hbvib_batch_free(hbvib_batch *batch);
 int64_t hbvib_batch_designs(const hbvib_batch *batch);
 hbvib_status hbvib_batch_peaks(const hbvib_batch *batch, int64_t capacity, double *peak_amplitude, double *peak_omega, int64_t *statuses, int64_t *points);
 hbvib_status hbvib_batch_response_peaks(const hbvib_batch *batch, int64_t response, int64_t capacity, double *amplitude, double *omega);
+hbvib_status hbvib_batch_response_ends(const hbvib_batch *batch, int64_t response, int64_t capacity, double *amplitude, double *omega);
 hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 hbvib_status hbvib_wheel_info_init(hbvib_wheel_info *i, size_t size_of_i);
 hbvib_status hbvib_wheel_peaks(const hbvib_model *wheel, const hbvib_model *cyclic, const hbvib_response *blade, const hbvib_solver_options *solver, double omega_start, double omega_stop, const hbvib_hooks *hooks, int64_t capacity, double *amplitude, double *omega, double *error, int64_t *count, hbvib_wheel_info *info, hbvib_branch **out);
 hbvib_status hbvib_wheel_identify(const hbvib_model *cyclic, int32_t kind, int64_t n_dofs, const int64_t *dofs, const hbvib_matrix *direction, int32_t contacts, int64_t families, int64_t n_points, const int64_t *points, int64_t n_modes, const double *omega, const double *sigma_omega, const double *shapes, const double *sigma_shape, const hbvib_hooks *hooks, int64_t sectors, double *delta, double *covariance, double *chi2, int64_t *degrees);
+hbvib_status hbvib_wheel_blade_modes(const hbvib_model *cyclic, int64_t n_dofs, const int64_t *dofs, int64_t modes, int64_t families, const hbvib_hooks *hooks, int64_t n_points, const int64_t *points, int64_t weights_len, double *weights, int64_t ndof, int64_t *numbers, int64_t *first, double *left_out, hbvib_model **out);
 hbvib_status hbvib_branch_freedom(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int64_t capacity, int64_t *contact, int64_t *direction, double *place, double *derivative, int64_t *count, const hbvib_hooks *hooks);
 hbvib_status hbvib_band_options_init(hbvib_band_options *o, size_t size_of_o);
 hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);

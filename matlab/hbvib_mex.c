@@ -1411,6 +1411,9 @@ static const Field wheel_info_fields[] = {
   {"tuned", DOUBLE, offsetof(hbvib_wheel_info, tuned), 1, NULL},
   {"tuned_omega", DOUBLE, offsetof(hbvib_wheel_info, tuned_omega), 1, NULL},
   {"amplification", DOUBLE, offsetof(hbvib_wheel_info, amplification), 1, NULL},
+  {"beyond", INT64, offsetof(hbvib_wheel_info, beyond), 1, NULL},
+  {"end_amplitude", DOUBLE, offsetof(hbvib_wheel_info, end_amplitude), 1, NULL},
+  {"end_omega", DOUBLE, offsetof(hbvib_wheel_info, end_omega), 1, NULL},
 };
 static hbvib_status wheel_info_fill(void *s) { return hbvib_wheel_info_init(s, sizeof(hbvib_wheel_info)); }
 static const Struct WHEEL_INFO_STRUCT = {"wheel_info", sizeof(hbvib_wheel_info), wheel_info_fields, sizeof wheel_info_fields / sizeof *wheel_info_fields, wheel_info_fill};
@@ -3182,6 +3185,20 @@ static void call_batch_response_peaks(Call *a) {
   finish(a, status_);
 }
 
+static void call_batch_response_ends(Call *a) {
+  const hbvib_batch *batch_ = handle(a, "batch");
+  int64_t response_ = whole(a, "response");
+  int64_t capacity_ = whole(a, "capacity");
+  int64_t amplitude_n = room(a, "amplitude");
+  double *amplitude_ = array(amplitude_n, 1 * sizeof(double));
+  int64_t omega_n = room(a, "omega");
+  double *omega_ = array(omega_n, 1 * sizeof(double));
+  hbvib_status status_ = hbvib_batch_response_ends(batch_, response_, capacity_, amplitude_, omega_);
+  give_reals(a, amplitude_, amplitude_n);
+  give_reals(a, omega_, omega_n);
+  finish(a, status_);
+}
+
 static void call_batch_status(Call *a) {
   const hbvib_batch *batch_ = handle(a, "batch");
   int64_t design_ = whole(a, "design");
@@ -3256,6 +3273,33 @@ static void call_wheel_identify(Call *a) {
   give_reals(a, covariance_, covariance_n);
   give_reals(a, chi2_, chi2_n);
   give_number(a, (double)degrees_);
+  finish(a, status_);
+}
+
+static void call_wheel_blade_modes(Call *a) {
+  const hbvib_model *cyclic_ = handle(a, "cyclic");
+  int64_t n_dofs_ = whole(a, "n_dofs");
+  const int64_t *dofs_ = wholes(a, "dofs");
+  int64_t modes_ = whole(a, "modes");
+  int64_t families_ = whole(a, "families");
+  const hbvib_hooks *hooks_ = hooks(a, "hooks");
+  int64_t n_points_ = whole(a, "n_points");
+  const int64_t *points_ = wholes(a, "points");
+  int64_t weights_len_ = whole(a, "weights_len");
+  int64_t weights_n = room(a, "weights");
+  double *weights_ = array(weights_n, 1 * sizeof(double));
+  int64_t ndof_ = whole(a, "ndof");
+  int64_t numbers_ = 0;
+  int64_t first_ = 0;
+  int64_t left_out_n = room(a, "left_out");
+  double *left_out_ = array(left_out_n, 1 * sizeof(double));
+  hbvib_model *out_ = NULL;
+  hbvib_status status_ = hbvib_wheel_blade_modes(cyclic_, n_dofs_, dofs_, modes_, families_, hooks_, n_points_, points_, weights_len_, weights_, ndof_, &numbers_, &first_, left_out_, &out_);
+  give_reals(a, weights_, weights_n);
+  give_number(a, (double)numbers_);
+  give_number(a, (double)first_);
+  give_reals(a, left_out_, left_out_n);
+  give_model(a, out_);
   finish(a, status_);
 }
 
@@ -3759,10 +3803,12 @@ static const Function FUNCTIONS[] = {
   {"batch_designs", call_batch_designs, 1},
   {"batch_peaks", call_batch_peaks, 6},
   {"batch_response_peaks", call_batch_response_peaks, 5},
+  {"batch_response_ends", call_batch_response_ends, 5},
   {"batch_status", call_batch_status, 2},
   {"batch_branch", call_batch_branch, 2},
   {"wheel_peaks", call_wheel_peaks, 11},
   {"wheel_identify", call_wheel_identify, 19},
+  {"wheel_blade_modes", call_wheel_blade_modes, 12},
   {"branch_freedom", call_branch_freedom, 9},
   {"band", call_band, 13},
   {"band_curve", call_band_curve, 13},

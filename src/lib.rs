@@ -95,6 +95,7 @@ pub use model::matrices::speed::Speed;
 pub use model::matrices::spring::Spring;
 pub use model::matrices::structure::MatrixKind;
 pub use model::natural_modes::linear_modes::{ContactState, LinearModes};
+pub use model::wheels::blade_modes::BladeModes;
 pub use model::wheels::mistuning::{BladeProperty, Mistuning};
 
 // Parameters.

@@ -37,6 +37,7 @@ from typing import Any
 from . import _c, _results, _types
 from ._band import Band, BandCurve, BandEnd, BandStates, FreeSlider
 from ._batch import Batch
+from ._blade_modes import BladeModes
 from ._branch import Branch
 from ._c import *
 from ._caller_law import ForceCall
@@ -76,7 +77,7 @@ __all__ = [
     "Model", "Response", "WatchedResponse", "Parameter", "Sensitivities", "ComplexSensitivities",
     "Measured", "Unknown", "Fit", "Predicted", "Profile", "SuspiciousUnits", "Decay", "Band", "BandEnd", "BandStates", "BandCurve", "ModeBand", "ModeBandEnd",
     "FreeSlider", "StaticHistory", "DamperPlace", "Life", "LifeEvents", "TimeSweep", "RunUp", "Mission", "CampbellResponse",
-    "IdentifiedPattern", "IntentionalPattern", "WorstCase", "WheelPeaks", "WheelQuantile", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
+    "IdentifiedPattern", "IntentionalPattern", "WorstCase", "WheelPeaks", "WheelQuantile", "WheelStudy", "WheelWeibull", "WorstPattern", "Quantile", "Batch", "BladeModes", "Branch", "SavedBranch", "StoredPoint", "CancelFlag", "ForceCall",
     "Units",
     # functions
     "forced_response", "nonlinear_mode", "time_response", "verify", "floquet", "sensitivity", "evaluate_contact", "load", "from_dataframe", "from_xarray", "decay_backbone", "campbell_response",

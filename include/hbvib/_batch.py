@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 class DesignPeaks(NamedTuple):
     """The highest peak of a response in each design; NaN where there is none. Made by Batch.responses.
 
+    end_amplitude, end_omega   the larger response at the two ends of the range, and that end: above the highest peak, that lies beyond.
+
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
     >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
@@ -38,11 +40,13 @@ class DesignPeaks(NamedTuple):
     >>> watched = [0, hbvib.Response(0, "rms", component="velocity")]
     >>> batch = model.batch((0.8, 1.6), hbvib.Parameter("preload"), [0.5, 1.0], responses=watched, harmonics=9)
     >>> [peaks.amplitude.round(2).tolist() for peaks in batch.responses]
-    [[1.39, 0.58], [1.02, 0.51]]
+    [[1.39, 0.58], [1.01, 0.51]]
     """
     response: Response
     amplitude: FloatArray
     omega: FloatArray
+    end_amplitude: FloatArray
+    end_omega: FloatArray
 
 
 class Batch:
@@ -91,9 +95,10 @@ class Batch:
         for i in np.flatnonzero(status):
             lib.hbvib_batch_status(handle, int(i))
             reasons[int(i)] = _sentence(int(status[i]))
-        peaks = [DesignPeaks(one, np.empty(designs), np.empty(designs)) for one in watched]
+        peaks = [DesignPeaks(one, *np.empty((4, designs))) for one in watched]
         for r, of in enumerate(peaks):
             _call("hbvib_batch_response_peaks", handle, r, designs, of.amplitude, of.omega)
+            _call("hbvib_batch_response_ends", handle, r, designs, of.end_amplitude, of.end_omega)
         batch = cls(amplitude, omega, status, points, reasons, peaks)
         batch._owner, batch._kept = owner, kept
         return batch
@@ -161,8 +166,9 @@ class Batch:
         names = ("peak_amplitude", "peak_omega", "status", "points")
         amplitude, omega, status, points = (np.concatenate([getattr(batch, name) for batch in batches]) for name in names)
         lists = [batch.responses for batch in batches]
-        peaks = [DesignPeaks(of[0].response, np.concatenate([one.amplitude for one in of]),
-                             np.concatenate([one.omega for one in of])) for of in zip(*lists)]
+        fields = DesignPeaks._fields[1:]
+        peaks = [DesignPeaks(of[0].response, *(np.concatenate([getattr(one, name) for one in of]) for name in fields))
+                 for of in zip(*lists)]
         return Batch(amplitude, omega, status, points, reasons, peaks)
 
     def __reduce__(self) -> Any:

@@ -1012,7 +1012,8 @@ parameter_options: uint32 struct_size; int32 follow; pointer parameter; double s
     at_len; double log10_start log10_stop; pointer response
 batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved; pointer responses;
     int64 responses_len
-wheel_info: uint32 struct_size; int32 reserved; int64 blade; double largest tuned tuned_omega amplification
+wheel_info: uint32 struct_size; int32 reserved; int64 blade; double largest tuned tuned_omega amplification; int64
+    beyond; double end_amplitude end_omega
 band_options: uint32 struct_size; int32 of; pointer contacts; int64 contacts_len starts
 band_info: uint32 struct_size; int32 complete; int64 sliders states solved; double lower upper lower_omega upper_omega
     lower_gain upper_gain; int64 lower_at_limit upper_at_limit; double lower_error upper_error
@@ -1204,11 +1205,13 @@ batch_free: h
 batch_designs: h -> int64
 batch_peaks: h l p p p p
 batch_response_peaks: h l l p p
+batch_response_ends: h l l p p
 batch_status: h l
 batch_branch: h l p
 wheel_info_init: wheel_info z
 wheel_peaks: h h response solver_options d d hooks l p p p p wheel_info p
 wheel_identify: h i l p matrix i l l p l p p p p hooks l p p p p
+wheel_blade_modes: h l p l l hooks l p l p l p p p p
 branch_freedom: h h l l p p p p p hooks
 band_options_init: band_options z
 band_info_init: band_info z
@@ -1463,6 +1466,8 @@ if TYPE_CHECKING:
             points: Any) -> int: ...
         def hbvib_batch_response_peaks(self, batch: Any, response: int, capacity: int, amplitude: Any, omega:
             Any) -> int: ...
+        def hbvib_batch_response_ends(self, batch: Any, response: int, capacity: int, amplitude: Any, omega:
+            Any) -> int: ...
         def hbvib_batch_status(self, batch: Any, design: int) -> int: ...
         def hbvib_batch_branch(self, batch: Any, design: int, out: Any) -> int: ...
         def hbvib_wheel_info_init(self, i: Any, size_of_i: int) -> int: ...
@@ -1473,6 +1478,9 @@ if TYPE_CHECKING:
             families: int, n_points: int, points: Any, n_modes: int, omega: Any, sigma_omega: Any, shapes: Any,
             sigma_shape: Any, hooks: Any, sectors: int, delta: Any, covariance: Any, chi2: Any, degrees:
             Any) -> int: ...
+        def hbvib_wheel_blade_modes(self, cyclic: Any, n_dofs: int, dofs: Any, modes: int, families: int, hooks: Any,
+            n_points: int, points: Any, weights_len: int, weights: Any, ndof: int, numbers: Any, first: Any, left_out:
+            Any, out: Any) -> int: ...
         def hbvib_branch_freedom(self, model: Any, branch: Any, point: int, capacity: int, contact: Any, direction: Any,
             place: Any, derivative: Any, count: Any, hooks: Any) -> int: ...
         def hbvib_band_options_init(self, o: Any, size_of_o: int) -> int: ...

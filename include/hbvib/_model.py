@@ -12,6 +12,7 @@ from ._analyses import _Analyses
 from ._axis_nodes import axis_nodes
 from ._band import _Bands
 from ._batch import _Batches
+from ._blade_modes import _BladeModes
 from ._c import MatrixKind, SectorFrame
 from ._caller_law import _CallerLaws
 from ._calls import _call
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches, _Bands, _ModeBands, _Fits,
-            _StaticHistories, _Wheels, _WheelQuantiles, _WheelIdentifications, _Intentional, _Dampers, _Lives, _TimeSweeps):
+            _StaticHistories, _Wheels, _WheelQuantiles, _WheelIdentifications, _BladeModes, _Intentional, _Dampers, _Lives, _TimeSweeps):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.
 

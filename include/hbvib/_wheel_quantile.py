@@ -144,7 +144,7 @@ class _WheelQuantiles(_WheelStudies):
             largest, _, at[wanted], status = self._largest_blades(wheel, parameters, transform(given[wanted]), omega, watched,
                                                                   threads=threads, **solver)
             # A response that ended early may lack its highest peak.
-            return cast("FloatArray", np.where((status == Status.OK) | (status == Status.STOPPED_NO_PEAK), largest, np.nan))
+            return cast("FloatArray", np.where(status == Status.OK, largest, np.nan))
 
         alpha = 1 - confidence
         found = screened(predicted, find, probability, alpha * (1 if fine is None else 1 - _OF_CORRECTION), first, most,

@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ._c import Status
 from ._order_statistics import at_rank, ends
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ._branch import Branch
-    from ._results import FloatArray
+    from ._results import BoolArray, FloatArray
 
 
 class WheelPeaks(NamedTuple):
@@ -19,8 +20,9 @@ class WheelPeaks(NamedTuple):
 
     amplitude, omega, error   of each blade, NaN where it has none (error: where no tolerance asked for it).
     blade          with the highest one, -1 without any.
-    tuned          peak of the tuned wheel; amplification is the highest peak over it.
+    tuned          peak of the tuned wheel; amplification is the highest peak over it, NaN where one of both lies beyond the range.
     branch         the response of the wheel, whose response s is that of blade s.
+    beyond         whether a blade moves more at an end of the range than at each of its peaks.
 
     >>> import hbvib
     >>> sector = hbvib.Model.cyclic(1, sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-0.1),
@@ -37,6 +39,7 @@ class WheelPeaks(NamedTuple):
     tuned: float
     amplification: float
     branch: Branch
+    beyond: BoolArray
 
     def envelope(self) -> tuple[FloatArray, FloatArray]:
         """Frequencies of the curve, and the largest response over all blades at each.
@@ -109,7 +112,7 @@ class WheelStudy:
     """The largest blade of each of many wheels; made by Model.wheel_study.
 
     largest, blade, omega   highest peak of each wheel, its blade and its angular frequency.
-    status         numbers of Status, one a wheel: OK, or why it has no result.
+    status         numbers of Status, one a wheel: OK, or why it has no result; STOPPED_NO_PEAK where its highest peak is beyond the range.
     tuned          peak of the tuned wheel.
     predicted      largest blade of each wheel by the derivatives of the tuned wheel.
 
@@ -133,7 +136,20 @@ class WheelStudy:
         known = np.isfinite(self.largest)
         largest = f", amplification up to {self.amplification[known].max():.4g}" if known.any() else ""
         missing = "" if known.all() else f", {np.count_nonzero(~known)} without result"
-        return f"<hbvib.WheelStudy: {len(self)} wheels{largest}{missing}>"
+        beyond = f", {self.beyond} of them with the highest peak beyond the range" if self.beyond else ""
+        return f"<hbvib.WheelStudy: {len(self)} wheels{largest}{missing}{beyond}>"
+
+    @property
+    def beyond(self) -> int:
+        """Number of wheels whose highest peak lies beyond an end of the range: they have no result, and widen the intervals of
+        quantiles.
+
+        >>> import hbvib
+        >>> import numpy as np
+        >>> hbvib.WheelStudy([1.1, np.nan], [0, 0], [1, 1], [0, hbvib.Status.STOPPED_NO_PEAK], 1.0, [1.1, 1.2]).beyond
+        1
+        """
+        return int(np.count_nonzero(self.status == Status.STOPPED_NO_PEAK))
 
     @property
     def amplification(self) -> FloatArray:
@@ -205,7 +221,8 @@ class WheelStudy:
 
     def weibull(self) -> WheelWeibull:
         """The Weibull distribution of maxima of the greatest likelihood for the amplification (Castanier & Pierre 2006,
-        doi:10.2514/1.16345) of the wheels with a result. The bound is sought up to a hundred times the span of the values above the largest of them.
+        doi:10.2514/1.16345) of the wheels with a result. The bound is sought up to a hundred times the span of the values above
+        the largest of them. ValueError with wheels beyond the range, which may be the largest.
 
         >>> import hbvib
         >>> import numpy as np
@@ -214,6 +231,8 @@ class WheelStudy:
         >>> np.array(study.weibull()).round(1).tolist()
         [1.5, 0.4, 3.0]
         """
+        if self.beyond:
+            raise ValueError(f"{self.beyond} of {len(self)} wheels have their highest peak beyond the range; widen omega")
         values = np.sort(self.amplification[np.isfinite(self.largest)])
         if len(values) < 3 or values[0] == values[-1]:
             raise ValueError(f"{len(values)} different wheels, needs at least 3")

@@ -64,7 +64,8 @@ class _WheelStudies(_HasUnits):
         """The highest peak of each blade of this wheel, which `sector.wheel()` made, and the amplification against the tuned
         one. All blades are watched, so that a tolerance holds for each.
 
-        omega      (start, stop) of the response.
+        omega      (start, stop) of the response. Where the highest peak lies beyond an end, so that a blade moves more there than at
+                   every peak, the amplification is NaN and branch.message names the end.
         blade      what is watched of each sector: a degree of freedom of the sector, or a Response.
         progress, phase, cancel   as in forced_response. Options of the solver; harmonics without tolerance means
         tolerance = 0:
@@ -90,11 +91,15 @@ class _WheelStudies(_HasUnits):
             hooks = _hooks(guard, progress, None, LogLevel.INFO, cancel, phase)
             status = _call("hbvib_wheel_peaks", self.handle, sector.handle, array, chosen, start, stop, hooks, sectors, amplitude,
                            frequency, error, count, info, handle, guard=guard)
+        # The next call empties it.
+        message = _sentence(int(status)) if status else ""
         assert handle.value is not None and kept
         n = sector.ndof
-        branch = Branch(handle.value, tuple(self._kept), _sentence(int(status)) if status else "", self._units)
+        branch = Branch(handle.value, tuple(self._kept), message, self._units)
         branch._responses = tuple(_of_sector(_blade(blade), s * n) for s in range(sectors))
-        return WheelPeaks(amplitude, frequency, error, info.blade, info.tuned, info.amplification, branch)
+        ends = np.array([np.max(one.amplitude[[0, -1]]) for one in branch.responses])
+        beyond = ends > np.where(np.isfinite(amplitude), amplitude, 0.0)
+        return WheelPeaks(amplitude, frequency, error, info.blade, info.tuned, info.amplification, branch, beyond)
 
     @_with_options("hbvib_solver_options", SolverOptions)
     def wheel_study(self, omega: ArrayLike, patterns: ArrayLike, *, kind: Mistunings = "stiffness",
@@ -103,7 +108,8 @@ class _WheelStudies(_HasUnits):
                     **solver: Unpack[SolverOptions]) -> WheelStudy:
         """The largest blade of each of many wheels of this sector.
 
-        omega      (start, stop) of each response: peaks outside are not seen.
+        omega      (start, stop) of each response. A wheel that moves more at an end than at every peak has its highest peak beyond: it
+                   has no result, and the status STOPPED_NO_PEAK.
         patterns   wheels x sectors: delta of each sector of each wheel, as `mistune` takes it.
         kind       "stiffness", "frequency", "mass" or "damping", of `dofs` or by `direction`, as in `mistune`.
         blade      what is watched of each sector: a degree of freedom of the sector, or a Response.
@@ -196,15 +202,22 @@ class _WheelStudies(_HasUnits):
 
     def _largest_blades(self, wheel: Model, parameters: Sequence[Parameter], values: FloatArray, omega: ArrayLike, blade: Response,
                         **options: Any) -> Any:
-        """Highest peak of each wheel, its blade and frequency, and the status of the wheel."""
+        """Highest peak of each wheel, its blade and frequency, and the status of the wheel: STOPPED_NO_PEAK and no peak where that
+        lies beyond the range."""
         sector = cast("Model", self)
         watched = [_of_sector(blade, s * sector.ndof) for s in range(sector.sectors)]
         found = wheel.batch(omega, parameters, values, responses=watched, **options)
         of_blades = np.array([peaks.amplitude for peaks in found.responses])
         at = np.array([peaks.omega for peaks in found.responses])
-        largest = np.where(np.isfinite(of_blades), of_blades, -np.inf).argmax(axis=0)
-        each = np.arange(len(values))
-        return of_blades[largest, each], largest, at[largest, each], found.status
+        known = np.where(np.isfinite(of_blades), of_blades, -np.inf)
+        largest, each = known.argmax(axis=0), np.arange(len(values))
+        ends = np.fmax.reduce([peaks.end_amplitude for peaks in found.responses])
+        # The status of a design is that of blade 0.
+        solved = (found.status == Status.OK) | (found.status == Status.STOPPED_NO_PEAK)
+        beyond = solved & ~(known[largest, each] >= ends)
+        status = np.where(beyond, Status.STOPPED_NO_PEAK, np.where(solved, Status.OK, found.status))
+        hidden = np.where(beyond, np.nan, 1.0)
+        return of_blades[largest, each] * hidden, largest, at[largest, each] * hidden, status
 
     def _predicted(self, wheel: Model, parameters: Sequence[Parameter], transform: Any, patterns: FloatArray, mistuning: Any,
                    blade: Response, omega: ArrayLike, solver: Any) -> tuple[float, FloatArray]:
@@ -259,10 +272,15 @@ class _WheelStudies(_HasUnits):
         branch = wheel.forced_response(omega, responses=[watched], **solver)
         if branch.status == Status.STOPPED_BY_CALLER:
             raise Stopped(_sentence(branch.status), branch.status, 0)
-        peaks = branch.responses[0].peaks()
+        peaks, curve = branch.responses[0].peaks(), branch.responses[0].amplitude
+        start, stop = _range("omega", omega, "(0.8, 1.6)")
         if len(peaks.point) == 0:
-            raise ArgumentError("no peak of the watched blade lies within omega", Status.E_ARGUMENT, 2)
+            raise ArgumentError(f"no peak of the watched blade lies within omega = {start} .. {stop}; widen it", Status.E_ARGUMENT, 2)
         best = int(np.argmax(peaks.amplitude))
+        if branch.status == Status.OK and max(curve[0], curve[-1]) > peaks.amplitude[best]:
+            raise ArgumentError(f"the watched blade moves more at an end of omega = {start} .. {stop}, {max(curve[0], curve[-1]):.6g}, "
+                                f"than at its highest peak within, {peaks.amplitude[best]:.6g}: that lies beyond; widen omega",
+                                Status.E_ARGUMENT, 2)
         point = int(peaks.point[best])
         try:
             gradient = np.array(wheel.sensitivity(branch, point, parameters, response=0)) if parameters else np.empty(0)

@@ -26,6 +26,9 @@ pub fn forced_response(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
+    if let Some(waves) = solver.stability {
+        waves.check("stability", model.structure().sectors())?;
+    }
     // One result, made where the caller wants it: copies would lie on the stack under every response.
     let mut found = if range.branches == 0 {
         alone(model, solver, range, hooks)

@@ -296,24 +296,64 @@ pub unsafe extern "C" fn hbvib_batch_response_peaks(
         let batch = read::<Batch>(batch, 1)?;
         let response = index(response, batch.responses(), 2, "response")?;
         let peaks = batch.peaks();
-        let n = peaks.len();
-        if count(capacity, 3, "capacity")? < n {
-            return fail!(Dimension, "capacity = {capacity}, needs {n}").with_argument(3);
+        if count(capacity, 3, "capacity")? < peaks.len() {
+            return fail!(Dimension, "capacity = {capacity}, needs {}", peaks.len()).with_argument(3);
         }
-        disjoint(
-            &[],
-            &[
-                Range::new(amplitude, n, 4, "amplitude")?,
-                Range::new(omega, n, 5, "omega")?,
-            ],
-        )?;
-        let of = |peak: &DesignPeak| peak.responses.get(response).copied().unwrap_or((f64::NAN, f64::NAN));
-        unsafe {
-            fill(amplitude, peaks, (4, "amplitude"), |peak| of(peak).0)?;
-            fill(omega, peaks, (5, "omega"), |peak| of(peak).1)?;
-        }
-        Ok(Status::Ok)
+        unsafe { fill_pairs((peaks, response), |peak| &peak.responses, amplitude, omega) }
     })
+}
+
+/// The larger value of a response of each design at the two ends of the range, in the order of
+/// their values. Where it is above the highest peak of hbvib_batch_response_peaks, or there is
+/// none, the highest peak lies beyond that end.
+///
+/// response   number of the response of hbvib_batch_options, from 0.
+/// capacity   numbers that fit into each array: at least the number of designs.
+/// amplitude  receives measures, NaN where the design failed; or NULL.
+/// omega      receives the angular frequency of the end; or NULL.
+/// Errors: HBVIB_E_INDEX (response), HBVIB_E_DIMENSION (capacity: the arrays are untouched),
+/// HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any
+/// number on one batch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_batch_response_ends(
+    batch: *const hbvib_batch,
+    response: i64,
+    capacity: i64,
+    amplitude: *mut f64,
+    omega: *mut f64,
+) -> hbvib_status {
+    call(|| {
+        let batch = read::<Batch>(batch, 1)?;
+        let response = index(response, batch.responses(), 2, "response")?;
+        let peaks = batch.peaks();
+        if count(capacity, 3, "capacity")? < peaks.len() {
+            return fail!(Dimension, "capacity = {capacity}, needs {}", peaks.len()).with_argument(3);
+        }
+        unsafe { fill_pairs((peaks, response), |peak| &peak.ends, amplitude, omega) }
+    })
+}
+
+/// Fills arguments 4 and 5 with a pair of each design.
+unsafe fn fill_pairs(
+    (peaks, response): (&[DesignPeak], usize),
+    pairs: impl Fn(&DesignPeak) -> &Vec<(f64, f64)>,
+    amplitude: *mut f64,
+    omega: *mut f64,
+) -> Result<Status> {
+    let n = peaks.len();
+    disjoint(
+        &[],
+        &[
+            Range::new(amplitude, n, 4, "amplitude")?,
+            Range::new(omega, n, 5, "omega")?,
+        ],
+    )?;
+    let of = |peak: &DesignPeak| pairs(peak).get(response).copied().unwrap_or((f64::NAN, f64::NAN));
+    unsafe {
+        fill(amplitude, peaks, (4, "amplitude"), |peak| of(peak).0)?;
+        fill(omega, peaks, (5, "omega"), |peak| of(peak).1)?;
+    }
+    Ok(Status::Ok)
 }
 
 /// The status of a design, whose sentence hbvib_last_error then has: HBVIB_OK;

@@ -74,11 +74,12 @@ pub enum hbvib_mistuning {
 /// sectors    length of delta, the number of sectors.
 /// delta      of each sector, finite; with dofs at least -1.
 /// Errors: HBVIB_E_ARGUMENT (kind, dofs twice or none that moves, neither dofs nor direction, or
-/// both; delta with dofs; a load below 0), HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION
-/// (another model or number of sectors, n_dofs), HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the
-/// stiffness of the clamped blade), HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an
-/// attachment that is too large), those of hbvib_model_set_matrix for the direction; HBVIB_E_NULL,
-/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
+/// both; delta with dofs; a load below 0; matrices of `cyclic` that the wheel was not made of),
+/// HBVIB_E_INDEX (dofs, contact), HBVIB_E_DIMENSION (another model or number of sectors, n_dofs),
+/// HBVIB_E_NOT_FINITE (delta), HBVIB_E_SINGULAR (the stiffness of the clamped blade),
+/// HBVIB_E_UNSUPPORTED (a stiffness without symmetry, an attachment that is too large), those of
+/// hbvib_model_set_matrix for the direction; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per wheel.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_wheel_mistune(

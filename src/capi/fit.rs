@@ -290,12 +290,7 @@ pub unsafe extern "C" fn hbvib_fit(
     call(|| {
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
-        let given = if options.is_null() {
-            hbvib_fit_options::defaults()
-        } else {
-            unsafe { load(options, 3) }?
-        };
-        let options = fit_options(&given).with_argument(3)?;
+        let options = unsafe { chosen_options(options) }?;
         let hooks = unsafe { load_hooks(hooks, 4) }?;
         let count = parameter_count(count)?;
         let given = unsafe { loaded(parameters, count) }?;
@@ -448,7 +443,20 @@ pub(super) unsafe fn all_parameters<'a>(given: &'a [hbvib_parameter], model: &Mo
     Ok(described)
 }
 
-pub(super) fn fit_options(o: &hbvib_fit_options) -> Result<FitOptions> {
+/// The options of argument 3; NULL: the defaults.
+///
+/// # Safety
+/// The caller of the C function states that they lie there.
+pub(super) unsafe fn chosen_options(options: *const hbvib_fit_options) -> Result<FitOptions> {
+    let given = if options.is_null() {
+        hbvib_fit_options::defaults()
+    } else {
+        unsafe { load(options, 3) }?
+    };
+    fit_options(&given).with_argument(3)
+}
+
+fn fit_options(o: &hbvib_fit_options) -> Result<FitOptions> {
     if !matches!(o.scale_covariance, 0 | 1) {
         return fail!(Argument, "scale_covariance = {}, needs 0 or 1", o.scale_covariance);
     }

@@ -4,7 +4,7 @@
 
 use super::arrays::{Range, count, disjoint, input, output};
 use super::boundary::{WithArgument, call};
-use super::fit::{all_parameters, all_unknowns, fit_options, hbvib_fit_options, hbvib_unknown, parameter_count};
+use super::fit::{all_parameters, all_unknowns, chosen_options, hbvib_fit_options, hbvib_unknown, parameter_count};
 use super::fit_data::{Described, hbvib_data};
 use super::handles::read;
 use super::model::hbvib_model;
@@ -12,7 +12,7 @@ use super::sensitivities::{hbvib_parameter, loaded};
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
-use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::{Result, fail};
 use crate::model::Model;
 use crate::studies::{self, FitProfile, Profiled};
@@ -119,12 +119,7 @@ pub unsafe extern "C" fn hbvib_fit_profile(
     call(|| {
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
-        let given = if options.is_null() {
-            hbvib_fit_options::defaults()
-        } else {
-            unsafe { load(options, 3) }?
-        };
-        let options = fit_options(&given).with_argument(3)?;
+        let options = unsafe { chosen_options(options) }?;
         let hooks = unsafe { load_hooks(hooks, 4) }?;
         let p = parameter_count(count)?;
         let given = unsafe { loaded(parameters, p) }?;

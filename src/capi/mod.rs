@@ -89,6 +89,7 @@ mod time_run_up;
 mod time_sweep;
 mod time_verify;
 mod version_and_errors;
+mod wheel_blade_modes;
 mod wheel_identify;
 mod wheel_peaks;
 
@@ -150,5 +151,6 @@ pub use time_run_up::*;
 pub use time_sweep::*;
 pub use time_verify::*;
 pub use version_and_errors::*;
+pub use wheel_blade_modes::*;
 pub use wheel_identify::*;
 pub use wheel_peaks::*;

@@ -154,6 +154,11 @@ pub unsafe extern "C" fn hbvib_forced_response(
     call(|| {
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
+        let sectors = model.structure().sectors();
+        solver
+            .stability
+            .map_or(Ok(()), |waves| waves.check("stability", sectors))
+            .with_argument(2)?;
         let forced = unsafe { load(forced, 3) }?;
         let watched =
             unsafe { Watched::new(forced.responses, forced.responses_len, model.ndof(), 3) }.with_argument(3)?;
@@ -199,6 +204,7 @@ unsafe fn forced_options<'a>(
         most_branches: number(o.most_branches, "most_branches")?,
     };
     options.check()?;
+    options.check_search()?;
     options.check_guess(ndof)?;
     Ok(options)
 }

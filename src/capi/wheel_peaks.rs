@@ -14,6 +14,7 @@ use super::solve_options::{hbvib_solver_options, solver_options};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
+use crate::error::Status;
 use crate::model::Model;
 use crate::options::{ForcedOptions, Response};
 use crate::studies::{self, BladePeak};
@@ -34,8 +35,16 @@ pub struct hbvib_wheel_info {
     pub tuned: f64,
     /// Angular frequency of the peak of the tuned wheel.
     pub tuned_omega: f64,
-    /// Amplification factor: largest over tuned.
+    /// Amplification factor: largest over tuned; NaN where one of both lies beyond an end of the
+    /// range.
     pub amplification: f64,
+    /// Blades whose response is larger at an end of the range than at each of their peaks.
+    pub beyond: i64,
+    /// Largest response of a blade at an end of the range: above `largest`, the highest peak of the
+    /// wheel lies beyond that end.
+    pub end_amplitude: f64,
+    /// Angular frequency of that end.
+    pub end_omega: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_wheel_info {
@@ -51,6 +60,9 @@ unsafe impl VersionedStruct for hbvib_wheel_info {
             tuned: 0.0,
             tuned_omega: 0.0,
             amplification: 0.0,
+            beyond: 0,
+            end_amplitude: 0.0,
+            end_omega: 0.0,
         }
     }
 }
@@ -86,9 +98,13 @@ pub unsafe extern "C" fn hbvib_wheel_info_init(i: *mut hbvib_wheel_info, size_of
 /// info         receives the numbers of the largest one; fill it by hbvib_wheel_info_init before;
 ///              or NULL.
 /// out          receives the response of the wheel, whose response s is that of blade s; or NULL.
-/// Positive statuses are those of hbvib_forced_response, of the response of the wheel.
+/// HBVIB_STOPPED_NO_PEAK: the highest peak of the wheel, or of the tuned one, lies beyond an end of
+/// the range, as a blade is larger there than at each peak within; everything is written, and the
+/// amplification is NaN. Other positive statuses are those of hbvib_forced_response, of the
+/// response of the wheel.
 /// Errors: HBVIB_E_DIMENSION (the wheel of another model, capacity), HBVIB_E_INDEX (blade),
-/// HBVIB_E_ARGUMENT (range), those of hbvib_forced_response. Threads: any number on one model.
+/// HBVIB_E_ARGUMENT (range; the wheel of another model), those of hbvib_forced_response. Threads:
+/// any number on one model.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_wheel_peaks(
@@ -144,7 +160,15 @@ pub unsafe extern "C" fn hbvib_wheel_peaks(
                 studies::wheel_peaks(&wheel, &cyclic, &blade, &solver, &options, hooks)
             })
         }?;
-        let outcome = Outcome::from(&found.branch);
+        let mut outcome = Outcome::from(&found.branch);
+        if outcome.status == Status::Ok
+            && let Some(outside) = found.outside()
+        {
+            outcome = Outcome {
+                status: outside.status,
+                reason: Some(outside),
+            };
+        }
         let row = |one: &BladePeak| {
             [
                 Entry::Real(one.amplitude),
@@ -154,12 +178,18 @@ pub unsafe extern "C" fn hbvib_wheel_peaks(
         };
         unsafe { fill_list(&columns, found.blades.iter().map(row), (capacity, 8), (count, 12)) }?;
         if !info.is_null() {
+            let end = (found.blades.iter()).fold((f64::NAN, f64::NAN), |most, blade| {
+                if blade.end.0 <= most.0 { most } else { blade.end }
+            });
             let value = hbvib_wheel_info {
                 blade: found.largest.map_or(-1, |blade| blade as i64),
                 largest: found.largest.map_or(f64::NAN, |blade| found.blades[blade].amplitude),
                 tuned: found.tuned.amplitude,
                 tuned_omega: found.tuned.omega,
                 amplification: found.amplification(),
+                beyond: found.blades.iter().filter(|blade| blade.is_beyond()).count() as i64,
+                end_amplitude: end.0,
+                end_omega: end.1,
                 ..hbvib_wheel_info::defaults()
             };
             unsafe { fill_out(info, value) };

@@ -9,6 +9,9 @@ use num_complex::Complex64;
 /// Width of a range, relative, that is rounding of its ends.
 const NARROWEST_RANGE: f64 = 1e-12;
 
+/// Largest number of `branches`.
+const MOST_SOUGHT: usize = 4;
+
 /// Options of a forced response over a range of frequency.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ForcedOptions<'a> {
@@ -68,10 +71,7 @@ impl ForcedOptions<'_> {
                 self.omega_start
             );
         }
-        if self.branches > 4 {
-            return fail!(Argument, "branches = {}, needs 0 .. 4", self.branches);
-        }
-        check_tree(self.branch_depth, self.most_branches)?;
+        check_tree((self.branches, MOST_SOUGHT), self.branch_depth, self.most_branches)?;
         let (low, high) = (
             self.omega_start.min(self.omega_stop),
             self.omega_start.max(self.omega_stop),
@@ -83,6 +83,22 @@ impl ForcedOptions<'_> {
             if w < low || w > high {
                 return fail!(Argument, "at[{i}] = {w}, needs a frequency within {low} .. {high}");
             }
+        }
+        Ok(())
+    }
+
+    /// Refuses a search for branches at a single frequency, where none can be followed.
+    ///
+    /// # Errors
+    /// `Argument`.
+    pub(crate) fn check_search(&self) -> Result<()> {
+        if self.branches > 0 && self.omega_stop - self.omega_start == 0.0 {
+            return fail!(
+                Argument,
+                "branches = {} at the single frequency omega_start = omega_stop = {}, needs 0 there: branches are followed over a range",
+                self.branches,
+                self.omega_start
+            );
         }
         Ok(())
     }

@@ -184,10 +184,7 @@ impl ModeOptions<'_> {
                 );
             }
         }
-        if self.branches > 1 {
-            return fail!(Argument, "branches = {}, needs 0 or 1", self.branches);
-        }
-        check_tree(self.branch_depth, self.most_branches)?;
+        check_tree((self.branches, 1), self.branch_depth, self.most_branches)?;
         if let Some(guess) = &self.guess {
             let rows = guess.motion.len() / ndof.max(1);
             if rows < 2 || rows * ndof != guess.motion.len() || rows > MAX_HARMONIC + 1 {

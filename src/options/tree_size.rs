@@ -13,17 +13,26 @@ pub(crate) fn size_of_tree(depth: usize, most: usize) -> (usize, usize) {
     (value(depth, DEPTH), value(most, MOST_BRANCHES))
 }
 
-/// Refuses a larger tree.
+/// Refuses a larger tree, and the size of one that is not sought: `largest` is the largest number of `branches`.
 ///
 /// # Errors
 /// `Argument`, naming the field, its value and its range.
-pub(super) fn check_tree(depth: usize, most: usize) -> Result<()> {
+pub(super) fn check_tree((branches, largest): (usize, usize), depth: usize, most: usize) -> Result<()> {
+    if branches > largest {
+        return fail!(Argument, "branches = {branches}, needs 0 .. {largest}");
+    }
     for (name, value, largest) in [
         ("branch_depth", depth, TREE_SIZE_LARGEST.0),
         ("most_branches", most, TREE_SIZE_LARGEST.1),
     ] {
         if value > largest {
             return fail!(Argument, "{name} = {value}, needs 0 (automatic) .. {largest}");
+        }
+        if value > 0 && branches == 0 {
+            return fail!(
+                Argument,
+                "{name} = {value} with branches = 0, needs 0: no branches are sought; or branches of 1 and more"
+            );
         }
     }
     Ok(())

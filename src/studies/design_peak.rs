@@ -8,6 +8,7 @@ use crate::model::Model;
 use crate::options::{BatchOptions, SolverOptions};
 use crate::results::{Branch, Special};
 use crate::sensitivity::{Parameter, design};
+use crate::studies::range_ends::at_ends;
 
 /// The highest maximum of the amplitude of a design within the range.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub struct DesignPeak {
     /// Amplitude and angular frequency of the highest peak of each response that was asked for; NaN without a maximum. None
     /// where the design failed.
     pub responses: Vec<(f64, f64)>,
+    /// The larger value of each response at the ends of the range, and its angular frequency: above the highest peak, that lies beyond.
+    pub ends: Vec<(f64, f64)>,
 }
 
 /// Amplitude and frequency of the highest of some peaks; NaN without one.
@@ -49,6 +52,7 @@ impl DesignPeak {
             points: 0,
             reason: None,
             responses: Vec::new(),
+            ends: Vec::new(),
         }
     }
 
@@ -72,6 +76,7 @@ impl DesignPeak {
         (found.amplitude, found.omega) = highest(branch.peaks());
         for response in branch.responses() {
             try_push(&mut found.responses, highest(response.peaks()), "the peaks of a design")?;
+            try_push(&mut found.ends, at_ends(branch, response), "the peaks of a design")?;
         }
         if found.status == Status::Ok && branch.peaks().is_empty() {
             found.status = Status::StoppedNoPeak;

@@ -38,8 +38,7 @@ use crate::sensitivity::Parameter;
 use crate::studies::fit::fit_result::{is_poor, result};
 use crate::studies::fit::fit_search::Search;
 use crate::studies::fit::fit_unknowns::Unknowns;
-use crate::studies::fit::predicted_data::Predictor;
-use crate::studies::fit::preparation::{check, of_fit};
+use crate::studies::fit::preparation::{check, predictor};
 use crate::studies::fit::searches::{Searched, searched};
 use crate::studies::fit::suspected_units::suspected;
 
@@ -66,16 +65,8 @@ pub fn fit(
     }
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Results, 0.0)?;
-    // Bases of waves are shared by all designs of the fit, and leave the caller's model as it is.
     let own = model.separate_clone()?;
-    let predictor = Predictor {
-        model: &own,
-        parameters,
-        scopes: &unknowns.scopes,
-        data,
-        solver: of_fit(solver, data),
-        interrupt: &interrupt,
-    };
+    let predictor = predictor(&own, (parameters, &unknowns.scopes), data, solver, &interrupt);
     let search = Search {
         predictor: &predictor,
         unknowns: &unknowns,

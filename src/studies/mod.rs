@@ -3,12 +3,14 @@
 pub mod batch;
 pub mod campbell;
 pub mod campbell_response;
+pub(crate) mod condition_noise;
 pub mod design_peak;
 pub mod fit;
 pub mod further_threads;
 pub mod interference;
 pub mod mission;
 pub(crate) mod mode_adjustment;
+pub(crate) mod range_ends;
 pub mod run_up;
 pub mod wear;
 pub mod wheel_identify;

@@ -6,17 +6,18 @@
 //! ```text
 //! [ HᵀH/s²   0     D ] [dp]   [ Hᵀ(y − Hp)/s² ]
 //! [ 0        1/σ²  cᵀ] [dω] = [ (z − ω)/σ²    ]
-//! [ D        c    −τ²] [ μ]   [ −g − B dδ     ]
+//! [ D        c    −R ] [ μ]   [ −g − B dδ     ]
 //! ```
 //!
-//! with a residual τμ of the condition, whose deviation τ = 2σ s is that of the product of both errors, which the conditions leave out:
-//! without it two modes of one frequency would be taken as not coupled at all. So e is a linear function of dδ, and the least squares
-//! over all modes are the adjustment of observations with conditions (Helmert; Pope 1972), which sees the noise of the shapes also
-//! where they multiply the unknowns.
+//! with a residual Rμ of the conditions, whose covariance R is that of the products of errors, which linear conditions leave out
+//! (`condition_noise`): without it two modes of one frequency would be taken as not coupled at all. So e is a linear function of dδ, and
+//! the least squares over all modes are the adjustment of observations with conditions (Helmert; Pope 1972), which sees the noise of the
+//! shapes also where they multiply the unknowns.
 
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
+use crate::studies::condition_noise::{ConditionNoise, ModeErrors};
 
 const CONTEXT: &str = "a measured mode";
 
@@ -51,6 +52,18 @@ impl Reduced {
             }
         }
         Ok(sum)
+    }
+
+    /// Matrices of independent parts of the pattern, one after the other: `lower` is the Cholesky factor of its covariance.
+    pub fn of_parts(&self, lower: &[f64]) -> Result<Vec<f64>> {
+        let mut parts = try_vec(self.matrices.len(), 0.0, CONTEXT)?;
+        for (part, column) in parts
+            .chunks_exact_mut(self.modes * self.modes)
+            .zip(lower.chunks_exact(self.sectors))
+        {
+            part.copy_from_slice(&self.of_pattern(column)?);
+        }
+        Ok(parts)
     }
 
     fn shown(&self, p: &[f64], out: &mut [f64]) {
@@ -90,6 +103,7 @@ pub(crate) struct Observed {
     omega: f64,
     /// dp, dω for dδ = 0, then their derivatives by each δ.
     steps: Vec<f64>,
+    noise: ConditionNoise,
 }
 
 impl Observed {
@@ -109,6 +123,7 @@ impl Observed {
             p: try_vec(m, 0.0, CONTEXT)?,
             omega: frequency,
             steps: try_vec(width * (reduced.sectors + 1), 0.0, CONTEXT)?,
+            noise: ConditionNoise::equal(m, 2.0 * of_frequency * of_shape)?,
         })
     }
 
@@ -141,37 +156,9 @@ impl Observed {
     ) -> Result<f64> {
         let (m, sectors, points) = (reduced.modes, reduced.sectors, reduced.points());
         let width = 2 * m + 1;
-        let square = self.omega * self.omega;
-        let slack = 2.0 * self.of_frequency * self.of_shape;
         let (of_frequency, of_shape) = (self.of_frequency.powi(-2), self.of_shape.powi(-2));
-        // D and c.
-        let factor = if reduced.of_mass { -square } else { 1.0 };
-        let mut d = try_vec(m * m, 0.0, CONTEXT)?;
-        for (d, a) in d.iter_mut().zip(pattern) {
-            *d = factor * a;
-        }
-        let mut inertia = try_vec(m, 0.0, CONTEXT)?;
-        inertia.copy_from_slice(&self.p);
-        if reduced.of_mass {
-            add_product(1.0, pattern, &self.p, &mut inertia);
-        }
-        for (i, lambda) in reduced.squares.iter().enumerate() {
-            d[i * m + i] += lambda - square;
-        }
-        let matrix = lu.matrix();
-        matrix.fill(0.0);
-        reduced.add_seen(of_shape, matrix, width);
-        matrix[width * m + m] = of_frequency;
-        for j in 0..m {
-            for i in 0..m {
-                matrix[width * (m + 1 + j) + i] = d[m * j + i];
-                matrix[width * j + m + 1 + i] = d[m * j + i];
-            }
-            let c = -2.0 * self.omega * inertia[j];
-            matrix[width * (m + 1 + j) + m] = c;
-            matrix[width * m + m + 1 + j] = c;
-            matrix[(width + 1) * (m + 1 + j)] = -slack * slack;
-        }
+        let factor = self.factor_of_pattern(reduced);
+        let d = self.assemble(reduced, pattern, lu)?;
         lu.factor(interrupt)?;
         // Right sides: the estimate, then the matrices of the sectors.
         let mut residual = try_vec(points, 0.0, CONTEXT)?;
@@ -201,9 +188,7 @@ impl Observed {
                 *column /= -self.of_shape;
             }
             column[points] /= -self.of_frequency;
-            for (column, multiplier) in column[points + 1..].iter_mut().zip(&step[m + 1..]) {
-                *column = slack * multiplier;
-            }
+            self.noise.weighted(&step[m + 1..], &mut column[points + 1..]);
         }
         let (e, j) = columns.split_at_mut(height);
         for (e, residual) in e.iter_mut().zip(&residual) {
@@ -217,6 +202,104 @@ impl Observed {
             }
         }
         Ok(dot(e, e))
+    }
+
+    /// Factor of Σ δ_s A_s in the conditions: 1 of stiffness, −ω² of mass.
+    fn factor_of_pattern(&self, reduced: &Reduced) -> f64 {
+        if reduced.of_mass { -self.omega * self.omega } else { 1.0 }
+    }
+
+    /// Writes the matrix of the equations above, and returns D.
+    fn assemble(&self, reduced: &Reduced, pattern: &[f64], lu: &mut Lu<f64>) -> Result<Vec<f64>> {
+        let m = reduced.modes;
+        let width = 2 * m + 1;
+        let square = self.omega * self.omega;
+        let factor = self.factor_of_pattern(reduced);
+        let mut d = try_vec(m * m, 0.0, CONTEXT)?;
+        for (d, a) in d.iter_mut().zip(pattern) {
+            *d = factor * a;
+        }
+        let mut inertia = try_vec(m, 0.0, CONTEXT)?;
+        inertia.copy_from_slice(&self.p);
+        if reduced.of_mass {
+            add_product(1.0, pattern, &self.p, &mut inertia);
+        }
+        for (i, lambda) in reduced.squares.iter().enumerate() {
+            d[i * m + i] += lambda - square;
+        }
+        let matrix = lu.matrix();
+        matrix.fill(0.0);
+        reduced.add_seen(self.of_shape.powi(-2), matrix, width);
+        matrix[width * m + m] = self.of_frequency.powi(-2);
+        for j in 0..m {
+            for i in 0..m {
+                matrix[width * (m + 1 + j) + i] = d[m * j + i];
+                matrix[width * j + m + 1 + i] = d[m * j + i];
+            }
+            let c = -2.0 * self.omega * inertia[j];
+            matrix[width * (m + 1 + j) + m] = c;
+            matrix[width * m + m + 1 + j] = c;
+        }
+        self.noise.subtract_from(matrix, width);
+        Ok(d)
+    }
+
+    /// Sets the noise of the conditions to that of the errors which are left. `matrices` are those of independent parts of the pattern,
+    /// whose covariance has the Cholesky factor `lower`. The steps are those of the last normal equations.
+    pub fn know_errors(
+        &mut self,
+        reduced: &Reduced,
+        pattern: &[f64],
+        (matrices, lower): (&[f64], &[f64]),
+        lu: &mut Lu<f64>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (m, sectors) = (reduced.modes, reduced.sectors);
+        let width = 2 * m + 1;
+        // Covariance of p and ω for a known pattern: the first block of the inverse.
+        self.assemble(reduced, pattern, lu)?;
+        lu.factor(interrupt)?;
+        let mut inverse = try_vec(width * (m + 1), 0.0, CONTEXT)?;
+        for j in 0..=m {
+            inverse[(width + 1) * j] = 1.0;
+        }
+        lu.solve_columns(&mut inverse, false, interrupt)?;
+        // That by the pattern: derivatives by its independent parts.
+        let mut parts = try_vec((m + 1) * sectors, 0.0, CONTEXT)?;
+        let by_delta = &self.steps[width..];
+        for (part, of_lower) in parts.chunks_exact_mut(m + 1).zip(lower.chunks_exact(sectors)) {
+            for (step, l) in by_delta.chunks_exact(width).zip(of_lower) {
+                for (part, step) in part.iter_mut().zip(step) {
+                    *part += l * step;
+                }
+            }
+        }
+        let mut shape = try_vec(m * m, 0.0, CONTEXT)?;
+        for (shape, column) in shape.chunks_exact_mut(m).zip(inverse.chunks_exact(width)) {
+            shape.copy_from_slice(&column[..m]);
+        }
+        let mut by_pattern = try_vec(sectors, 0.0, CONTEXT)?;
+        for (part, by_pattern) in parts.chunks_exact(m + 1).zip(&mut by_pattern) {
+            for (shape, p) in shape.chunks_exact_mut(m).zip(part) {
+                for (shape, q) in shape.iter_mut().zip(part) {
+                    *shape += p * q;
+                }
+            }
+            *by_pattern = 2.0 * self.omega * part[m];
+        }
+        let factor = self.factor_of_pattern(reduced);
+        // R is even in B: the sign of the factor goes to the frequency.
+        for by_pattern in &mut by_pattern {
+            *by_pattern /= factor;
+        }
+        let errors = ModeErrors {
+            shape: &shape,
+            by_pattern: &by_pattern,
+            own: (2.0 * self.omega / factor).powi(2) * inverse[width * m + m],
+        };
+        self.noise = ConditionNoise::of_products(m, matrices, &errors)?;
+        self.noise.scale(factor.abs());
+        Ok(())
     }
 
     /// Moves the estimate by the step of a change of the pattern.

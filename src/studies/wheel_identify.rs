@@ -7,17 +7,21 @@ use crate::linalg::factors::lu::Lu;
 use crate::model::Model;
 use crate::model::few_motions::tuned_family::TunedFamily;
 use crate::model::wheels::mistuning::{BladeProperty, Mistuning};
+use crate::studies::condition_noise::lower_factor;
 use crate::studies::mode_adjustment::{Observed, Reduced};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the identification of a pattern";
 
-/// Steps of an identification at most. Kind: cap; those with noise of some per cent take 4 to 6.
-const MOST_IDENTIFICATION_STEPS: usize = 60;
+/// Steps of an identification at most. Kind: cap; 24 blades whose frequencies lie closer than their deviations take 20 to 60, others 8.
+const MOST_IDENTIFICATION_STEPS: usize = 200;
 
 /// Change of the pattern, relative to its standard deviation or absolute, at which an identification ends. Kind: rounding.
 const IDENTIFIED_TO_SIGMA: f64 = 1e-6;
 const IDENTIFIED_TO: f64 = 1e-13;
+
+/// Excess of χ² over its mean, in its standard deviations, that noise does not explain. Kind: tuned; one of ten thousand is beyond 4.
+const CONTRADICTION: f64 = 4.0;
 
 /// Measured modes of a wheel.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +82,8 @@ pub fn wheel_identify(
         mode.start(&reduced, interrupt)?;
         try_push(&mut modes, mode, CONTEXT)?;
     }
-    let mut lu = Lu::new(2 * m + 1, sectors + 1)?;
+    let mut lu = Lu::new(2 * m + 1, sectors.max(m) + 1)?;
+    let (mut knows_errors, mut last) = (false, Last::default());
     let mut delta = try_vec(sectors, 0.0, CONTEXT)?;
     for step in 1..=MOST_IDENTIFICATION_STEPS {
         interrupt.part(Phase::Modes, step, MOST_IDENTIFICATION_STEPS)?;
@@ -101,13 +106,30 @@ pub fn wheel_identify(
             mode.follow(&change, &reduced);
         }
         chi2 += change.iter().zip(&right).map(|(a, b)| a * b).sum::<f64>();
+        last = Last {
+            chi2,
+            ..Last::default()
+        };
         let mut is_there = true;
         for (s, (delta, change)) in delta.iter_mut().zip(&change).enumerate() {
             *delta += change;
             let sigma = covariance[sectors * s + s].sqrt();
             is_there &= change.abs() <= (IDENTIFIED_TO_SIGMA * sigma).max(IDENTIFIED_TO);
+            if change.abs() > last.deviations * sigma {
+                (last.sector, last.deviations) = (s, change.abs() / sigma);
+            }
         }
-        if is_there {
+        if is_there && !knows_errors {
+            // The noise of the data is no longer that of the conditions.
+            knows_errors = true;
+            let pattern = reduced.of_pattern(&delta)?;
+            let lower = lower_factor(&covariance, sectors)?;
+            let parts = reduced.of_parts(&lower)?;
+            for mode in &mut modes {
+                interrupt.check_before((4 * (sectors + 4) * m * m * m) as u64)?;
+                mode.know_errors(&reduced, &pattern, (&parts, &lower), &mut lu, interrupt)?;
+            }
+        } else if is_there {
             reduced.matrices.clear();
             let found = IdentifiedPattern {
                 delta,
@@ -119,10 +141,38 @@ pub fn wheel_identify(
             return in_quantity(found, what);
         }
     }
-    fail!(
-        NoConvergence,
-        "the pattern still changes after {MOST_IDENTIFICATION_STEPS} steps: the data contradict the model, or too few families are its basis"
-    )
+    last.refused((points * modes.len()).saturating_sub(sectors))
+}
+
+/// Measures of the last step of an identification that does not end.
+#[derive(Default)]
+struct Last {
+    chi2: f64,
+    /// Sector whose δ changes most, in standard deviations.
+    sector: usize,
+    deviations: f64,
+}
+
+impl Last {
+    /// The reason why the pattern still changes: residuals that noise does not explain, or data that fit several patterns.
+    fn refused<T>(&self, degrees: usize) -> Result<T> {
+        let Self {
+            chi2,
+            sector,
+            deviations,
+        } = self;
+        let reason = if *chi2 > degrees as f64 + CONTRADICTION * (2.0 * degrees as f64).sqrt() {
+            "the data contradict the model, their deviations are too small, or too few families are its basis"
+        } else {
+            "noise explains the data, but they fit several patterns: frequencies lie closer than their deviations, or the modes are too \
+             few; give more modes or points, or more exact ones"
+        };
+        fail!(
+            NoConvergence,
+            "delta[{sector}] still changes by {deviations:.2e} of its standard deviation after {MOST_IDENTIFICATION_STEPS} steps, with \
+             chi2 = {chi2:.1} of {degrees} degrees of freedom: {reason}"
+        )
+    }
 }
 
 fn check(cyclic: &Model, measured: &MeasuredModes<'_>, families: usize) -> Result<()> {

@@ -1,11 +1,14 @@
 //! Peaks of all blades of a wheel, and their amplification against the tuned wheel.
 
 use crate::analysis::forced_response::forced_response;
-use crate::error::{Result, fail, try_push};
+use crate::error::{Error, Result, Status, fail, try_push};
 use crate::hooks::Hooks;
 use crate::model::Model;
+use crate::model::wheels::sector_digest::SectorUse;
 use crate::options::{ForcedOptions, Response, SolverOptions};
 use crate::results::{Branch, ResponseSeries, Special};
+use crate::studies::range_ends::at_ends;
+use core::fmt::Display;
 
 const CONTEXT: &str = "the peaks of a wheel";
 
@@ -20,6 +23,8 @@ pub struct BladePeak {
     pub error: f64,
     /// Its number among the stored points of the branch.
     pub point: Option<usize>,
+    /// The larger response at the two ends of the curve, and its angular frequency.
+    pub end: (f64, f64),
 }
 
 impl BladePeak {
@@ -28,19 +33,28 @@ impl BladePeak {
         omega: f64::NAN,
         error: f64::NAN,
         point: None,
+        end: (f64::NAN, f64::NAN),
     };
 
+    /// Whether the response is larger at an end of the curve than at each peak: the highest peak lies beyond.
+    #[must_use]
+    pub fn is_beyond(&self) -> bool {
+        self.end.0 > if self.amplitude.is_nan() { 0.0 } else { self.amplitude }
+    }
+
     /// The highest peak of a response.
-    fn of(series: &ResponseSeries) -> Self {
+    fn of(branch: &Branch, series: &ResponseSeries) -> Self {
+        let end = at_ends(branch, series);
         let highest = |a: &&Special, b: &&Special| a.amplitude.total_cmp(&b.amplitude);
         let Some(peak) = series.peaks().iter().max_by(highest) else {
-            return Self::NONE;
+            return Self { end, ..Self::NONE };
         };
         Self {
             amplitude: peak.amplitude,
             omega: peak.omega,
             error: series.errors().get(peak.point).copied().unwrap_or(f64::NAN),
             point: Some(peak.point),
+            end,
         }
     }
 }
@@ -56,14 +70,50 @@ pub struct WheelPeaks {
     pub tuned: BladePeak,
     /// The response of the wheel, whose response number s is that of blade s.
     pub branch: Branch,
+    /// First and last angular frequency that were asked for.
+    pub range: (f64, f64),
 }
 
 impl WheelPeaks {
-    /// Amplification factor: the highest peak over that of the tuned wheel; NaN without one of them.
+    /// Amplification factor: the highest peak over that of the tuned wheel; NaN without one of them, or where one lies beyond an end of
+    /// the range.
     #[must_use]
     pub fn amplification(&self) -> f64 {
+        if self.beyond().is_some() || self.tuned.is_beyond() {
+            return f64::NAN;
+        }
         self.largest
             .map_or(f64::NAN, |blade| self.blades[blade].amplitude / self.tuned.amplitude)
+    }
+
+    /// The blade that has the largest response at an end of the range, where that is larger than the highest peak of all blades: the
+    /// highest peak of the wheel lies beyond.
+    #[must_use]
+    pub fn beyond(&self) -> Option<usize> {
+        let with_end = (0..self.blades.len()).filter(|&i| self.blades[i].end.0 > 0.0);
+        let blade = with_end.max_by(|&i, &j| self.blades[i].end.0.total_cmp(&self.blades[j].end.0))?;
+        let highest = self.largest.map_or(0.0, |largest| self.blades[largest].amplitude);
+        (self.blades[blade].end.0 > highest).then_some(blade)
+    }
+
+    /// `StoppedNoPeak` with the reason where the highest peak of the wheel, or of the tuned one, lies beyond an end of the range.
+    #[must_use]
+    pub fn outside(&self) -> Option<Error> {
+        let said = |of: &dyn Display, (amplitude, omega): (f64, f64)| {
+            Error::new(
+                Status::StoppedNoPeak,
+                format_args!(
+                    "{of} is at {amplitude:.6e} at omega = {omega}, an end of the range {} .. {}, above its peaks there: the highest peak \
+                     lies beyond; widen the range",
+                    self.range.0, self.range.1
+                ),
+            )
+        };
+        match self.beyond() {
+            Some(blade) => Some(said(&format_args!("blade {blade}"), self.blades[blade].end)),
+            None if self.tuned.is_beyond() => Some(said(&"the tuned wheel", self.tuned.end)),
+            None => None,
+        }
     }
 }
 
@@ -72,7 +122,7 @@ impl WheelPeaks {
 /// degrees of freedom it is the response degree of freedom of the solver, of the sector.
 ///
 /// # Errors
-/// `Dimension` for the wheel of another model, `Argument` for responses in `options`; those of [`forced_response`].
+/// `Dimension` or `Argument` for the wheel of another model, `Argument` for responses in `options`; those of [`forced_response`].
 pub fn wheel_peaks(
     wheel: &Model,
     cyclic: &Model,
@@ -89,6 +139,7 @@ pub fn wheel_peaks(
             wheel.ndof()
         );
     }
+    wheel.check_sector(cyclic, SectorUse::Tuned)?;
     if !options.responses.is_empty() || blade.sector != 0 {
         return fail!(
             Argument,
@@ -116,6 +167,8 @@ pub fn wheel_peaks(
         guess: None,
         at: &[],
         branches: 0,
+        branch_depth: 0,
+        most_branches: 0,
         ..*options
     };
     let solver = SolverOptions {
@@ -130,12 +183,16 @@ pub fn wheel_peaks(
     let branch = forced_response(wheel, &solver, &of_wheel, hooks)?;
     let mut blades = Vec::new();
     for series in branch.responses() {
-        try_push(&mut blades, BladePeak::of(series), CONTEXT)?;
+        try_push(&mut blades, BladePeak::of(&branch, series), CONTEXT)?;
     }
     let known = (0..blades.len()).filter(|&i| blades[i].point.is_some());
     Ok(WheelPeaks {
         largest: known.max_by(|&i, &j| blades[i].amplitude.total_cmp(&blades[j].amplitude)),
-        tuned: tuned.responses().first().map_or(BladePeak::NONE, BladePeak::of),
+        tuned: tuned
+            .responses()
+            .first()
+            .map_or(BladePeak::NONE, |series| BladePeak::of(&tuned, series)),
+        range: (options.omega_start, options.omega_stop),
         blades,
         branch,
     })

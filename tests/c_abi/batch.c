@@ -115,6 +115,12 @@ int main(void)
             EXPECT("leads", i == 3 ? isnan(again[i]) && isnan(speed[i]) : fabs(again[i] / amplitude[i] - 1) < 1e-9);
             EXPECT("speed", i == 3 || (speed[i] > 0.7 * omega[i] * amplitude[i] && speed[i] < 0.8 * omega[i] * amplitude[i]));
         }
+        WORKS("ends", hbvib_batch_response_ends(batch, 0, DESIGNS, again, omega));
+        for (i = 0; i < DESIGNS; i++)
+            EXPECT("ends", isnan(again[i]) ? isnan(amplitude[i])
+                                           : again[i] < amplitude[i] && (omega[i] == o.omega_start || omega[i] == o.omega_stop));
+        REFUSED("ends", hbvib_batch_response_ends(batch, 2, DESIGNS, again, NULL), HBVIB_E_INDEX, 2, "response = 2");
+        REFUSED("room of ends", hbvib_batch_response_ends(batch, 0, 1, again, NULL), HBVIB_E_DIMENSION, 3, "needs 6");
         REFUSED("response", hbvib_batch_response_peaks(batch, 2, DESIGNS, speed, NULL), HBVIB_E_INDEX, 2, "response = 2");
         REFUSED("room", hbvib_batch_response_peaks(batch, 0, 1, speed, NULL), HBVIB_E_DIMENSION, 3, "needs 6");
         WORKS("free", hbvib_batch_free(batch));

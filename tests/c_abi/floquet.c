@@ -180,6 +180,23 @@ static void children(void)
     o.omega_start = 2.3;
     o.omega_stop = 2.4;
     EXPECT("defaults", o.branches == 0 && o.branch_depth == 0 && o.most_branches == 0);
+    o.branch_depth = 2;
+    REFUSED("depth alone", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branch_depth = 2 with branches = 0");
+    o.branch_depth = 0;
+    o.most_branches = 7;
+    REFUSED("most alone", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "most_branches = 7 with branches = 0");
+    o.most_branches = 0;
+    o.branches = 1;
+    {
+        const double stop = o.omega_stop;
+        o.omega_stop = o.omega_start;
+        REFUSED("one frequency", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 1 at the single");
+        o.omega_stop = stop;
+    }
+    o.branches = 0;
+    s.stability = HBVIB_STABILITY_WHEEL;
+    REFUSED("no wheel", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 2, "stability = wheel, needs a cyclic model");
+    s.stability = HBVIB_STABILITY_NONE;
     o.branches = 5;
     REFUSED("branches", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 5");
     o.branches = 1;

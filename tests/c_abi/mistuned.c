@@ -109,6 +109,33 @@ int main(void)
         EXPECT("amplification", info.tuned > 0 && info.amplification == info.largest / info.tuned && info.amplification > 1);
         EXPECT("responses", hbvib_branch_responses(branch) == SECTORS);
         WORKS("branch", hbvib_branch_free(branch));
+        EXPECT("within", info.beyond == 0 && info.end_amplitude < info.largest && (info.end_omega == 1 || info.end_omega == 3));
+        {
+            /* A range that ends below the highest peak: told, not counted. */
+            const double end = omega[info.blade] * (1 - 1e-3);
+            EXPECT("status", hbvib_wheel_peaks(wheel, cyclic, NULL, &solver, 1, end, NULL, SECTORS, amplitude, NULL, NULL, &blades, &info,
+                                               NULL) == HBVIB_STOPPED_NO_PEAK);
+            EXPECT("sentence", strstr(hbvib_last_error(), "highest peak lies beyond") != NULL);
+            EXPECT("beyond", info.beyond >= 1 && info.end_omega == end && isnan(info.amplification));
+            EXPECT("end", !(info.end_amplitude <= info.largest));
+        }
+        {
+            /* A sector of the same size with other matrices is not the one of the wheel. */
+            hbvib_model *other = ring();
+            const double softer = 2.9;
+            hbvib_matrix k = matrix(1, &softer);
+            WORKS("softer", hbvib_model_set_matrix(other, HBVIB_STIFFNESS, &k));
+            REFUSED("another sector", hbvib_wheel_mistune(wheel, other, 0, 1, &blade, NULL, 0, SECTORS, none), HBVIB_E_ARGUMENT, 9,
+                    "other matrices");
+            REFUSED("another tuned one",
+                    hbvib_wheel_peaks(wheel, other, NULL, NULL, 1, 3, NULL, SECTORS, NULL, NULL, NULL, &blades, NULL, NULL),
+                    HBVIB_E_ARGUMENT, 0, "other matrices");
+            WORKS("free", hbvib_model_free(other));
+            other = ring();
+            REFUSED("damping", hbvib_wheel_peaks(wheel, other, NULL, NULL, 1, 3, NULL, SECTORS, NULL, NULL, NULL, &blades, NULL, NULL),
+                    HBVIB_E_ARGUMENT, 0, "Rayleigh damping 0, 0");
+            WORKS("free", hbvib_model_free(other));
+        }
         REFUSED("another wheel", hbvib_wheel_peaks(cyclic, cyclic, NULL, NULL, 1, 3, NULL, SECTORS, NULL, NULL, NULL, &blades, NULL, NULL),
                 HBVIB_E_DIMENSION, 0, "needs the wheel");
         REFUSED("range", hbvib_wheel_peaks(wheel, cyclic, NULL, NULL, 0, 3, NULL, SECTORS, NULL, NULL, NULL, &blades, NULL, NULL),
@@ -143,6 +170,38 @@ int main(void)
                                                 SECTORS, omega, sigma, shapes, sigma, NULL, 4, found, NULL, NULL, NULL),
                 HBVIB_E_DIMENSION, 16, "sectors");
         WORKS("other", hbvib_model_free(other));
+    }
+    {
+        /* A disk with a blade of two masses on its first cantilever mode: K = [2 -1; -1 1], squares of the frequencies (3 -+ sqrt 5) / 2. */
+        const double k[9] = {4, -1, 0, -1, 2, -1, 0, -1, 1}, m[9] = {5, 0, 0, 0, 1, 0, 0, 0, 1}, next[9] = {-1, 0, 0, 0, 0, 0, 0, 0, 0};
+        const int64_t dofs[2] = {1, 2}, tip = 2;
+        double weights[2], left_out = -1;
+        int64_t numbers[3], first = -1;
+        hbvib_model *full = NULL, *reduced = NULL;
+        WORKS("sector", hbvib_cyclic_new(3, SECTORS, &full));
+        a = matrix(3, m);
+        WORKS("mass", hbvib_model_set_matrix(full, HBVIB_MASS, &a));
+        a = matrix(3, k);
+        WORKS("stiffness", hbvib_model_set_matrix(full, HBVIB_STIFFNESS, &a));
+        a = matrix(3, next);
+        WORKS("coupling", hbvib_cyclic_set_coupling(full, HBVIB_STIFFNESS, &a));
+        WORKS("modes", hbvib_wheel_blade_modes(full, 2, dofs, 1, 1, NULL, 1, &tip, 2, weights, 3, numbers, &first, &left_out, &reduced));
+        EXPECT("order", hbvib_model_dofs(reduced) == 2 && first == 1 && numbers[0] == 0 && numbers[1] == -1 && numbers[2] == -1);
+        EXPECT("cantilever", fabs(diagonal(reduced, HBVIB_STIFFNESS, 1) - (3 - sqrt(5)) / 2) < 1e-14);
+        EXPECT("mass of a mode", fabs(diagonal(reduced, HBVIB_MASS, 1) - 1) < 1e-14);
+        /* Both masses follow the disk by 1, and the first mode is (1, (1 + sqrt 5) / 2) of length 1. */
+        EXPECT("tip", fabs(weights[0] - 1) < 1e-14 && fabs(fabs(weights[1]) - 0.850650808352040) < 1e-12);
+        EXPECT("error", left_out > 0 && left_out < 0.1);
+        REFUSED("all modes", hbvib_wheel_blade_modes(full, 2, dofs, 2, 1, NULL, 0, NULL, 0, NULL, 3, NULL, NULL, NULL, &reduced),
+                HBVIB_E_ARGUMENT, 1, "modes = 2");
+        REFUSED("families", hbvib_wheel_blade_modes(full, 2, dofs, 1, 0, NULL, 0, NULL, 0, NULL, 3, NULL, NULL, NULL, &reduced),
+                HBVIB_E_ARGUMENT, 5, "families = 0");
+        REFUSED("room", hbvib_wheel_blade_modes(full, 2, dofs, 1, 1, NULL, 1, &tip, 1, weights, 3, NULL, NULL, NULL, &reduced),
+                HBVIB_E_DIMENSION, 9, "weights_len = 1");
+        REFUSED("disk", hbvib_wheel_blade_modes(full, 2, (int64_t[]){0, 1}, 1, 1, NULL, 0, NULL, 0, NULL, 3, NULL, NULL, NULL, &reduced),
+                HBVIB_E_ARGUMENT, 1, "another sector");
+        WORKS("free", hbvib_model_free(reduced));
+        WORKS("free", hbvib_model_free(full));
     }
     WORKS("wheel", hbvib_model_free(wheel));
     WORKS("cyclic", hbvib_model_free(cyclic));

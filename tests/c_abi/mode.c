@@ -362,6 +362,9 @@ static void branches(void)
     o.log10_start = -1;
     o.log10_stop = 0.5;
     o.mode_index = 1;
+    o.branch_depth = 2;
+    REFUSED("depth alone", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branch_depth = 2 with branches = 0");
+    o.branch_depth = 0;
     o.branches = 2;
     REFUSED("branches", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 3, "branches = 2");
     o.branches = 1;

@@ -114,7 +114,7 @@ fn a_mode_without_branch_points_has_no_children() {
     assert!(plain.bifurcations().unwrap().is_empty() && plain.searched().is_none());
     let refused = ModeOptions { branches: 2, ..range };
     let error = nonlinear_mode(&pair(), &harmonics(5), &refused, &mut Hooks::default()).unwrap_err();
-    assert!(error.message().contains("branches = 2, needs 0 or 1"));
+    assert!(error.message().contains("branches = 2, needs 0 .. 1"));
 }
 
 /// A guess leads to the first point where springs are polynomials, too: their static state has no harmonics of the guess.

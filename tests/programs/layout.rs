@@ -74,7 +74,7 @@ fn in_rust() -> String {
         hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
         hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop, response }
         hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved, responses, responses_len }
-        hbvib_wheel_info { struct_size, reserved, blade, largest, tuned, tuned_omega, amplification }
+        hbvib_wheel_info { struct_size, reserved, blade, largest, tuned, tuned_omega, amplification, beyond, end_amplitude, end_omega }
         hbvib_band_options { struct_size, of, contacts, contacts_len, starts }
         hbvib_band_info { struct_size, complete, sliders, states, solved, lower, upper, lower_omega, upper_omega, lower_gain, upper_gain, lower_at_limit, upper_at_limit, lower_error, upper_error }
         hbvib_life_options { struct_size, follow, contacts, rates, areas, contacts_len, stiffness, worn, duty_omega, duty_force, duty_share, duties_len, omega_start, omega_stop, tolerance, limit, most_steps }

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod blade_modes;
 mod boundary_sector;
 mod identified_wheel;
 mod mistuned_wheel;

@@ -105,6 +105,7 @@ pub const SECTIONS: [Section; 13] = [
             "batch",
             "wheel_peaks",
             "wheel_identify",
+            "wheel_blade_modes",
             "band",
             "band_curves",
             "mode_bands",

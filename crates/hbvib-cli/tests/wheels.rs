@@ -129,3 +129,34 @@ fn a_wheel_that_cannot_be_made_is_refused_by_its_part() {
         assert!(errors.contains(words), "{errors}");
     }
 }
+
+/// The highest peak lies at 209.96 Hz: a range that ends before it tells so, for one wheel and for many.
+#[test]
+fn a_peak_beyond_the_range_is_told_and_not_counted() {
+    let range = "from_hz = 209.0\nto_hz = 209.7\nharmonics = 3\nresponse_dof = 0\n";
+    let (output, _) = run("beyond", &format!("[wheel]\ndofs = [0]\npattern = {PATTERN}\n{range}"));
+    let text = crate::common::printed(&output.stdout) + &crate::common::printed(&output.stderr);
+    assert!(!output.status.success(), "{text}");
+    assert!(
+        text.contains("the highest peak lies beyond an end of 209 to 209.7 Hz: at 209.7"),
+        "{text}"
+    );
+    // The tuned wheel has its peak within 209.5 to 211 Hz, and one of much softer blades below.
+    let file = std::env::temp_dir().join(format!("hbvib_beyond_{}.csv", std::process::id()));
+    fs::write(&file, format!("{}\n{}\n", "0 ".repeat(24), "-0.3 ".repeat(24))).unwrap();
+    let part = format!(
+        "[wheel]\ndofs = [0]\npatterns = '{}'\nfrom_hz = 209.0\nto_hz = 211.0\nharmonics = 3\nresponse_dof = 0\n\
+         patterns_csv = 'patterns.csv'\n",
+        file.display()
+    );
+    let (output, folder) = run("patterns_beyond", &part);
+    let text = crate::common::printed(&output.stdout) + &crate::common::printed(&output.stderr);
+    assert!(
+        !output.status.success() && text.contains("1 of 2 patterns have their highest peak beyond"),
+        "{text}"
+    );
+    assert!(text.contains("the largest amplification is 1.0000"), "{text}");
+    let csv = fs::read_to_string(folder.join("patterns.csv")).unwrap();
+    assert!(csv.lines().nth(2).unwrap().contains("NaN"), "{csv}");
+    fs::remove_file(&file).unwrap();
+}

@@ -884,6 +884,9 @@ struct hbvib_wheel_info
     tuned::Float64
     tuned_omega::Float64
     amplification::Float64
+    beyond::Int64
+    end_amplitude::Float64
+    end_omega::Float64
 end
 hbvib_wheel_info() = initialised(hbvib_wheel_info, dlsym_(:hbvib_wheel_info_init))
 
@@ -1369,6 +1372,8 @@ hbvib_batch_designs(batch) = ccall(dlsym_(:hbvib_batch_designs), Int64, (Ptr{Cvo
 hbvib_batch_peaks(batch, capacity, peak_amplitude, peak_omega, statuses, points) = ccall(dlsym_(:hbvib_batch_peaks), Int32, (Ptr{Cvoid}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}, Ptr{Int64}), batch, capacity, peak_amplitude, peak_omega, statuses, points)
 "The highest peak of a response of each design, in the order of their values."
 hbvib_batch_response_peaks(batch, response, capacity, amplitude, omega) = ccall(dlsym_(:hbvib_batch_response_peaks), Int32, (Ptr{Cvoid}, Int64, Int64, Ptr{Float64}, Ptr{Float64}), batch, response, capacity, amplitude, omega)
+"The larger value of a response of each design at the two ends of the range, in the order of their values."
+hbvib_batch_response_ends(batch, response, capacity, amplitude, omega) = ccall(dlsym_(:hbvib_batch_response_ends), Int32, (Ptr{Cvoid}, Int64, Int64, Ptr{Float64}, Ptr{Float64}), batch, response, capacity, amplitude, omega)
 "The status of a design, whose sentence hbvib_last_error then has: HBVIB_OK; HBVIB_STOPPED_NO_PEAK without a maximum; another positive number where the branch ended early and may have higher maxima beyond; HBVIB_STOPPED_BY_CALLER where it was not solved; negative where it failed."
 hbvib_batch_status(batch, design) = ccall(dlsym_(:hbvib_batch_status), Int32, (Ptr{Cvoid}, Int64), batch, design)
 "Takes the branch of a design out of the batch, which must have been solved with keep = 1."
@@ -1379,6 +1384,8 @@ hbvib_wheel_info_init(i, size_of_i) = ccall(dlsym_(:hbvib_wheel_info_init), Int3
 hbvib_wheel_peaks(wheel, cyclic, blade, solver, omega_start, omega_stop, hooks, capacity, amplitude, omega, error, count, info, out) = ccall(dlsym_(:hbvib_wheel_peaks), Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Ptr{hbvib_response}, Ptr{hbvib_solver_options}, Float64, Float64, Ptr{hbvib_hooks}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}, Ptr{hbvib_wheel_info}, Ptr{Ptr{Cvoid}}), wheel, cyclic, blade, solver, omega_start, omega_stop, hooks, capacity, amplitude, omega, error, count, info, out)
 "The pattern of a mistuned wheel from measured modes, with its covariance: that of the greatest likelihood under normal noise of frequencies and shapes."
 hbvib_wheel_identify(cyclic, kind, n_dofs, dofs, direction, contacts, families, n_points, points, n_modes, omega, sigma_omega, shapes, sigma_shape, hooks, sectors, delta, covariance, chi2, degrees) = ccall(dlsym_(:hbvib_wheel_identify), Int32, (Ptr{Cvoid}, Int32, Int64, Ptr{Int64}, Ptr{hbvib_matrix}, Int32, Int64, Int64, Ptr{Int64}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{hbvib_hooks}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}), cyclic, kind, n_dofs, dofs, direction, contacts, families, n_points, points, n_modes, omega, sigma_omega, shapes, sigma_shape, hooks, sectors, delta, covariance, chi2, degrees)
+"Makes a sector whose blade moves in its lowest cantilever modes, with everything else held, and as the rest carries it along (Craig and Bampton): 10 to 20 modes of a finite-element blade."
+hbvib_wheel_blade_modes(cyclic, n_dofs, dofs, modes, families, hooks, n_points, points, weights_len, weights, ndof, numbers, first, left_out, out) = ccall(dlsym_(:hbvib_wheel_blade_modes), Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}, Int64, Int64, Ptr{hbvib_hooks}, Int64, Ptr{Int64}, Int64, Ptr{Float64}, Int64, Ptr{Int64}, Ptr{Int64}, Ptr{Float64}, Ptr{Ptr{Cvoid}}), cyclic, n_dofs, dofs, modes, families, hooks, n_points, points, weights_len, weights, ndof, numbers, first, left_out, out)
 "The sliders of a stored point of a forced response that stick through the period and change its vibration: each may lie anywhere within the limit of its friction, and every such state is a solution."
 hbvib_branch_freedom(model, branch, point, capacity, contact, direction, place, derivative, count, hooks) = ccall(dlsym_(:hbvib_branch_freedom), Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Int64, Int64, Ptr{Int64}, Ptr{Int64}, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}, Ptr{hbvib_hooks}), model, branch, point, capacity, contact, direction, place, derivative, count, hooks)
 "Fills the options of a band: the amplitude, all free sliders."

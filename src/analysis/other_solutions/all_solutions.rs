@@ -20,6 +20,7 @@ pub(crate) fn forced_response(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
+    range.check_search()?;
     let solver = SolverOptions {
         stability: solver.stability.or(Some(Waves::Wave)),
         ..*solver

@@ -12,6 +12,7 @@ use crate::model::matrices::sector_faces::{Faces, SectorDescription};
 use crate::model::matrices::sector_matrices::{self, of_independent, restricted};
 use crate::model::matrices::speed::Speed;
 use crate::model::matrices::wave::Wave;
+use crate::model::wheels::sector_digest::SectorDigest;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -76,6 +77,8 @@ pub struct Structure {
     pub(crate) modal_damping: Vec<Option<KeptMatrix>>,
     /// Sectors and engine order, where this is a whole wheel: what its equations may be taken for, and no result depends on.
     pub(crate) wheel: Option<(usize, i64)>,
+    /// The sector that a whole wheel was made of; `None` where that is not known, as after loading.
+    pub(crate) sector: Option<SectorDigest>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],
 }
@@ -99,6 +102,7 @@ impl Structure {
             speed: Speed::Fixed(0.0),
             modal_damping: Vec::new(),
             wheel: None,
+            sector: None,
             aero: Default::default(),
         })
     }

@@ -13,6 +13,7 @@ use crate::model::matrices::structure::MatrixKind;
 use crate::model::mechanical_model::Model;
 use crate::model::saved::saved_matrix;
 use crate::model::saved::saved_structure::save_degrees;
+use crate::model::wheels::sector_digest::{SectorDigest, SectorUse};
 
 /// A number for each part of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,17 +88,6 @@ impl Model {
     #[must_use]
     pub(crate) fn fingerprint(&self) -> Fingerprint {
         let structure = &self.structure;
-        let blocks = |kinds: &[MatrixKind], out: &mut ByteWriter<'_>| {
-            for kind in kinds {
-                let blocks = &structure.blocks[*kind as usize];
-                // A matrix of zeros is as good as none; no coupling to the previous sector stands for the transpose.
-                for block in [&blocks.own, &blocks.next] {
-                    saved_matrix::save(block.as_ref().filter(|a| a.stored() > 0), out);
-                }
-                saved_matrix::save(blocks.previous.as_ref(), out);
-                saved_matrix::save_list(&blocks.diameters, out);
-            }
-        };
         let forces = |constant: bool| {
             let all = self.excitation.forces().iter();
             all.filter(|force| (force.harmonic == 0) == constant)
@@ -137,7 +127,7 @@ impl Model {
                     MatrixKind::Gyroscopic,
                     MatrixKind::StiffnessSpeed2,
                 ];
-                blocks(&kinds, out);
+                self.blocks_to(&kinds, out);
             }),
             speed: digest(|out| {
                 let (per_omega, speed) = match structure.speed {
@@ -148,12 +138,10 @@ impl Model {
                 out.f64(speed);
             }),
             damping: digest(|out| {
-                blocks(&[MatrixKind::Damping, MatrixKind::Structural], out);
                 for value in [structure.rayleigh.0, structure.rayleigh.1, structure.loss_factor] {
                     out.f64(value);
                 }
-                saved_matrix::save_list(&structure.modal_damping, out);
-                self.save_aero(out);
+                self.damping_matrices_to(out);
             }),
             springs: springs.fold(0, u64::wrapping_add),
             contacts: digest(|out| {
@@ -172,6 +160,63 @@ impl Model {
             vibrating_forces: forces(false),
             engine_order: structure.engine_order,
         }
+    }
+}
+
+impl Model {
+    /// Writes matrices of some kinds.
+    fn blocks_to(&self, kinds: &[MatrixKind], out: &mut ByteWriter<'_>) {
+        for kind in kinds {
+            let blocks = &self.structure.blocks[*kind as usize];
+            // A matrix of zeros is as good as none; no coupling to the previous sector stands for the transpose.
+            for block in [&blocks.own, &blocks.next] {
+                saved_matrix::save(block.as_ref().filter(|a| a.stored() > 0), out);
+            }
+            saved_matrix::save(blocks.previous.as_ref(), out);
+            saved_matrix::save_list(&blocks.diameters, out);
+        }
+    }
+
+    /// Writes every damping but that by numbers.
+    fn damping_matrices_to(&self, out: &mut ByteWriter<'_>) {
+        self.blocks_to(&[MatrixKind::Damping, MatrixKind::Structural], out);
+        saved_matrix::save_list(&self.structure.modal_damping, out);
+        self.save_aero(out);
+    }
+
+    /// The digest of a sector, for the wheel that is made of it.
+    #[must_use]
+    pub(crate) fn sector_digest(&self) -> SectorDigest {
+        let all = self.fingerprint();
+        SectorDigest {
+            degrees: all.degrees,
+            matrices: all.matrices,
+            damping: digest(|out| self.damping_matrices_to(out)),
+            springs: all.springs,
+            engine_order: all.engine_order,
+        }
+    }
+
+    /// Refuses a sector that is not the one that this wheel was made of. A wheel from bytes does not know it.
+    ///
+    /// # Errors
+    /// `Argument`, naming the part that differs.
+    pub(crate) fn check_sector(&self, sector: &Self, used: SectorUse) -> Result<()> {
+        let Some(own) = &self.structure.sector else {
+            return Ok(());
+        };
+        own.check(&sector.sector_digest(), used)?;
+        let numbers = |model: &Self| (model.structure.rayleigh, model.structure.loss_factor);
+        if used != SectorUse::Pattern && numbers(self) != numbers(sector) {
+            let ((alpha, beta), loss) = numbers(self);
+            let ((of_sector, beta_of_sector), loss_of_sector) = numbers(sector);
+            return fail!(
+                Argument,
+                "the sector has Rayleigh damping {of_sector}, {beta_of_sector} and the loss factor {loss_of_sector}, the wheel {alpha}, \
+                 {beta} and {loss}; needs the same"
+            );
+        }
+        Ok(())
     }
 }
 

@@ -15,6 +15,7 @@ use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::matrices::sector_matrices::{Entries, of_both_sectors};
 use crate::model::matrices::structure::{MatrixKind, Structure};
+use crate::model::wheels::sector_digest::SectorUse;
 use crate::model::wheels::wheel::symmetrised;
 use num_complex::Complex64;
 
@@ -81,6 +82,19 @@ impl Model {
                 sector.ndof()
             );
         }
+        let has_damping = matches!(
+            what,
+            Mistuning::Blade(BladeProperty::Damping, _)
+                | Mistuning::Matrix(MatrixKind::Damping | MatrixKind::Structural, _)
+        );
+        self.check_sector(
+            sector,
+            if has_damping {
+                SectorUse::DampingPattern
+            } else {
+                SectorUse::Pattern
+            },
+        )?;
         let mut changed = self.try_clone()?;
         match *what {
             Mistuning::Blade(property, dofs) => {

@@ -48,6 +48,7 @@ impl Model {
         let (n, sectors) = (self.ndof(), self.structure().sectors());
         let mut wheel = Self::new(1)?;
         wheel.structure = self.structure().whole(&interrupt)?;
+        wheel.structure.sector = Some(self.sector_digest());
         for s in 0..sectors {
             for contact in self.contacts() {
                 try_push(&mut wheel.contacts, placed(contact, s, n, sectors)?, CONTEXT)?;

@@ -12,8 +12,7 @@ use crate::studies::fit::fit_options::FitOptions;
 use crate::studies::fit::fit_result::sizes;
 use crate::studies::fit::fit_search::{Search, State};
 use crate::studies::fit::fit_unknowns::{Unknown, Unknowns};
-use crate::studies::fit::predicted_data::Predictor;
-use crate::studies::fit::preparation::{check, of_fit};
+use crate::studies::fit::preparation::{check, predictor};
 use crate::studies::fit::searches::{Searched, searched};
 
 const CONTEXT: &str = "the profile of a fit";
@@ -97,14 +96,7 @@ pub fn fit_profile(
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Results, 0.0)?;
     let own = model.separate_clone()?;
-    let predictor = Predictor {
-        model: &own,
-        parameters,
-        scopes: &all.scopes,
-        data,
-        solver: of_fit(solver, data),
-        interrupt: &interrupt,
-    };
+    let predictor = predictor(&own, (parameters, &all.scopes), data, solver, &interrupt);
     let search = Search {
         predictor: &predictor,
         unknowns: &all,

@@ -1,11 +1,13 @@
 //! Checks of a fit and of its profiles, and the tolerance that their data need.
 
 use crate::error::{Result, fail};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::sensitivity::Parameter;
 use crate::studies::fit::fit_data::{DataKind, FitData};
 use crate::studies::fit::fit_options::FitOptions;
+use crate::studies::fit::predicted_data::Predictor;
 use crate::studies::fit::prediction::check_parameters;
 
 /// Share of the standard deviations of the data that errors by harmonics may have.
@@ -33,8 +35,27 @@ pub(super) fn check(
     Ok(())
 }
 
+/// The numbers of the data by a model of the fit's own, so that bases of waves are shared by all its designs, and the caller's model is
+/// left as it is. `scopes` are those of the unknowns.
+pub(super) fn predictor<'a>(
+    own: &'a Model,
+    (parameters, scopes): (&'a [Parameter<'a>], &'a [Option<usize>]),
+    data: &'a [FitData<'a>],
+    solver: &SolverOptions,
+    interrupt: &'a Interrupt<'a>,
+) -> Predictor<'a> {
+    Predictor {
+        model: own,
+        parameters,
+        scopes,
+        data,
+        solver: of_fit(solver, data),
+        interrupt,
+    }
+}
+
 /// The options of the solver with the tolerance of the data.
-pub(super) fn of_fit(solver: &SolverOptions, data: &[FitData<'_>]) -> SolverOptions {
+fn of_fit(solver: &SolverOptions, data: &[FitData<'_>]) -> SolverOptions {
     SolverOptions {
         tolerance: tolerance_of(data, solver.tolerance),
         ..*solver

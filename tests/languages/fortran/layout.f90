@@ -730,6 +730,9 @@ contains
       call field('tuned', c_loc(s), c_loc(s%tuned), c_sizeof(s%tuned))
       call field('tuned_omega', c_loc(s), c_loc(s%tuned_omega), c_sizeof(s%tuned_omega))
       call field('amplification', c_loc(s), c_loc(s%amplification), c_sizeof(s%amplification))
+      call field('beyond', c_loc(s), c_loc(s%beyond), c_sizeof(s%beyond))
+      call field('end_amplitude', c_loc(s), c_loc(s%end_amplitude), c_sizeof(s%end_amplitude))
+      call field('end_omega', c_loc(s), c_loc(s%end_omega), c_sizeof(s%end_omega))
    end subroutine wheel_info
 
    subroutine band_options()

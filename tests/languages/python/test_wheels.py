@@ -51,6 +51,40 @@ check("envelope", (largest >= peaks.branch.responses[3].amplitude).all() and len
 sure = wheel.wheel_peaks(sector, span, hbvib.Response(0, "peak"), tolerance=1e-2)
 check("each blade has its error", bool((sure.error < 1e-2).all()), sure.error)
 raises("another wheel", ValueError, sector.wheel_peaks, sector, span, 0)
+check("nothing beyond the range", not peaks.beyond.any())
+
+# A sector of the same size with other matrices is not the one of the wheel; contacts and forces may differ.
+softer = hbvib.Model.cyclic(sectors=N, engine_order=1, mass=np.diag([1.0, 2.0]), stiffness=[[1.0, -1.0], [-1.0, 4.9]],
+                            coupling=dict(stiffness=np.diag([0, -2.0])), rayleigh=(0, 0.01))
+softer.add_contact("jenkins", 1, kt=0.5, mu=0.3, preload=0.1)
+softer.add_force(0, 0.02)
+for name, call in (("mistune", lambda: tuned.mistune(softer, "stiffness", delta, dofs=[0])),
+                   ("wheel_peaks", lambda: tuned.wheel_peaks(softer, span, 0, **options))):
+    error = raises(f"{name} with another sector", ValueError, call)
+    check("it names the part", "other matrices" in str(error), error)
+
+# A range that ends below the highest peak: told, never counted. The second peaks of the wheel lie within it.
+at = peaks.omega[peaks.blade]
+short = wheel.wheel_peaks(sector, (span[0], at * (1 - 1e-3)), 0, **options)
+check("a peak beyond", np.isnan(short.amplification) and short.beyond[peaks.blade] and "highest peak lies beyond" in short.branch.message,
+      short.branch.message)
+pair = np.stack([np.zeros(N), -0.4 * np.ones(N)])
+narrow = (tuned.wheel_peaks(sector, span, 0, **options).omega[0] * 0.99, span[1])
+study = sector.wheel_study(narrow, pair, dofs=[0], **options)
+check("a wheel beyond has no result", np.isnan(study.largest[1]) and study.status[1] == hbvib.Status.STOPPED_NO_PEAK, study.largest)
+check("it is counted", study.beyond == 1 and study.status[0] == 0 and "1 of them with the highest peak beyond" in repr(study), repr(study))
+raises("no distribution of it", ValueError, study.weibull)
+check("its quantile may lie anywhere", study.quantile(0.9).upper == np.inf, study.quantile(0.9))
+error = raises("a tuned wheel beyond", ValueError, lambda: sector.wheel_study((narrow[0] * 1.02, span[1]), pair, dofs=[0], **options))
+check("it names the range", f"{narrow[0] * 1.02}" in str(error) and "widen" in str(error), error)
+raises("no worst pattern beyond", ValueError, lambda: sector.worst_pattern((span[0], at * 0.97), 0.02, dofs=[0], starts=1, **options))
+
+# Searches that cannot be are refused.
+for name, given, words in (("one frequency", dict(branches=1), "single frequency"), ("depth", dict(branch_depth=2), "branch_depth = 2"),
+                           ("most", dict(most_branches=5), "most_branches = 5"),
+                           ("a plain model", dict(stability="wheel"), "stability = wheel, needs a cyclic model")):
+    error = raises(name, ValueError, lambda given=given: tuned.forced_response((0.8, 0.8), harmonics=3, **given))
+    check("it says so", words in str(error), error)
 
 # A study of many wheels has the same peaks, on any number of threads; its order and quantiles.
 patterns = 0.02 * np.random.default_rng(5).standard_normal((12, N))

@@ -8,7 +8,7 @@ use crate::studies::map::Written;
 use crate::studies::wheel_response::{mistuned, peaks};
 use crate::texts::counted::counted;
 use crate::texts::outcome::Outcome;
-use hbvib::{Hooks, Status};
+use hbvib::{BladePeak, Hooks, Status};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLUE, Color, RED};
 use std::error::Error;
@@ -20,7 +20,7 @@ use std::path::Path;
 /// Share of the wheels whose amplification is told beside the largest.
 const TOLD_SHARE: f64 = 0.95;
 
-/// The largest blade of a pattern.
+/// The largest blade of a pattern; NaN where its highest peak lies beyond the range.
 struct Row {
     blade: usize,
     omega: f64,
@@ -89,13 +89,18 @@ pub fn write(
             ended = Some(format!("pattern {k}: {}", found.branch.status().sentence()));
             break;
         }
-        let Some(blade) = found.largest else {
-            return Err(format!("[wheel]: pattern {k} has no peak within the range"));
-        };
+        if found.tuned.is_beyond() {
+            return Err(format!(
+                "[wheel]: the tuned wheel has its highest peak beyond {} to {} Hz; widen the range",
+                part.from_hz, part.to_hz
+            ));
+        }
+        let within = found.largest.filter(|_| found.beyond().is_none());
+        let of = |value: fn(&BladePeak) -> f64| within.map_or(f64::NAN, |blade| value(&found.blades[blade]));
         rows.push(Row {
-            blade,
-            omega: found.blades[blade].omega,
-            amplitude: found.blades[blade].amplitude,
+            blade: within.or(found.beyond()).unwrap_or_default(),
+            omega: of(|peak| peak.omega),
+            amplitude: of(|peak| peak.amplitude),
             amplification: found.amplification(),
         });
     }
@@ -109,11 +114,22 @@ pub fn write(
     files.write(part.patterns_figure.as_deref(), &|path| {
         draw(path, |area| charts(area, &rows))
     });
+    let beyond = rows.iter().filter(|row| row.amplification.is_nan()).count();
     let mut text = summary(&rows);
+    if beyond > 0 {
+        let _ = writeln!(
+            text,
+            "[wheel]: {} of {} have their highest peak beyond an end of {} to {} Hz and are not counted; widen the range",
+            beyond,
+            counted(rows.len(), "pattern"),
+            part.from_hz,
+            part.to_hz
+        );
+    }
     if let Some(reason) = &ended {
         let _ = writeln!(text, "[wheel]: the patterns ended early: {reason}");
     }
-    Ok((text, ended.is_some()))
+    Ok((text, ended.is_some() || beyond > 0))
 }
 
 fn table(rows: &[Row]) -> String {
@@ -129,17 +145,23 @@ fn table(rows: &[Row]) -> String {
     text
 }
 
-/// Amplifications from the smallest.
+/// Amplifications from the smallest, of the peaks within the range.
 fn ordered(rows: &[Row]) -> Vec<f64> {
-    let mut values: Vec<f64> = rows.iter().map(|row| row.amplification).collect();
+    let mut values: Vec<f64> = rows
+        .iter()
+        .map(|row| row.amplification)
+        .filter(|x| !x.is_nan())
+        .collect();
     values.sort_by(f64::total_cmp);
     values
 }
 
 fn summary(rows: &[Row]) -> String {
     let values = ordered(rows);
-    let worst = (0..rows.len()).max_by(|&i, &j| rows[i].amplification.total_cmp(&rows[j].amplification));
-    let worst = worst.unwrap_or_default();
+    let known = (0..rows.len()).filter(|&i| !rows[i].amplification.is_nan());
+    let Some(worst) = known.max_by(|&i, &j| rows[i].amplification.total_cmp(&rows[j].amplification)) else {
+        return String::new();
+    };
     let at = ((TOLD_SHARE * values.len() as f64).ceil() as usize).clamp(1, values.len()) - 1;
     format!(
         "{}: the largest amplification is {:.4}, blade {} of pattern {worst}; {:.0} % are up to {:.4}\n",
@@ -168,7 +190,7 @@ fn charts(area: &Area<'_>, rows: &[Row]) -> Result<(), Box<dyn Error>> {
         .y_desc("amplification")
         .max_light_lines(1)
         .draw()?;
-    let points = rows.iter().enumerate();
+    let points = rows.iter().enumerate().filter(|(_, row)| !row.amplification.is_nan());
     chart.draw_series(points.map(|(k, row)| Circle::new((k as f64, row.amplification), 2, BLUE.filled())))?;
     let mut chart = ChartBuilder::on(&right)
         .caption("share of the patterns", ("sans-serif", 18))

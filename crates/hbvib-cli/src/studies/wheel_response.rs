@@ -88,7 +88,28 @@ pub fn write(part: &WheelPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut
         fs::write(path, table(&found)).map_err(|e| e.to_string())
     });
     files.write(part.figure.as_deref(), &|path| figure(path, &found));
-    Ok((summary(&found), false))
+    let mut text = summary(&found);
+    let outside = outside(part, &found);
+    if let Some(reason) = &outside {
+        let _ = writeln!(text, "[wheel]: {reason}");
+    }
+    Ok((text, outside.is_some()))
+}
+
+/// A sentence where the highest peak of the wheel, or of the tuned one, lies beyond an end of the range.
+fn outside(part: &WheelPart, found: &WheelPeaks) -> Option<String> {
+    let (of, end) = match found.beyond() {
+        Some(blade) => (format!("blade {blade}"), found.blades[blade].end),
+        None if found.tuned.is_beyond() => ("the tuned wheel".to_owned(), found.tuned.end),
+        None => return None,
+    };
+    Some(format!(
+        "the highest peak lies beyond an end of {} to {} Hz: at {:.6} Hz {of} is at {:.6e}, above all peaks within; widen the range",
+        part.from_hz,
+        part.to_hz,
+        end.1 / TAU,
+        end.0
+    ))
 }
 
 fn table(found: &WheelPeaks) -> String {
