@@ -150,7 +150,7 @@ fn take(lines: &Lines, (one, numbered): (&mut Found, &mut Numbered), column: u32
     Ok(count)
 }
 
-/// The number of a row. Of a complex one a blank part is zero, as in all real fields of bulk data; a real matrix has no second part.
+/// The number of a row. A blank part of a complex one is zero, as all real fields of bulk data are; a real matrix has no second part.
 fn number(lines: &Lines, one: &Found, (first, second): (Option<&str>, Option<&str>)) -> Result<(f64, f64)> {
     if !one.matrix.is_complex {
         let imaginary = real(lines, second.or(Some("0")), "imaginary part")?;
