@@ -1,6 +1,6 @@
 //! A stiffness K(1 + iη) from files whose formats name no symmetry, or name it: the response is that of the closed form.
 
-use crate::common::{empty_folder, hbvib, printed};
+use crate::common::{command, empty_folder, hbvib, printed};
 use hbvib_io::{Format, Matrices, Matrix, Symmetry, write};
 use std::fmt::Write;
 use std::path::Path;
@@ -123,4 +123,23 @@ fn a_complex_matrix_without_symmetry_is_refused_by_its_entries() {
     let (output, _) = hbvib("run", ("lossy_matrices", "neither_job"), &job);
     let text = printed(&output.stderr);
     assert!(!output.status.success() && text.contains("stiffness["), "{text}");
+}
+
+#[test]
+fn a_reduction_refuses_a_stiffness_with_loss_and_names_the_keys_that_it_takes() {
+    let folder = empty_folder("lossy_matrices", "reduced");
+    let path = folder.join("k.npz");
+    write(&path, &chain(Symmetry::General), Format::Npz).unwrap();
+    let job = format!(
+        "model.matrices = '{}'\n[[force]]\ndof = 0\nvalue = 1.0\n[forced]\nfrom_hz = 0.1\nto_hz = 0.16\nharmonics = 1\n",
+        path.display()
+    );
+    std::fs::write(folder.join("job.toml"), job).unwrap();
+    let output = command(&["reduce", "job.toml", "--output", "reduced.npz"], &folder);
+    let text = printed(&output.stderr);
+    assert!(!output.status.success(), "{text}");
+    assert!(
+        text.contains("the stiffness is complex") && text.contains("loss_factor"),
+        "{text}"
+    );
 }
