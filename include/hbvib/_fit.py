@@ -91,9 +91,10 @@ class _Fits(_Owner):
         elif suspicion == Suspicion.FREQUENCY:
             warnings.warn(SuspiciousUnits("angular frequencies of the data differ from those of the model by 2 pi: check whether "
                                           "they are hertz"), stacklevel=2)
+        early = _sentence(status) if status else ""
         if status > Status.STOPPED_BY_CALLER:
-            warnings.warn(StoppedEarly(_sentence(status), Status(status)), stacklevel=2)
+            warnings.warn(StoppedEarly(early, Status(status)), stacklevel=2)
         kept: dict[str, Any] = dict(huber=huber, starts=starts, max_iterations=max_iterations, end_step=end_step,
                                     scale_covariance=scale_covariance, **solver)
         return Fit(model.clone(), fitted, tuple(listed), tuple(sets), kept, theta, covariance, residuals, values, info,
-                   Status(status), suspicion)
+                   Status(status), suspicion, early)

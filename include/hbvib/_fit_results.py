@@ -126,13 +126,13 @@ class Fit:
 
     def __init__(self, original: Model, model: Model, unknowns: tuple[Unknown, ...], data: tuple[Measured, ...],
                  options: dict[str, Any], theta: FloatArray, covariance: FloatArray, residuals: FloatArray, values: FloatArray,
-                 info: Any, status: Status, suspicion: Suspicion) -> None:
+                 info: Any, status: Status, suspicion: Suspicion, early: str) -> None:
         self._original, self.model, self.unknowns, self.data, self._options = original, model, unknowns, data, options
         self.theta, self.covariance = theta, covariance
         ends = np.cumsum([2 * len(one) for one in data])[:-1]
         self.residuals = [part.reshape(-1, 2) for part in np.split(residuals, ends)]
         self.values = [part.reshape(-1, 2) for part in np.split(values, ends)]
-        self.info, self.status, self.suspicion = info, status, suspicion
+        self.info, self.status, self.suspicion, self._early = info, status, suspicion, early
         self.sd: FloatArray = np.sqrt(np.diag(covariance))
         with np.errstate(invalid="ignore", divide="ignore"):
             self.correlation: FloatArray = np.asarray(covariance / np.outer(self.sd, self.sd))
@@ -162,6 +162,8 @@ class Fit:
                      f"{info.starts} starts, {info.slipping} contacts slip")
         if np.isfinite(info.harmonic_error):
             lines.append(f"errors by harmonics are below {info.harmonic_error:.2g} standard deviations")
+        if self._early:
+            lines.append(f"the search ended early: {self._early}")
         for number, (one, residual) in enumerate(zip(self.data, self.residuals)):
             # NaN where the fit was stopped before all data were evaluated.
             size = np.nan_to_num(np.abs(residual)).max(axis=1)

@@ -168,7 +168,7 @@ class _Lives(_Owner):
         factors     (low, high) of the search.
         cycles      end of the life.
         The rest as in life, progress after each life with its factor as `parameter`. Stopped is raised where the search
-        is stopped, and where a life ends early, as without a peak. Options of the solver; harmonics without tolerance means tolerance = 0:
+        is stopped, NumericalError where a life has no peak or ends early. Options of the solver; harmonics without tolerance means tolerance = 0:
 
         {options}
 

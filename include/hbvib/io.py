@@ -196,6 +196,8 @@ def read(path: Any = None, *, stiffness: Any = None, mass: Any = None, damping: 
     stiffness, mass, damping, structural   files with this matrix alone. Rows are brought to one order by node and direction
             where the files name them; rows that one of them lacks are zero there.
 
+    A stiffness K(1 + i eta) is complex symmetric: Model takes it by set_matrix("stiffness", k, part="symmetric").
+
     dofs is an array (n, 2) of node and direction. The result has the attributes structural, facts and warnings as well; each
     warning is given as SuspiciousMatrices. ReadError names file, line and reason.
 

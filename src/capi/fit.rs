@@ -7,12 +7,13 @@ use super::boundary::{WithArgument, call};
 use super::fit_data::{Described, hbvib_data};
 use super::handles::{insert, read};
 use super::model::hbvib_model;
+use super::outcome::Outcome;
 use super::sensitivities::{hbvib_parameter, loaded, parameter};
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
-use crate::error::{Result, Status, fail, try_push};
+use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::sensitivity::Parameter;
 use crate::studies::{self, Fit, FitOptions, Loss, Scale, Suspicion, Unknown};
@@ -338,10 +339,12 @@ pub unsafe extern "C" fn hbvib_fit(
             }
             fill_out(info, numbers_of(&found));
             let status = found.status;
+            let early = found.early_end();
+            let reason = (!early.is_empty()).then(|| Error::new(status, format_args!("{early}")));
             if !out.is_null() {
                 out.write(insert(found.model)?);
             }
-            Ok(status)
+            Ok(Outcome { status, reason })
         }
     })
 }

@@ -499,8 +499,9 @@ pub unsafe extern "C" fn hbvib_best_load_init(b: *mut hbvib_best_load, size_of_b
 /// hooks        progress, called after each life with its factor in `parameter`; cancellation.
 ///              NULL: none.
 /// out          receives the factor; fill it by hbvib_best_load_init before.
-/// Errors: as of hbvib_life; HBVIB_E_ARGUMENT (factors, cycles); the status of a life that ended
-/// early; HBVIB_STOPPED_BY_CALLER. Nothing is written then. Threads: any number on one model.
+/// Errors: as of hbvib_life; HBVIB_E_ARGUMENT (factors, cycles); HBVIB_E_NO_CONVERGENCE (a life
+/// without a peak at its start, or one that ends early: the sentence tells the factor and why);
+/// HBVIB_STOPPED_BY_CALLER. Nothing is written then. Threads: any number on one model.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_best_load_for_life(

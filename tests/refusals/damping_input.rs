@@ -28,7 +28,13 @@ fn a_triangle_of_a_complex_symmetric_matrix_is_no_hermitian_one() {
             Part::Upper,
             ["stiffness[0,0] has the imaginary part 1.000e-1", "SYMMETRIC_UPPER"],
         ),
-        (Part::Full, ["differ by", "say SYMMETRIC if that is meant"]),
+        (
+            Part::Full,
+            [
+                "stiffness[0,0] has the imaginary part 1.000e-1, and the diagonal of a Hermitian matrix is real",
+                "say SYMMETRIC if that is meant, part=\"symmetric\" of set_matrix",
+            ],
+        ),
     ] {
         let view = MatrixView::dense_complex(2, &k).part(part);
         refused(

@@ -472,6 +472,42 @@ fn the_best_load_for_a_life_is_that_of_a_scan() {
     close("both ends", best.new, best.worn, 1e-5);
 }
 
+/// A search that keeps nothing has an error, no status of a partial result; it names the factor and the range.
+#[test]
+fn a_search_of_loads_without_a_peak_is_an_error() {
+    let model = chain(&[1.0]);
+    let options = LifeOptions {
+        wear: &wear(&[0.02]),
+        stiffness: &[1.0],
+        follow: LifeFollow::Peak {
+            omega_start: 10.0,
+            omega_stop: 11.0,
+        },
+        cycles: &[8.0],
+        ..LifeOptions::default()
+    };
+    let error = best_load_for_life(&model, &solver(3), &options, (0.2, 3.0), &mut Hooks::default()).unwrap_err();
+    assert_eq!(error.status, Status::NoConvergence);
+    let sentence = error.to_string();
+    assert!(
+        sentence.contains("with the factor 0.2")
+            && sentence.contains("no peak within omega = 10 .. 11: widen the range"),
+        "{sentence}"
+    );
+    // A life that does not come to its end within its steps is none, either.
+    let short = LifeOptions {
+        follow: LifeFollow::Peak {
+            omega_start: 0.6,
+            omega_stop: 2.0,
+        },
+        most_steps: 1,
+        ..options
+    };
+    let error = best_load_for_life(&model, &solver(3), &short, (0.2, 3.0), &mut Hooks::default()).unwrap_err();
+    assert_eq!(error.status, Status::NoConvergence);
+    assert!(error.to_string().contains("1 steps"), "{error}");
+}
+
 /// Against two hundred lives: none is better, and the best of them lies next to the factor found, a part of 1e-4 beside it.
 #[test]
 #[ignore = "two hundred lives; tests/deep.sh runs it"]

@@ -307,3 +307,40 @@ fn warnings_are_told_by_run_and_modes_and_refused_if_strict() {
         "{text}"
     );
 }
+
+/// The matrices of the model and those of the couplings alike.
+#[test]
+fn a_file_that_may_be_cut_off_within_its_last_number_is_a_warning() {
+    let folder = folder("cut");
+    let file = |name: &str, value: &str| {
+        let path = folder.join(name);
+        let text = format!("%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 {value}");
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let (mass, stiffness) = (file("m.mtx", "1.0\n"), file("k.mtx", "2.0\n"));
+    let (cut, coupling) = (file("cut.mtx", "2.0"), file("coupling.mtx", "-0.25"));
+    let check = |name: &str, stiffness: &str, coupling: &str| {
+        let sector = if coupling.is_empty() {
+            String::new()
+        } else {
+            format!("coupling_stiffness = '{coupling}'\nsectors = 4\nengine_order = 1\n")
+        };
+        let job = format!(
+            "[model]\nstiffness = '{stiffness}'\nmass = '{mass}'\n{sector}[[force]]\ndof = 0\nvalue = 1.0\n{END}"
+        );
+        hbvib("check", name, &job)
+    };
+    let told = |(code, text, errors): (i32, String, String)| {
+        assert_eq!(code, 0, "{errors}");
+        (text + &errors).matches("may be cut off").count()
+    };
+    assert_eq!(told(check("whole", &stiffness, "")), 0);
+    let (code, text, errors) = check("cut", &cut, "");
+    assert!(
+        code == 0 && (text.clone() + &errors).contains("cut.mtx, line 3: "),
+        "{text}{errors}"
+    );
+    assert!(told(check("cut_again", &cut, "")) >= 1);
+    assert!(told(check("cut_coupling", &stiffness, &coupling)) >= 1);
+}

@@ -443,3 +443,29 @@ fn a_fit_that_cannot_be_computed_is_refused_by_its_part() {
     let (output, _) = run("none", "fit", "[campbell]\nfrom_rpm = 0\nto_rpm = 1\n");
     assert!(crate::common::printed(&output.stderr).contains("names no fit"));
 }
+
+#[test]
+fn a_fit_that_ends_early_names_its_own_option() {
+    let parts = FIT.replace("harmonics = 1", "harmonics = 1\nmax_iterations = 1");
+    let (output, folder) = run("early", "fit", &parts);
+    let text = crate::common::printed(&output.stdout);
+    assert!(
+        text.contains("the search ended early: max_iterations was reached"),
+        "{text}"
+    );
+    assert!(!text.contains("max_points"), "{text}");
+    assert!(text.contains("\n1 iterations from"), "{text}");
+    let json = fs::read_to_string(folder.join("fit.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["finished"].as_bool(), Some(false));
+    let (output, _) = run(
+        "no_iterations",
+        "fit",
+        &FIT.replace("harmonics = 1", "harmonics = 1\nmax_iterations = 0"),
+    );
+    let told = crate::common::printed(&output.stderr);
+    assert!(
+        !output.status.success() && told.contains("max_iterations = 0, needs 1 .. 10000"),
+        "{told}"
+    );
+}

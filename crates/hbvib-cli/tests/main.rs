@@ -16,6 +16,7 @@ mod first_job;
 mod fits;
 mod free_interfaces;
 mod html_reports;
+mod lossy_matrices;
 mod lost_runs;
 mod map_and_tornado;
 mod modal_coordinates;

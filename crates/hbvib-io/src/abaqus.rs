@@ -61,6 +61,9 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
         if line.starts_with('*') {
             return lines.fail(format_args!("{line:?} is a keyword, needs entries of a matrix"));
         }
+        if lines.is_unended() && line.ends_with(',') {
+            return lines.fail("the file ends before the value of an entry");
+        }
         let words: Vec<&str> = line.split([',', ' ', '\t']).filter(|word| !word.is_empty()).collect();
         if fields == 0 {
             fields = words.len();
@@ -95,6 +98,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<(Matrix, Vec<Dof>)> {
              matrix coordinate real symmetric (or general)",
         );
     }
+    lines.refuse_cut_number()?;
     let dofs = if fields == 5 {
         let all = vec![true; numbered.len()];
         let (dofs, places) = numbered.sorted(&all);

@@ -59,6 +59,7 @@ fn dofs(lines: &mut Lines) -> Result<Vec<Dof>> {
         }
         dofs.push(dof);
     }
+    lines.refuse_cut_number()?;
     if dofs.is_empty() {
         lines.expect("a degree of freedom")?;
     }
@@ -81,6 +82,7 @@ fn matrix(lines: &mut Lines, n: usize) -> Result<Matrix> {
         }
         matrix.push(lines, row, column, (value, 0.0))?;
     }
+    lines.refuse_cut_number()?;
     if matrix.entries() == 0 {
         lines.expect("an entry")?;
     }

@@ -36,6 +36,7 @@ pub fn report_stressed(found: &Matrices) -> Report {
 
 fn report_of(found: &Matrices, positions: Option<Positions<'_>>, stressed: bool) -> Report {
     let mut report = Report::default();
+    report.warnings.extend(found.doubts.iter().cloned());
     for (name, a) in found.named() {
         report.facts.push(format!(
             "{name}: {} x {}, {} entries{}",

@@ -3,7 +3,8 @@
 //! and writers of superelements.
 //!
 //! All of them are strict: a line that is not understood is an error that names file, line and reason; NaN and infinite
-//! entries are refused; sizes are compared with the length of the file before memory is requested for them.
+//! entries are refused; sizes are compared with the length of the file before memory is requested for them. A text that may be cut
+//! off within its last number is refused, or has a warning in the report where the numbers are counted.
 
 #![warn(unsafe_code)]
 

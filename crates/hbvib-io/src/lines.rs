@@ -17,6 +17,15 @@ const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// Mark that some editors put before UTF-8 text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
+/// The sign of a file that may be cut off within its last number. Programs end the last line of their files.
+const CUT_NUMBER: &str = "the file ends with a number and without an end of its line: its last digits may be cut off";
+
+/// Whether a number touches the end of a line that is no comment of Matrix Market, Abaqus or Nastran.
+fn ends_with_a_number(line: &str) -> bool {
+    let comment = line.trim_start().starts_with('%') || line.starts_with("**") || line.contains('$');
+    !comment && line.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+}
+
 /// A text file, read line by line.
 pub(crate) struct Lines {
     path: PathBuf,
@@ -25,6 +34,10 @@ pub(crate) struct Lines {
     number: usize,
     line: String,
     again: bool,
+    /// The last line that was read has no end, and ends with a number.
+    open_number: bool,
+    /// The last line that was read has no end.
+    unended: bool,
 }
 
 impl Lines {
@@ -50,6 +63,8 @@ impl Lines {
             number: 0,
             line: String::new(),
             again: false,
+            open_number: false,
+            unended: false,
         })
     }
 
@@ -79,6 +94,7 @@ impl Lines {
             Ok(_) => {}
             Err(error) => return self.fail(format_args!("cannot be read: {error}")),
         }
+        self.unended = bytes.last() != Some(&b'\n');
         while matches!(bytes.last(), Some(b'\n' | b'\r')) {
             bytes.pop();
         }
@@ -87,6 +103,7 @@ impl Lines {
         }
         match String::from_utf8(bytes) {
             Ok(line) if !line.contains(|c: char| c.is_control() && c != '\t') => {
+                self.open_number = self.unended && ends_with_a_number(&line);
                 self.line = line;
                 Ok(true)
             }
@@ -114,6 +131,34 @@ impl Lines {
     /// The present line.
     pub fn text(&self) -> &str {
         &self.line
+    }
+
+    /// Whether the present line is the last of a file that does not end it.
+    pub fn is_unended(&self) -> bool {
+        self.unended
+    }
+
+    /// Refuses a file of a format that does not count its numbers where [`Self::cut_number`] has a sentence: nothing tells a whole
+    /// file from one that is cut off.
+    ///
+    /// # Errors
+    /// The line and reason.
+    pub fn refuse_cut_number(&self) -> Result<()> {
+        if self.open_number {
+            return self.fail(format_args!("{CUT_NUMBER}; end the line if the file is whole"));
+        }
+        Ok(())
+    }
+
+    /// A sentence about a file whose last number may lack digits: the file ends with it, without the end of the line.
+    pub fn cut_number(&self) -> Option<String> {
+        self.open_number.then(|| {
+            format!(
+                "{}, line {}: {CUT_NUMBER}; end the line if the file is whole",
+                self.path.display(),
+                self.number
+            )
+        })
     }
 
     /// Number of the present line, from 1.

@@ -59,6 +59,8 @@ pub struct Matrices {
     pub dofs: Vec<Dof>,
     /// Names of matrices of the file that are none of these, and were left out.
     pub others: Vec<String>,
+    /// Sentences on signs that the file is not whole, which [`report`](crate::report) has as warnings.
+    pub doubts: Vec<String>,
 }
 
 impl Matrices {

@@ -72,6 +72,7 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<Matrix> {
             let column = index(lines, words.next(), columns, "column")?;
             let value = value(lines, &mut words, is_complex)?;
             refuse_more(lines, words.next())?;
+            refuse_lossy(lines, &matrix, row == column, value)?;
             if symmetry == Symmetry::General || row == column {
                 matrix.push(lines, row, column, value)?;
                 continue;
@@ -109,6 +110,7 @@ fn array(lines: &mut Lines, matrix: &mut Matrix) -> Result<()> {
             let mut words = lines.text().split_whitespace();
             let value = value(lines, &mut words, matrix.is_complex)?;
             refuse_more(lines, words.next())?;
+            refuse_lossy(lines, matrix, row == column, value)?;
             matrix.push(lines, row as u32, column as u32, value)?;
         }
     }
@@ -132,6 +134,16 @@ fn mirrored(symmetry: Symmetry, (re, im): (f64, f64)) -> (f64, f64) {
         Symmetry::Hermitian => (re, -im),
         Symmetry::Skew => (-re, -im),
     }
+}
+
+/// The diagonal of a Hermitian matrix is real: with a loss factor the matrix is symmetric.
+fn refuse_lossy(lines: &Lines, matrix: &Matrix, on_diagonal: bool, (_, im): (f64, f64)) -> Result<()> {
+    if matrix.symmetry == Symmetry::Hermitian && on_diagonal && im != 0.0 {
+        return lines.fail(format_args!(
+            "an imaginary part of {im} on the diagonal of a hermitian matrix, needs 0, or symmetric in the banner"
+        ));
+    }
+    Ok(())
 }
 
 fn refuse_more(lines: &Lines, word: Option<&str>) -> Result<()> {

@@ -35,6 +35,7 @@ pub fn read_files(files: &Files<'_>) -> Result<Matrices> {
         let found = read(path)?;
         all.dofs = found.dofs;
         all.others = found.others;
+        all.doubts = found.doubts;
         let kinds = [found.stiffness, found.mass, found.damping, found.structural];
         for (kind, matrix) in kinds.into_iter().enumerate() {
             all.places[kind] = matrix.map(|matrix| (matrix, path));
@@ -43,7 +44,8 @@ pub fn read_files(files: &Files<'_>) -> Result<Matrices> {
     let named = [files.stiffness, files.mass, files.damping, files.structural];
     for (kind, path) in named.into_iter().enumerate() {
         if let Some(path) = path {
-            let (matrix, dofs) = single(path)?;
+            let (matrix, dofs, doubts) = single(path)?;
+            all.doubts.extend(doubts);
             all.places[kind] = None;
             all.add(kind, (matrix, dofs), path)?;
         }
@@ -57,6 +59,7 @@ pub fn read_files(files: &Files<'_>) -> Result<Matrices> {
         structural,
         dofs: all.dofs,
         others: all.others,
+        doubts: all.doubts,
     })
 }
 
@@ -68,10 +71,11 @@ struct Held<'a> {
     places: [Option<(Matrix, &'a Path)>; 4],
     dofs: Vec<Dof>,
     others: Vec<String>,
+    doubts: Vec<String>,
 }
 
-/// The only matrix of a file.
-fn single(path: &Path) -> Result<(Matrix, Vec<Dof>)> {
+/// The only matrix of a file, its degrees of freedom and doubts.
+fn single(path: &Path) -> Result<(Matrix, Vec<Dof>, Vec<String>)> {
     let found = read(path)?;
     let held: Vec<&str> = found.named().map(|(name, _)| name).collect();
     if held.len() != 1 {
@@ -80,7 +84,7 @@ fn single(path: &Path) -> Result<(Matrix, Vec<Dof>)> {
     }
     let matrix = [found.stiffness, found.mass, found.damping, found.structural];
     match matrix.into_iter().flatten().next() {
-        Some(matrix) => Ok((matrix, found.dofs)),
+        Some(matrix) => Ok((matrix, found.dofs, found.doubts)),
         None => Err(Error::new(path, 0, "holds no matrix")),
     }
 }

@@ -72,14 +72,14 @@ pub fn read(path: &Path) -> Result<Matrices> {
         return dmig::matrices(&mut lines);
     }
     if user_element::is_user_element(&text) {
-        return user_element::matrices(&mut lines);
+        return user_element::matrices(&mut lines).map(|found| doubted(found, &lines));
     }
     lines.expect("a matrix")?;
     if matrix_market::is_banner(lines.text()) {
-        return Ok(one(matrix_market::matrix(&mut lines)?));
+        return matrix_market::matrix(&mut lines).map(|found| doubted(one(found), &lines));
     }
     if extension == "op4" || op4::is_head(lines.text()) {
-        return op4::matrices(&mut lines);
+        return op4::matrices(&mut lines).map(|found| doubted(found, &lines));
     }
     if extension == "mtx" {
         lines.repeat();
@@ -93,7 +93,14 @@ pub fn read(path: &Path) -> Result<Matrices> {
              DMIG and .npz are read",
         ));
     }
-    Ok(one(harwell_boeing::matrix(&mut lines)?))
+    harwell_boeing::matrix(&mut lines).map(|found| doubted(one(found), &lines))
+}
+
+/// Files of formats that count their numbers miss none of them, but may be cut off within the last one: programs that do not end the
+/// last line write them, too.
+fn doubted(mut found: Matrices, lines: &Lines) -> Matrices {
+    found.doubts.extend(lines.cut_number());
+    found
 }
 
 /// The first bytes of a file.

@@ -126,6 +126,7 @@ impl RelativeCoordinates {
             structural: one(&matrices.structural)?,
             dofs: matrices.dofs.clone(),
             others: matrices.others.clone(),
+            doubts: matrices.doubts.clone(),
         })
     }
 

@@ -61,6 +61,9 @@ pub(crate) fn matrices(lines: &mut Lines) -> Result<Matrices> {
                 element.take_nodes(lines, comment)?;
             }
         } else if line.starts_with('*') {
+            if lines.is_unended() {
+                return lines.fail("the file ends with a keyword, before its data");
+            }
             part = element.keyword(lines, &line)?;
         } else if !line.is_empty() {
             if part == Part::Nodes {

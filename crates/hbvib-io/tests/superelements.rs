@@ -147,7 +147,7 @@ fn models() -> Vec<(&'static str, Matrices)> {
                 damping: one(3),
                 structural: one(4),
                 dofs: dofs(),
-                others: Vec::new(),
+                ..Matrices::default()
             },
         ));
     }

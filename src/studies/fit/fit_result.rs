@@ -56,6 +56,24 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// A sentence on a search that ended early; empty for one that found the least loss.
+    #[must_use]
+    pub fn early_end(&self) -> &'static str {
+        match self.status {
+            Status::StoppedMaxPoints => {
+                "max_iterations was reached; the values of the least loss so far are kept; raise max_iterations, or start nearer"
+            }
+            Status::StoppedStalled => {
+                "no step lowers the loss any more, though the gradient is not zero; the values of the least loss are kept: \
+                 the loss may have a kink there, as where a contact begins to slip"
+            }
+            Status::StoppedByCaller => {
+                "stopped by the progress hook or the cancel flag; the values of the least loss so far are kept"
+            }
+            _ => "",
+        }
+    }
+
     /// Criterion of Akaike, χ² + 2k with k free unknowns, under known standard deviations.
     #[must_use]
     pub fn aic(&self) -> f64 {

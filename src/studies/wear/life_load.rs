@@ -53,7 +53,8 @@ impl Tried {
 /// amplitude over the life is least. It is the lowest of the minima that nine lives over the range show.
 ///
 /// # Errors
-/// `Argument` for the range; those of [`life`]; the status of a life that ended early; `StoppedByCaller`.
+/// `Argument` for the range; those of [`life`]; `NoConvergence` for a life that has no peak at its start or ends early;
+/// `StoppedByCaller`.
 pub fn best_load_for_life(
     model: &Model,
     solver: &SolverOptions,
@@ -101,6 +102,21 @@ pub fn best_load_for_life(
     })
 }
 
+/// The error of a search that lacks a life. A status of a partial result is none here, where nothing is kept.
+fn without_life(e: Error, factor: f64) -> Error {
+    if matches!(
+        e.status,
+        Status::StoppedByCaller | Status::OutOfMemory | Status::Callback
+    ) {
+        return e;
+    }
+    let mut e = e.at(format_args!("with the factor {factor} on the loads"));
+    if (e.status as i32) > 0 {
+        e.status = Status::NoConvergence;
+    }
+    e
+}
+
 struct Search<'a> {
     model: &'a Model,
     solver: SolverOptions,
@@ -116,11 +132,11 @@ impl Search<'_> {
             model.set_worn_load(wear.contact, factor * load)?;
         }
         let mut quiet = hooks.quiet();
-        let found: Life = life(&model, &self.solver, self.options, &mut quiet)?;
+        let found: Life = life(&model, &self.solver, self.options, &mut quiet).map_err(|e| without_life(e, factor))?;
         if found.status != Status::Ok {
-            return Err(found
-                .reason
-                .unwrap_or_else(|| Error::new(found.status, format_args!("a life ended early"))));
+            let reason = found.reason;
+            let e = reason.unwrap_or_else(|| Error::new(found.status, format_args!("{}", found.status.sentence())));
+            return Err(without_life(e, factor));
         }
         self.lives += 1;
         let progress = Progress {

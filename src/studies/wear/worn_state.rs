@@ -418,11 +418,13 @@ impl<'a> WornStates<'a> {
             let at = (&branch, peak.point, peak.amplitude);
             return self.vibration((model, state), at, Some(&by_load), &stop);
         }
-        fail!(
-            StoppedNoPeak,
-            "the response has no peak near omega = {}",
-            near.unwrap_or(0.5 * (start + stop))
-        )
+        match near {
+            Some(omega) => fail!(StoppedNoPeak, "the response has no peak near omega = {omega}"),
+            None => fail!(
+                StoppedNoPeak,
+                "the response has no peak within omega = {start} .. {stop}: widen the range, or let the force act on the mode in it"
+            ),
+        }
     }
 
     /// The constants by which the loads act: the normal load, or the gap where there is one.

@@ -44,6 +44,17 @@ check("sums", abs(sum((r ** 2).sum() for r in fit.residuals) / fit.chi2 - 1) < 1
 check("the model has the values", abs(fit.model.contact(0).constants["kt"] - fit.theta[0]) < 1e-12)
 check("the report has all names", all(name in fit.report() for name in ("kt 0", "mu 0", "damping factor", "chi2")))
 
+check("a fit that ends says no more", "ended early" not in fit.report())
+
+# A search that has too few iterations names its own option, in the warning and in the report.
+with warnings.catch_warnings(record=True) as told:
+    warnings.simplefilter("always")
+    short = model.fit(names, data, harmonics=9, max_iterations=1)
+check("the status of a search with too few iterations", short.status == hbvib.Status.STOPPED_MAX_POINTS, short.status)
+early = [line for line in short.report().splitlines() if "ended early" in line]
+check("one line of the report tells it", len(early) == 1 and "max_iterations" in early[0], short.report())
+check("so does the warning", len(told) == 1 and "raise max_iterations" in str(told[0].message), [str(w.message) for w in told])
+
 # A profile of a parameter that is known well is a parabola: its interval is that of the covariance.
 low, high = fit.profile(1).interval(1.0)
 check("the profile agrees with the covariance", abs((high - low) / (2 * fit.sd[1]) - 1) < 0.1, (low, high, fit.sd[1]))

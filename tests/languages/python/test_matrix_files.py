@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 import hbvib.io
-from common import check, finish, hbvib
+from common import check, finish, hbvib, raises
 
 folder = tempfile.mkdtemp()
 
@@ -105,4 +105,25 @@ with warnings.catch_warnings(record=True) as told:
     found = hbvib.io.read(path)
 check("a negative diagonal is a warning", len(found.warnings) == 1
       and [one.category for one in told] == [hbvib.io.SuspiciousMatrices])
-finish(14)
+
+# A file whose last number may lack digits is read, and told.
+path = write("cut.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 2\n2 2 1")
+with warnings.catch_warnings(record=True) as told:
+    warnings.simplefilter("always")
+    found = hbvib.io.read(path)
+check("a number that may be cut off is a warning", len(told) == 1 and "cut.mtx, line 4" in found.warnings[0]
+      and "may be cut off" in str(told[0].message) and found.stiffness.toarray().tolist() == [[2, 0], [0, 1]])
+
+# K(1 + i eta) is symmetric, which the caller says; the sentence names how.
+lossy = np.array([[3.0, -1.0], [-1.0, 3.0]]) * (1 + 0.02j)
+path = os.path.join(folder, "lossy.npz")
+hbvib.io.write(path, stiffness=lossy, mass=np.eye(2))
+found = hbvib.io.read(path)
+raises("a stiffness with loss is no Hermitian one", hbvib.ArgumentError, hbvib.Model, mass=found.mass, stiffness=found.stiffness,
+       words='diagonal of a Hermitian matrix is real; the matrix is complex symmetric: say SYMMETRIC if that is meant, part="symmetric"')
+model = hbvib.Model(mass=found.mass)
+model.set_matrix("stiffness", found.stiffness, part="symmetric")
+model.add_force(0, 1)
+x = model.forced_response(1.0).harmonics(0)[1]
+check("part says it", np.allclose(x, np.linalg.solve(lossy - np.eye(2), [1, 0]), rtol=1e-12), x)
+finish(17)

@@ -6,6 +6,7 @@ use crate::building::built::Names;
 use crate::building::contacts::{Entry, contacts};
 use crate::building::dampers::add_dampers;
 use crate::building::expected::near;
+use crate::building::passed_matrices::with_view;
 use crate::job_file::job::Job;
 use crate::job_file::job_words::Amplitude;
 use crate::meshes::face_images::FaceImages;
@@ -15,7 +16,7 @@ use crate::meshes::node_table::Nodes;
 use crate::meshes::surface_pairs::SurfacePairs;
 use crate::texts::counted::counted;
 use crate::texts::outcome::Outcome;
-use hbvib::{MatrixKind, MatrixView, Model, Part, Speed, Storage, Values};
+use hbvib::{MatrixKind, Model, Speed};
 use hbvib_io::{Dof, Files, Matrices, Matrix, Report, Symmetry};
 use num_complex::Complex64;
 use std::collections::HashMap;
@@ -291,8 +292,10 @@ pub fn read_matrices(job: &Job) -> Outcome<Matrices> {
 
 fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
     let part = &job.model;
-    let one = |path: &Path| -> Outcome<(Matrix, Vec<Dof>)> {
+    let mut doubts = Vec::new();
+    let mut one = |path: &Path| -> Outcome<(Matrix, Vec<Dof>)> {
         let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
+        doubts.extend(found.doubts);
         let held = [found.stiffness, found.mass, found.damping, found.structural];
         let mut held = held.into_iter().flatten();
         match (held.next(), held.next()) {
@@ -370,57 +373,9 @@ fn matrices(job: &Job, mesh: Option<&Mesh>) -> Outcome<Given> {
     }
     given.own.extend(rotating);
     given.next = next;
+    given.report.warnings.extend(doubts);
     if given.own.is_empty() {
         return Err("[model]: names no matrix: needs stiffness and mass, or matrices".into());
     }
     Ok(given)
-}
-
-/// Passes a matrix as compressed columns, all entries of it.
-fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
-    let parts = if a.is_complex { 2 } else { 1 };
-    let mut entries: Vec<(u32, u32, Complex64)> = Vec::with_capacity(2 * a.entries());
-    for (k, v) in a.values.chunks_exact(parts).enumerate() {
-        let (i, j) = (a.row[k], a.column[k]);
-        let v = Complex64::new(v[0], v.get(1).copied().unwrap_or(0.0));
-        entries.push((i, j, v));
-        if i != j {
-            match a.symmetry {
-                Symmetry::General => {}
-                Symmetry::Symmetric => entries.push((j, i, v)),
-                Symmetry::Hermitian => entries.push((j, i, v.conj())),
-                Symmetry::Skew => entries.push((j, i, -v)),
-            }
-        }
-    }
-    entries.sort_unstable_by_key(|&(i, j, _)| (j, i));
-    let mut col_ptr = vec![0_i64; a.columns + 1];
-    for &(_, j, _) in &entries {
-        col_ptr[j as usize + 1] += 1;
-    }
-    for j in 0..a.columns {
-        col_ptr[j + 1] += col_ptr[j];
-    }
-    let row_idx: Vec<i64> = entries.iter().map(|&(i, ..)| i64::from(i)).collect();
-    let real: Vec<f64> = entries.iter().map(|(_, _, v)| v.re).collect();
-    let complex: Vec<Complex64> = entries.iter().map(|(_, _, v)| *v).collect();
-    take(&MatrixView {
-        rows: a.rows,
-        cols: a.columns,
-        storage: Storage::Csc {
-            col_ptr: &col_ptr,
-            row_idx: &row_idx,
-        },
-        values: if a.is_complex {
-            Values::Complex(&complex)
-        } else {
-            Values::Real(&real)
-        },
-        part: match a.symmetry {
-            Symmetry::Skew => Part::General,
-            Symmetry::Symmetric => Part::Symmetric,
-            Symmetry::General | Symmetry::Hermitian => Part::Full,
-        },
-        index_base: 0,
-    })
 }

@@ -9,5 +9,6 @@ pub(crate) mod contacts;
 pub(crate) mod dampers;
 pub(crate) mod expected;
 pub(crate) mod model_report;
+pub(crate) mod passed_matrices;
 pub(crate) mod responses;
 pub(crate) mod solver;

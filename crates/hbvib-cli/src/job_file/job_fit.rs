@@ -19,6 +19,8 @@ pub struct FitPart {
     pub huber: Option<f64>,
     /// Points from which the search begins.
     pub starts: Option<usize>,
+    /// Largest number of iterations from each, 60 unless given.
+    pub max_iterations: Option<usize>,
     /// The covariance is multiplied by chi2 over the degrees of freedom.
     #[serde(default)]
     pub scale_covariance: bool,

@@ -17,7 +17,9 @@ impl Entries {
     /// A sentence with its name: a complex matrix.
     pub fn of(name: &str, a: &Matrix) -> Outcome<Self> {
         if a.is_complex {
-            return Err(format!("the {name} is complex, needs a real matrix"));
+            return Err(format!(
+                "the {name} is complex, needs a real matrix: give the loss of K(1 + i eta) as loss_factor, or eta K as structural"
+            ));
         }
         let mut all = Vec::with_capacity(2 * a.entries());
         for (k, v) in a.values.iter().enumerate() {

@@ -236,7 +236,7 @@ fn matrices_of(basis: &Basis, found: &Matrices, kept: &[usize], direction: i64) 
         damping: on("damping", &found.damping)?,
         structural: on("structural", &found.structural)?,
         dofs,
-        others: Vec::new(),
+        ..Matrices::default()
     })
 }
 

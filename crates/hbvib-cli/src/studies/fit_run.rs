@@ -82,6 +82,7 @@ pub fn write(
     let options = FitOptions {
         loss: part.huber.map_or(Loss::Square, Loss::Huber),
         starts: part.starts.unwrap_or(defaults.starts),
+        max_iterations: part.max_iterations.unwrap_or(defaults.max_iterations),
         scale_covariance: part.scale_covariance,
         ..defaults
     };
@@ -165,7 +166,7 @@ fn report(found: &Fit, names: &[&str]) -> String {
         let _ = writeln!(text, "warning: {}", found.suspicion.sentence());
     }
     if found.status != Status::Ok {
-        let _ = writeln!(text, "the search ended early: {}", found.status.sentence());
+        let _ = writeln!(text, "the search ended early: {}", found.early_end());
     }
     text
 }

@@ -417,11 +417,20 @@ impl<'a> MatrixView<'a> {
             } else if one_triangle {
                 "; it looks like one triangle was passed: say LOWER or UPPER"
             } else if !plain && is_complex_symmetric() {
-                "; the matrix is complex symmetric: say SYMMETRIC if that is meant"
+                "; the matrix is complex symmetric: say SYMMETRIC if that is meant, part=\"symmetric\" of set_matrix in Python"
             } else {
                 "; say GENERAL if that is meant"
             };
             let base = self.index_base;
+            if i == j {
+                // The mirror image of an entry of the diagonal is its conjugate: what differs is the imaginary part, twice.
+                return fail!(
+                    NotHermitian,
+                    "{name}[{0},{0}] has the imaginary part {1:.3e}, and the diagonal of a Hermitian matrix is real{hint}",
+                    i + base,
+                    a.get(i, i).im
+                );
+            }
             return Err(Error::new(
                 Status::NotHermitian,
                 format_args!(
