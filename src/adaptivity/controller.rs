@@ -10,8 +10,10 @@
 //! the bound is 0.7 of the tolerance, and harmonics are dropped as soon as fewer meet it: the point is solved with them, and
 //! the change of its response, added to its error, shows whether they do.
 
+use crate::adaptivity::decision::{Action, Choices, MOST_REFINEMENTS, Occasion, Signs, decide};
 use crate::adaptivity::discretised::{Assessment, Discretised};
-use crate::adaptivity::estimate_spacing::{EstimateSpacing, Signs};
+use crate::adaptivity::estimate_spacing::{EstimateSpacing, Trend};
+use crate::adaptivity::harmonic_history::HarmonicHistory;
 use crate::continuation::{Point, PointAt};
 use crate::error::Result;
 use crate::error_estimate::{Estimate, MARGIN};
@@ -22,28 +24,11 @@ use crate::results::SpecialKind;
 /// Target of the error as a share of the tolerance, where harmonics cost little and where they cost much.
 const AIM: (f64, f64) = (0.5, 0.7);
 
-/// Share of the tolerance above which the next point is refined in advance, unless harmonics cost much.
-const RAISE: f64 = 0.7;
-
-/// Share of the tolerance below which the next point is coarsened.
-const DROP: f64 = 0.08;
-
-/// Successive estimates below that share after which the branch is coarsened: one alone may be an exception.
-const LOW: usize = 2;
-
-/// Number of points for which a branch is not coarsened to a level at which one missed the tolerance, and the most points
-/// where the error of one was unknown there time and again.
-const CONTROLLER_PATIENCE: usize = 10;
-const MOST_PATIENCE: usize = 80;
-
 /// Relative size of a harmonic that is round-off.
 const CONTROLLER_ROUND_OFF: f64 = 1e-13;
 
 /// Levels by which a point is refined if the next one was not found from it.
 const BACKTRACK: usize = 3;
-
-/// Most refinements of one point.
-const MOST_REFINEMENTS: usize = 12;
 
 /// A point with the harmonics that its error requires, at the current resolution.
 pub(crate) struct Refined {
@@ -52,27 +37,14 @@ pub(crate) struct Refined {
     pub stuck: bool,
 }
 
-/// Selects the harmonics of each point of a branch.
+/// Selects the harmonics of each point of a branch: collects the signs, asks [`decide`], and carries out the answer.
 pub(crate) struct AdaptivityController {
     tolerance: f64,
     /// Number of estimates that were more than a check of contacts that stick.
     estimates: usize,
     /// Error of the last point that met the tolerance, and the harmonics that it requires.
     last: Option<(f64, usize)>,
-    /// Lowest level to which the branch may be coarsened, one above that where a point missed the tolerance, and the
-    /// number of points for which it holds.
-    floor: (usize, usize),
-    /// The highest level so far. The branch is coarsened to half its harmonics at most.
-    highest: usize,
-    /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
-    /// harmonics it may fold elsewhere and reverse.
-    folded: bool,
-    /// Where the branch was refined because an error was unknown: the number of points until it may be coarsened again.
-    unknown: Option<usize>,
-    /// Whether a nonlinear point was estimated.
-    begun: bool,
-    /// Number of successive estimates far below the tolerance.
-    low: usize,
+    history: HarmonicHistory,
     spacing: EstimateSpacing,
 }
 
@@ -83,12 +55,7 @@ impl AdaptivityController {
             tolerance,
             estimates: 0,
             last: None,
-            floor: (0, 0),
-            highest: 0,
-            folded: false,
-            unknown: None,
-            begun: false,
-            low: 0,
+            history: HarmonicHistory::new(),
             spacing: EstimateSpacing::default(),
         }
     }
@@ -100,7 +67,46 @@ impl AdaptivityController {
 
     /// Notes a special point of the branch.
     pub fn note_special(&mut self, kind: SpecialKind) {
-        self.folded |= kind.is_fold();
+        if kind.is_fold() {
+            self.history.note_fold();
+        }
+    }
+
+    /// The signs of a point of an error, NaN where it is unknown, that requires harmonics up to one.
+    fn signs(&self, equations: &dyn Discretised, occasion: Occasion, (error, required): (f64, usize)) -> Signs {
+        let (levels, level) = (equations.levels(), equations.resolution());
+        let half = levels.level_of_half(self.history.highest());
+        Signs {
+            occasion,
+            share: MARGIN * error / self.tolerance,
+            choices: Choices {
+                level,
+                required: levels.level_with(required),
+                doubled: levels.level_of_double(level),
+                few: levels.few(),
+                lowest: half.max(levels.few()).max(self.history.floor()),
+                last: levels.last(),
+            },
+            waits: self.history.waits(),
+            low: self.history.low(),
+            costly: levels.are_costly(),
+            too_large: false,
+        }
+    }
+
+    /// The decision after an estimate.
+    fn decide_by(
+        &self,
+        equations: &dyn Discretised,
+        occasion: Occasion,
+        found: &Assessment,
+        required: usize,
+    ) -> Action {
+        let signs = Signs {
+            too_large: found.estimate.too_large,
+            ..self.signs(equations, occasion, (found.error, required))
+        };
+        decide(&signs, self.history.state())
     }
 
     fn accepts(&self, error: f64) -> bool {
@@ -120,17 +126,18 @@ impl AdaptivityController {
         point: Point,
         interrupt: &Interrupt<'_>,
     ) -> Result<Point> {
-        let (level, few) = (
-            equations.resolution(),
-            equations.levels().few().min(equations.levels().last()),
-        );
-        if !equations.levels().is_automatic() || level >= few {
+        if !equations.levels().is_automatic() {
             return Ok(point);
         }
+        let level = equations.resolution();
+        let signs = self.signs(equations, Occasion::Begins, (f64::NAN, 0));
+        let Action::Raise(few) = decide(&signs, self.history.state()) else {
+            return Ok(point);
+        };
         let Some(better) = resolve_at(equations, (&point, level), few, true, interrupt)? else {
             return Ok(point);
         };
-        self.begun = true;
+        self.history.note_justified();
         Ok(better)
     }
 
@@ -147,51 +154,50 @@ impl AdaptivityController {
         if !equations.levels().is_automatic() {
             return done(point);
         }
-        let mut signs = Signs::of(&point, equations.share_of_highest(&point));
-        if self.is_predicted(equations, &point, signs)? {
+        let mut trend = Trend::of(&point, equations.share_of_highest(&point));
+        let predicted = self.is_predicted(equations, &point, trend)?;
+        if decide(&Signs::solved(predicted), self.history.state()) == Action::Keep {
             return done(point);
         }
         // The point before the last refinement, where its error was unknown and the refinement changed nothing.
-        let mut settled: Option<(Point, usize)> = None;
+        let mut unchanged: Option<(Point, usize)> = None;
         let mut missed = false; // with fewer harmonics
         for refinements in 0..=MOST_REFINEMENTS {
             let level = equations.resolution();
-            let Some(found) = self.estimate(equations, &point, signs)? else {
+            let Some(found) = self.estimate(equations, &point, trend)? else {
                 return done(point);
             };
             let accepted = self.accepts(found.error);
             let required = self.required_harmonics(equations, &found);
             self.last = accepted.then_some((found.error, required));
             if !accepted {
-                self.note_miss(found.error, level);
+                self.history.note_miss(found.error.is_nan(), level);
                 missed = true;
             }
-            if let Some((fewer, below)) = settled.take().filter(|_| found.error.is_nan()) {
-                // More harmonics would tell no more, and each later point would pay for them.
-                equations.select(below)?;
-                self.floor = (below, 0);
-                return done(fewer);
-            }
-            let drops = accepted && self.may_drop(found.error, missed);
-            let next = if found.error.is_nan() {
-                equations.levels().level_of_double(level)
-            } else {
-                equations.levels().level_with(required)
+            let occasion = Occasion::Estimated {
+                missed,
+                unchanged_from: unchanged.as_ref().map(|(_, before)| *before),
+                refinements,
             };
-            let next = if accepted { next } else { next.max(level + 1) };
-            let next = next.min(equations.levels().last());
-            let may_refine = !accepted && next > level && !found.estimate.too_large && refinements < MOST_REFINEMENTS;
-            let better = if drops && next < level {
-                resolve_at(equations, (&point, level), next, keep_parameter, interrupt)?
-            } else if may_refine {
-                refine_to(equations, &point, &found.estimate, next, keep_parameter, interrupt)?
-            } else {
-                None
+            let action = self.decide_by(equations, occasion, &found, required);
+            if accepted && found.error > 0.0 {
+                self.history.note_justified();
+            }
+            let better = match action {
+                Action::Keep | Action::Estimate => None,
+                Action::Drop(before) if !accepted => {
+                    // More harmonics would tell no more, and each later point would pay for them.
+                    equations.select(before)?;
+                    self.history.note_settled(before);
+                    return done(unchanged.map_or(point, |(fewer, _)| fewer));
+                }
+                Action::Drop(next) => resolve_at(equations, (&point, level), next, keep_parameter, interrupt)?,
+                Action::Raise(next) => refine_to(equations, &point, &found.estimate, next, keep_parameter, interrupt)?,
             };
             let Some(better) = better else {
                 return Ok(Refined {
                     point,
-                    stuck: may_refine,
+                    stuck: matches!(action, Action::Raise(_)),
                 });
             };
             let before = equations.transfer(&point, level)?;
@@ -200,40 +206,30 @@ impl AdaptivityController {
                 equations.share_work();
             }
             let left = core::mem::replace(&mut point, better);
-            settled = same.then_some((left, level));
-            signs = Signs::of(&point, equations.share_of_highest(&point));
+            unchanged = same.then_some((left, level));
+            trend = Trend::of(&point, equations.share_of_highest(&point));
         }
         done(point)
     }
 
-    /// Notes a point that misses the tolerance at a level, or whose error is unknown there.
-    fn note_miss(&mut self, error: f64, level: usize) {
-        self.unknown = error.is_nan().then(|| {
-            self.unknown
-                .map_or(CONTROLLER_PATIENCE, |points| (2 * points).min(MOST_PATIENCE))
-        });
-        self.floor = (level + 1, self.unknown.unwrap_or(CONTROLLER_PATIENCE));
-    }
-
     /// Estimates the error of a point, and notes it for the spacing of the estimates.
-    fn estimate(&mut self, equations: &mut dyn Discretised, point: &Point, signs: Signs) -> Result<Option<Assessment>> {
+    fn estimate(&mut self, equations: &mut dyn Discretised, point: &Point, trend: Trend) -> Result<Option<Assessment>> {
         let found = equations.estimate(point)?;
         if let Some(found) = &found {
             self.count(found);
             let may_fall = equations.resolution() > equations.levels().few();
             let error = (found.error, self.tolerance / MARGIN);
-            self.spacing.note(equations.resolution(), signs, error, may_fall);
-            let is_low = MARGIN * found.error < DROP * self.tolerance;
-            self.low = if is_low { self.low + 1 } else { 0 };
+            self.spacing.note(equations.resolution(), trend, error, may_fall);
+            self.history.note_estimate(MARGIN * found.error / self.tolerance);
         }
         Ok(found)
     }
 
     /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
-    fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, signs: Signs) -> Result<bool> {
+    fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, trend: Trend) -> Result<bool> {
         self.spacing.note_step(point.step);
         let largest = self.tolerance / MARGIN;
-        let Some(factor) = self.spacing.factor(equations.resolution(), signs, largest) else {
+        let Some(factor) = self.spacing.factor(equations.resolution(), trend, largest) else {
             return Ok(false);
         };
         if !equations.take_over_estimate(point, factor)? {
@@ -244,17 +240,6 @@ impl AdaptivityController {
             *error *= factor;
         }
         Ok(true)
-    }
-
-    /// Whether harmonics may be dropped at once: those without content, and at the first point that is nonlinear those
-    /// that it does not require, if the branch began with a number of harmonics that nothing has justified: not if the point
-    /// `missed` the tolerance with fewer.
-    fn may_drop(&mut self, error: f64, missed: bool) -> bool {
-        if error == 0.0 {
-            return true;
-        }
-        let first = !core::mem::replace(&mut self.begun, true);
-        first && !missed && MARGIN * error <= DROP * self.tolerance
     }
 
     /// Whether two solutions have one response within the tolerance.
@@ -284,7 +269,6 @@ impl AdaptivityController {
         if !equations.levels().is_automatic() || kind.is_fold() {
             return Ok(true);
         }
-        let level = equations.resolution();
         let Some(found) = equations.estimate(point)? else {
             return Ok(true);
         };
@@ -293,11 +277,9 @@ impl AdaptivityController {
             return Ok(true);
         }
         let required = self.required_harmonics(equations, &found);
-        let last = equations.levels().last();
-        let next = equations.levels().level_with(required).max(level + 1).min(last);
-        if next <= level || found.estimate.too_large {
+        let Action::Raise(next) = self.decide_by(equations, Occasion::Beside, &found, required) else {
             return Ok(true);
-        }
+        };
         equations.select(next)?;
         Ok(false)
     }
@@ -313,27 +295,16 @@ impl AdaptivityController {
         let Some((error, required)) = self.last else {
             return Ok(point);
         };
-        let share = MARGIN * error / self.tolerance;
-        self.floor.1 = self.floor.1.saturating_sub(1);
-        self.highest = self.highest.max(level);
-        let floor = self.lowest_level(equations, error, level);
-        let last = equations.levels().last();
-        let next = equations.levels().level_with(required).max(floor).min(last);
-        let too_few = level < floor.min(equations.levels().few());
-        // Where only an unknown error asked for more harmonics, those below may do again.
-        let below = level.saturating_sub(1).max(equations.levels().few());
-        let again = self.unknown.is_some() && self.floor.1 == 0 && share < RAISE && !self.folded;
-        let next = if again { next.min(below) } else { next };
-        let costly = equations.levels().are_costly();
-        let tries = costly && next < level && self.floor.1 == 0 && error > 0.0;
-        let may_fall = again || tries || (share < DROP && (error == 0.0 || self.low >= LOW));
-        let rises = share > RAISE && next > level && !costly;
-        if !(rises || (may_fall && next < level) || too_few) {
-            return Ok(point);
-        }
+        self.history.note_recorded(level);
+        let signs = self.signs(equations, Occasion::Recorded, (error, required));
+        let (next, on_trial) = match decide(&signs, self.history.state()) {
+            Action::Keep | Action::Estimate => return Ok(point),
+            Action::Raise(next) => (next, false),
+            Action::Drop(next) => (next, signs.is_on_trial()),
+        };
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
         // continues.
-        let largest = if tries {
+        let largest = if on_trial {
             AIM.1 * self.tolerance / MARGIN - error
         } else {
             self.tolerance
@@ -349,26 +320,11 @@ impl AdaptivityController {
         if found.is_none() {
             // With fewer harmonics the error is larger than its estimate, as near a fold.
             equations.select(level)?;
-            if tries {
-                self.floor = (level, CONTROLLER_PATIENCE);
+            if on_trial {
+                self.history.note_failed_trial(level);
             }
         }
         Ok(found.unwrap_or(point))
-    }
-
-    /// Lowest level to which the branch may be coarsened from a point of this error.
-    fn lowest_level(&self, equations: &dyn Discretised, error: f64, level: usize) -> usize {
-        if error == 0.0 {
-            return 0;
-        }
-        if self.folded {
-            return level;
-        }
-        let half = equations
-            .levels()
-            .level_of_half(self.highest)
-            .max(equations.levels().few());
-        if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
     }
 
     /// Highest harmonic that the solution requires; 0 if the error is unknown.

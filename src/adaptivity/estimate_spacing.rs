@@ -56,17 +56,17 @@ pub(crate) fn share_of_highest(set: &HarmonicSet, motion: &[f64]) -> f64 {
     above / norm(motion)
 }
 
-/// Signs of the error of a point.
+/// Signs of the trend of the error from one point to another.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Signs {
+pub(crate) struct Trend {
     /// Share of the highest harmonics, see [`share_of_highest`].
     pub share: f64,
     /// |dX/dp|/|X| of the response observed.
     pub steepness: f64,
 }
 
-impl Signs {
-    /// The signs of a point with this share.
+impl Trend {
+    /// That of a point with this share.
     pub fn of(point: &Point, share: f64) -> Self {
         let along = point.tangent.last().copied().unwrap_or(0.0).abs() * point.amplitude.norm();
         let steepness = if along > 0.0 {
@@ -77,7 +77,7 @@ impl Signs {
         Self { share, steepness }
     }
 
-    /// Factor by which the error grows with the steepness, from a point with other signs.
+    /// Factor by which the error grows with the steepness, from a point with another one.
     fn steeper_than(self, other: Self) -> f64 {
         if self.steepness > other.steepness {
             self.steepness / other.steepness
@@ -91,22 +91,22 @@ impl Signs {
 #[derive(Clone, Copy, Debug)]
 struct Known {
     error: f64,
-    signs: Signs,
+    trend: Trend,
     level: usize,
     /// q
     exponent: f64,
 }
 
 impl Known {
-    /// The factor from this error to that of a point with other signs.
-    fn factor_to(&self, signs: Signs) -> f64 {
-        (signs.share / self.signs.share).powf(self.exponent) * signs.steeper_than(self.signs)
+    /// The factor from this error to that of a point with another one.
+    fn factor_to(&self, trend: Trend) -> f64 {
+        (trend.share / self.trend.share).powf(self.exponent) * trend.steeper_than(self.trend)
     }
 
-    /// The exponent that leads from this error to that of a point with other signs; as before where the shares are alike.
-    fn exponent_to(&self, signs: Signs, error: f64) -> f64 {
-        let shares = signs.share / self.signs.share;
-        let grown = error / (self.error * signs.steeper_than(self.signs));
+    /// The exponent that leads from this error to that of a point with another one; as before where the shares are alike.
+    fn exponent_to(&self, trend: Trend, error: f64) -> f64 {
+        let shares = trend.share / self.trend.share;
+        let grown = error / (self.error * trend.steeper_than(self.trend));
         let exponent = grown.ln() / shares.ln();
         if !(1.0 / DIFFERENT..=DIFFERENT).contains(&shares) && exponent.is_finite() {
             exponent.clamp(EXPONENTS.0, EXPONENTS.1)
@@ -128,9 +128,9 @@ pub(crate) struct EstimateSpacing {
 }
 
 impl EstimateSpacing {
-    /// The factor from the error estimated last to that of a point with these signs; `None` where the point is to be
+    /// The factor from the error estimated last to that of a point of this trend; `None` where the point is to be
     /// estimated. Errors up to `largest` need no estimate.
-    pub fn factor(&mut self, level: usize, signs: Signs, largest: f64) -> Option<f64> {
+    pub fn factor(&mut self, level: usize, trend: Trend, largest: f64) -> Option<f64> {
         let known = self.known.filter(|known| known.level == level)?;
         if self.since + 1 >= self.spacing {
             return None;
@@ -138,9 +138,9 @@ impl EstimateSpacing {
         let factor = if known.error.is_nan() {
             1.0
         } else {
-            known.factor_to(signs)
+            known.factor_to(trend)
         };
-        let changed = signs.share / known.signs.share * signs.steeper_than(known.signs);
+        let changed = trend.share / known.trend.share * trend.steeper_than(known.trend);
         let alike = known.error.is_nan() || (1.0 / ESTIMATE_SPACING_ALIKE..=ESTIMATE_SPACING_ALIKE).contains(&changed);
         let safety = if self.since == 0 {
             ESTIMATE_SPACING_SAFETY.0
@@ -157,7 +157,7 @@ impl EstimateSpacing {
 
     /// Notes an estimate: its error, NaN where it is unknown, and whether the curve may have fewer harmonics. Errors up to
     /// `allowed` meet the tolerance.
-    pub fn note(&mut self, level: usize, signs: Signs, (error, allowed): (f64, f64), may_fall: bool) {
+    pub fn note(&mut self, level: usize, trend: Trend, (error, allowed): (f64, f64), may_fall: bool) {
         let largest = if may_fall {
             ESTIMATE_SPACING_MOST
         } else {
@@ -170,7 +170,7 @@ impl EstimateSpacing {
                 (error.is_nan() && known.error.is_nan(), MOST_UNKNOWN)
             }
             Some(known) => {
-                let predicted = known.error * known.factor_to(signs);
+                let predicted = known.error * known.factor_to(trend);
                 let ratio = error / predicted;
                 let is_harmless = predicted <= HARMLESS * allowed;
                 (ratio <= HOLDS && (ratio >= HOLDS.recip() || is_harmless), largest)
@@ -181,12 +181,12 @@ impl EstimateSpacing {
             self.spacing = self.spacing.max(2);
         }
         self.since = 0;
-        let is_known = error.is_nan() || (error > 0.0 && signs.share > 0.0);
+        let is_known = error.is_nan() || (error > 0.0 && trend.share > 0.0);
         self.known = is_known.then_some(Known {
             error,
-            signs,
+            trend,
             level,
-            exponent: before.map_or(1.0, |known| known.exponent_to(signs, error)),
+            exponent: before.map_or(1.0, |known| known.exponent_to(trend, error)),
         });
     }
 
@@ -207,10 +207,10 @@ impl EstimateSpacing {
 
 #[cfg(test)]
 mod tests {
-    use super::{EstimateSpacing, Signs};
+    use super::{EstimateSpacing, Trend};
 
-    const fn signs(share: f64, steepness: f64) -> Signs {
-        Signs { share, steepness }
+    const fn trend(share: f64, steepness: f64) -> Trend {
+        Trend { share, steepness }
     }
 
     /// Estimated points among `count` ones whose error follows `error`.
@@ -218,9 +218,9 @@ mod tests {
         let mut spacing = EstimateSpacing::default();
         let mut made = Vec::new();
         for i in 0..count {
-            if spacing.factor(3, signs(1e-3, 1.0), 1e-3).is_none() {
+            if spacing.factor(3, trend(1e-3, 1.0), 1e-3).is_none() {
                 made.push(i);
-                spacing.note(3, signs(1e-3, 1.0), (error(i), 1e-3), true);
+                spacing.note(3, trend(1e-3, 1.0), (error(i), 1e-3), true);
             }
         }
         made
@@ -259,12 +259,12 @@ mod tests {
         let mut made = 0;
         for share in shares {
             let error = 1e-6 * (share / 1e-3).powi(4);
-            if let Some(factor) = spacing.factor(3, signs(share, 1.0), 1e-3) {
+            if let Some(factor) = spacing.factor(3, trend(share, 1.0), 1e-3) {
                 let known = spacing.known.unwrap().error;
                 assert!((known * factor / error - 1.0).abs() < 1e-9, "{share}");
             } else {
                 made += 1;
-                spacing.note(3, signs(share, 1.0), (error, 1e-3), true);
+                spacing.note(3, trend(share, 1.0), (error, 1e-3), true);
             }
         }
         assert!(made < 16, "{made}");
@@ -279,11 +279,11 @@ mod tests {
     fn other_harmonics_are_estimated_anew() {
         let mut spacing = EstimateSpacing::default();
         for _ in 0..3 {
-            spacing.note(3, signs(1e-3, 1.0), (5e-5, 1e-3), true);
+            spacing.note(3, trend(1e-3, 1.0), (5e-5, 1e-3), true);
         }
-        assert!(spacing.factor(4, signs(1e-3, 1.0), 1e-3).is_none());
-        assert!(spacing.factor(3, signs(1e-2, 1.0), 1e-3).is_none());
-        assert!(spacing.factor(3, signs(1e-3, 10.0), 1e-3).is_none());
-        assert!(spacing.factor(3, signs(1e-3, 1.0), 1e-3).is_some());
+        assert!(spacing.factor(4, trend(1e-3, 1.0), 1e-3).is_none());
+        assert!(spacing.factor(3, trend(1e-2, 1.0), 1e-3).is_none());
+        assert!(spacing.factor(3, trend(1e-3, 10.0), 1e-3).is_none());
+        assert!(spacing.factor(3, trend(1e-3, 1.0), 1e-3).is_some());
     }
 }
