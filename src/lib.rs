@@ -54,7 +54,6 @@
 #[doc(hidden)]
 pub use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
 
-mod adaptivity;
 #[doc(hidden)]
 pub mod aft;
 #[doc(hidden)]
@@ -69,7 +68,7 @@ pub mod contact;
 #[doc(hidden)]
 pub mod continuation;
 #[doc(hidden)]
-pub mod error_estimate;
+pub mod harmonics;
 #[doc(hidden)]
 pub mod hooks;
 #[doc(hidden)]
@@ -86,6 +85,7 @@ pub mod sensitivity;
 pub mod stability;
 #[doc(hidden)]
 pub mod time_integration;
+mod tracing;
 
 // Models.
 pub use contact::laws::iwan::Iwan;
@@ -168,9 +168,9 @@ pub use contact::contact_state::State;
 pub use contact::time_piece::Grazing;
 #[doc(inline)]
 pub use error::{Error, Result, Status};
-pub use error_estimate::{Corrected, Estimate};
 #[doc(inline)]
 pub use fourier::{Measure, Reading};
+pub use harmonics::{Corrected, Estimate};
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,

@@ -6,7 +6,6 @@
 //! frequency, whose odd harmonics are those that its parent does not have. Where the symmetry breaks these are the even ones
 //! and the mean. Children have children of their own, down to a bounded depth.
 
-use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::forced_curve::{forced_from_inside, forced_harmonics, misses_fundamental};
 use crate::analysis::inside_start::Inside;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -16,6 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{Content, ForcedOptions, Measure, Response, SolverOptions};
 use crate::results::{Bifurcation, BifurcationKind, Branch, Descent, Recovery, Searched};
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 use num_complex::Complex64;
 

@@ -4,12 +4,12 @@
 //! response. With as few harmonics as the forces have it costs little, and its solution, with the other harmonics zero, is a
 //! good guess with twice as many, and so on.
 
-use crate::adaptivity::transfer::transferred;
 use crate::condense::Condensed;
 use crate::contact::Contact;
 use crate::continuation::initial_point::{self, Effort, Way};
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status};
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::SolverOptions;

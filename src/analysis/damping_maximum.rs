@@ -1,6 +1,5 @@
 //! The largest damping ratio along a nonlinear mode as a function of a parameter of the model.
 
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::followed::Followed;
 use crate::analysis::nonlinear_mode::nonlinear_mode;
 use crate::analysis::parameter_curve::CurveRecorder;
@@ -8,6 +7,7 @@ use crate::analysis::parameter_range::{ParameterRange, settings, wanted};
 use crate::analysis::tracked_damping::TrackedDamping;
 use crate::condense::Condensed;
 use crate::error::{Result, Status, fail, try_vec};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;

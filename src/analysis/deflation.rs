@@ -1,11 +1,11 @@
 //! Solutions of a forced response beside known ones, by deflation: Newton's method is led away from the solutions that are known at a
 //! frequency.
 
-use crate::adaptivity::discretised::Discretised;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::analysis::known_curve::lies_on;
 use crate::continuation::Point;
 use crate::error::{Result, try_copy, try_push};
+use crate::harmonics::discretised::Discretised;
 use crate::interrupt::Interrupt;
 use crate::results::Branch;
 

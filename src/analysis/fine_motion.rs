@@ -6,8 +6,8 @@
 use crate::condense::ModelCache;
 use crate::condense::wave_cache::SharedWaves;
 use crate::error::{Result, boxed, try_vec};
-use crate::error_estimate::Solved;
-use crate::error_estimate::forced_response_error::ForcedEstimator;
+use crate::harmonics::Solved;
+use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;

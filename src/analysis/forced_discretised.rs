@@ -1,11 +1,5 @@
 //! A forced response as the tracer uses it: the equations at each resolution, and the records of its points.
 
-use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
-use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
-use crate::adaptivity::estimate_spacing::share_of_highest;
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::resolutions::Resolutions;
-use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::fine_motion::FineMotion;
 use crate::analysis::forced_equations::Equations;
@@ -18,8 +12,13 @@ use crate::continuation::corrector::Outcome;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
-use crate::error_estimate::forced_response_error::ForcedEstimator;
-use crate::error_estimate::{Estimate, Solved};
+use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::estimate_spacing::share_of_highest;
+use crate::harmonics::forced_response_error::ForcedEstimator;
+use crate::harmonics::harmonic_levels::HarmonicLevels;
+use crate::harmonics::resolutions::Resolutions;
+use crate::harmonics::transfer::transferred_point;
+use crate::harmonics::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
@@ -30,6 +29,7 @@ use crate::options::{Measure, Response, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
 use crate::results::{Branch, Resolution, SpecialKind, Verdict};
+use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the points of a linear response, which are few, are factorised where small structures are.

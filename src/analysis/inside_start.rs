@@ -5,8 +5,6 @@
 //! arc length leads on, away from the bifurcation (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! §8, doi:10.1137/1.9780898719154).
 
-use crate::adaptivity::discretised::Discretised;
-use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::deflation::Deflation;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::analysis::known_curve::lies_on;
@@ -15,10 +13,12 @@ use crate::analysis::start_net::Net;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::options::Content;
 use crate::results::Branch;
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 use num_complex::Complex64;
 use std::sync::Arc;

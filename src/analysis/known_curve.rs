@@ -1,11 +1,11 @@
 //! Points of curves that are known: whether a new point lies on a branch that was followed already.
 
-use crate::adaptivity::discretised::Discretised;
-use crate::adaptivity::transfer::transferred;
 use crate::condense::Condensed;
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::Branch;

@@ -3,7 +3,6 @@
 //! The even harmonics and the mean of an odd model are carried along, so that a broken symmetry is a branch point, too. Each curve
 //! has children of its own, down to a bounded depth, see [`crate::analysis::mode_entry`].
 
-use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::inside_start::Entry;
 use crate::analysis::mode_curve::alone;
 use crate::analysis::mode_discretised::VANISHING_FUNDAMENTAL;
@@ -14,6 +13,7 @@ use crate::model::Model;
 use crate::options::{ModeOptions, SolverOptions};
 use crate::results::mode_branch::ModeField;
 use crate::results::{Bifurcation, Branch, Descent, Recovery, Searched};
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 
 const CONTEXT: &str = "the further curves of a mode";

@@ -8,9 +8,6 @@
 //! of that period. With the fundamental turned back to its phase, harmonic h changes its sign by the parity of h/n, rounded
 //! (Kerschen et al. 2009, doi:10.1016/j.ymssp.2008.04.002, shows both curves, S33+ and S33−, that leave it).
 
-use crate::adaptivity::discretised::Discretised;
-use crate::adaptivity::inner_ends::Dropped;
-use crate::adaptivity::transfer::transferred;
 use crate::analysis::inside_start::{Entered, Entry, dropped, null_vector};
 use crate::analysis::known_curve::lies_on;
 use crate::analysis::mode_discretised::ModeDiscretised;
@@ -18,9 +15,12 @@ use crate::condense::Condensed;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, fail, try_copy};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::Branch;
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 use num_complex::Complex64;
 

@@ -1,7 +1,6 @@
 //! A result over a parameter of the model: the amplitude of a forced response at a fixed frequency, in a peak or in a fold,
 //! or the largest damping ratio of a nonlinear mode.
 
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::damping_maximum;
 use crate::analysis::followed::Followed;
 use crate::analysis::forced_curve::forced_harmonics;
@@ -10,6 +9,7 @@ use crate::analysis::parameter_curve::CurveRecorder;
 use crate::analysis::parameter_range::{Follow, ParameterRange, settings, wanted};
 use crate::condense::{Condensed, Reference};
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;

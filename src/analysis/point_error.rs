@@ -1,11 +1,11 @@
-//! Error of stored points, see [`crate::error_estimate`].
+//! Error of stored points, see [`crate::harmonics`].
 
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Artificial, Condensed, ModelCache};
 use crate::error::{Result, fail, try_push};
-use crate::error_estimate::forced_response_error::ForcedEstimator;
-use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
-use crate::error_estimate::{Estimate, Solved};
+use crate::harmonics::forced_response_error::ForcedEstimator;
+use crate::harmonics::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
+use crate::harmonics::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{Content, DampingForm, Response, SolverOptions};

@@ -1,11 +1,11 @@
 //! A net of starts: a motion in several amplitudes and phases beside a solution, from which subharmonic motions are sought.
 
-use crate::adaptivity::discretised::Discretised;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::analysis::known_curve::lies_on;
 use crate::continuation::Point;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::Branch;

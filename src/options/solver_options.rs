@@ -57,7 +57,7 @@ pub struct SolverOptions {
     pub response_dof: Option<usize>,
     /// Carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,
-    /// Estimate the error of every stored point, see [`crate::error_estimate`]. Each estimate costs about as much
+    /// Estimate the error of every stored point, see [`crate::harmonics`]. Each estimate costs about as much
     /// time as a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in
     /// any case.
     pub estimate_error: bool,

@@ -3,8 +3,8 @@
 use crate::condense::Resolution;
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_vec};
-use crate::error_estimate::{Corrected, Estimate};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::{Corrected, Estimate};
 use crate::problem::{InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Special, SpecialKind};
 use num_complex::Complex64;

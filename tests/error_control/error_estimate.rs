@@ -2,7 +2,7 @@
 
 use crate::common::{self, B2, Blisk, D, NDOF, R, all_harmonics, harmonics, slip, solve_at};
 use hbvib::analysis::estimate_at;
-use hbvib::error_estimate::Estimate;
+use hbvib::harmonics::Estimate;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::SolverOptions;
 use hbvib::results::Branch;

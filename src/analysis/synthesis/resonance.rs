@@ -1,6 +1,5 @@
 //! The resonance between two points of a mode's branch, solved on the mode's equations.
 
-use crate::adaptivity::transfer::transferred;
 use crate::analysis::synthesis::computed_peak::AtPeak;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
@@ -8,6 +7,7 @@ use crate::continuation::special_points::Locator;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
 use crate::linalg::linear_system::Jacobian;
