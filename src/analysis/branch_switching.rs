@@ -22,9 +22,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the branches that branch off";
 
 /// Distance of a bifurcation to the end of a known child, over the range, at which that child ends there.
+/// Kind: tuned; measured on: not recorded.
 const BRANCH_SWITCHING_SAME: f64 = 2e-2;
 
 /// Share of the harmonics that a branch does not have in a motion that is one of it.
+/// Kind: tuned; measured on: not recorded.
 const AT_START: f64 = 1e-3;
 
 /// Place of a branch in the tree.

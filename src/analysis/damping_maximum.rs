@@ -17,9 +17,11 @@ use crate::results::{Branch, ParameterData};
 use crate::sensitivity::Parameter;
 
 /// log₁₀ of an amplitude at which every contact that can stick sticks, whatever the units.
+/// Kind: fixed.
 const STUCK: f64 = -60.0;
 
 /// Distances in log₁₀ from the onset of slip between which the maximum is sought.
+/// Kind: tuned; measured on: not recorded.
 const FROM_ONSET: (f64, f64) = (-0.1, 3.0);
 
 /// Follows the maximum from the first value of the parameter, at which the model is `first`.

@@ -14,7 +14,8 @@ use crate::options::SolverOptions;
 use crate::results::Recovery;
 use num_complex::Complex64;
 
-/// States in time for each unknown of a point from which a correction takes less time than the lapses that it saves. Tuned on the
+/// States in time for each unknown of a point from which a correction takes less time than the lapses that it saves.
+/// Kind: tuned; measured on: the
 /// ring damper, 96 states and 10 unknowns, where it saves three quarters of them, and on chains of three masses with stops, 6 and 57,
 /// where it takes twice as long as they do.
 const STATES_FOR_EACH: usize = 2;

@@ -33,9 +33,11 @@ use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the points of a linear response, which are few, are factorised where small structures are.
+/// Kind: tuned; measured on: not recorded.
 const FACTORISE_UP_TO: usize = 1000;
 
 /// Distance of two solutions that are one, over their size.
+/// Kind: tuned; measured on: not recorded.
 const KNOWN: f64 = 1e-6;
 
 /// The equations of a linear response: those with the stuck structure as their reference, where the others have another

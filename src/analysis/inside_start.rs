@@ -26,15 +26,19 @@ use std::sync::Arc;
 const CONTEXT: &str = "the start of a branch";
 
 /// Distances from the bifurcation, as shares of the motion, in the order in which they are tried.
+/// Kind: tuned; measured on: not recorded.
 const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion in harmonics that it does not have.
+/// Kind: rounding.
 const ABSENT: f64 = 1e-8;
 
 /// Share of a point in harmonics that the branch does not have below which it lies on the branch itself.
+/// Kind: rounding.
 const FELL_BACK: f64 = 1e-6;
 
 /// Eigenvalue over the smallest one among the harmonics that a motion does not have, below which another symmetry breaks.
+/// Kind: tuned; measured on: not recorded.
 const OTHER_SYMMETRY: f64 = 0.1;
 
 /// Entry of a curve inside its range, near the guess of its options.

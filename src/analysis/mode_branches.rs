@@ -19,6 +19,7 @@ use core::cell::Cell;
 const CONTEXT: &str = "the further curves of a mode";
 
 /// Distance of a branch point, in log₁₀ of the amplitude, at which a curve that came back ends in it.
+/// Kind: tuned; measured on: not recorded.
 const MODE_BRANCHES_SAME: f64 = 2e-2;
 
 /// A branch above those that grow, and the ones above it.

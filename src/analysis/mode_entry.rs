@@ -27,13 +27,16 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the start of a mode's further curve";
 
 /// Unknowns that are no motions, and the same with the parameter.
+/// Kind: fixed.
 const OTHERS: usize = 2;
 const OTHERS_AND_PARAMETER: usize = OTHERS + 1;
 
 /// Distances from a branch point, as shares of the motion, in the order in which they are tried.
+/// Kind: tuned; measured on: not recorded.
 const MODE_ENTRY_DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion at a branch point in harmonics that the curve through it does not have.
+/// Kind: tuned; measured on: not recorded.
 const MODE_ENTRY_ABSENT: f64 = 1e-4;
 
 /// How a further curve is reached from a known point.

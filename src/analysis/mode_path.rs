@@ -16,10 +16,12 @@ use crate::tracing::branch_tracer::{BranchTracer, Course};
 
 /// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset itself the branch
 /// has a corner, and where modes share a frequency no solution is isolated.
+/// Kind: tuned; measured on: not recorded.
 const BEYOND_ONSET: f64 = 1.02;
 
 /// Distance below the onset, in log₁₀, to which a branch that began to slip may come back before it reaches an
 /// amplitude above the onset.
+/// Kind: tuned; measured on: not recorded.
 const BELOW_ONSET: f64 = 3.0;
 
 /// log₁₀ of the amplitudes up to which the mode is linear, and up to which it nearly is.

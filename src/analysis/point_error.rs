@@ -13,6 +13,7 @@ use crate::results::Branch;
 use num_complex::Complex64;
 
 /// Newton iterations by which the work is bounded: those of a point that is solved by homotopy.
+/// Kind: cap.
 const POINT_ERROR_ITERATIONS: usize = 200;
 
 /// Estimates the error of a stored point of a branch by the harmonics that it neglects. `model` and `solver` are

@@ -23,10 +23,12 @@ pub(super) struct Net<'n> {
 }
 
 /// Amplitudes and number of phases of a net.
+/// Kind: tuned; measured on: not recorded.
 const START_NET_AMPLITUDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 const PHASES: usize = 8;
 
 /// Share of a subharmonic motion outside the multiples of its order.
+/// Kind: tuned; measured on: not recorded.
 const SUBHARMONIC: f64 = 1e-3;
 
 impl Net<'_> {

@@ -30,12 +30,15 @@ const CONTEXT: &str = "the static state";
 pub(super) const NEEDS_SPEED: &str = "a nonlinear mode about it needs one speed";
 
 /// Tolerance of the residual: an error of the static state is one of every amplitude.
+/// Kind: rounding.
 const STATIC_SOLUTION_TOLERANCE: f64 = 1e-13;
 
 /// Residual at zero, relative to the motion under the forces with linear contacts, at which zero is the solution.
+/// Kind: rounding.
 const BALANCED: f64 = 1e-12;
 
 /// Angular frequency that laws are told; nothing moves, so that none has an effect.
+/// Kind: fixed.
 const OMEGA: f64 = 1.0;
 
 /// The static state of a model; that at zero if nothing loads it. `needs_speed` tells which analysis needs one speed.

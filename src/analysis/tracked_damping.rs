@@ -33,9 +33,11 @@ use std::sync::Arc;
 const CONTEXT: &str = "the parameter response";
 
 /// Change of log₁₀ of the amplitude that has the same weight as a change of the motions by their size.
+/// Kind: tuned; measured on: not recorded.
 const AMPLITUDE_UNIT: f64 = 0.1;
 
 /// Step of the differences along the mode, in log₁₀ of the amplitude.
+/// Kind: tuned; measured on: not recorded.
 const MODE_STEP: f64 = 1e-4;
 
 /// The largest damping ratio over a parameter.

@@ -16,18 +16,21 @@ use crate::harmonics::decision::{Action, Choices, MOST_REFINEMENTS, Occasion, Si
 use crate::harmonics::discretised::{Assessment, Discretised};
 use crate::harmonics::estimate_spacing::{EstimateSpacing, Trend};
 use crate::harmonics::harmonic_history::HarmonicHistory;
-use crate::harmonics::{Estimate, MARGIN};
+use crate::harmonics::{ESTIMATE_MARGIN, Estimate};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
 
 /// Target of the error as a share of the tolerance, where harmonics cost little and where they cost much.
+/// Kind: tuned; measured on: not recorded.
 const AIM: (f64, f64) = (0.5, 0.7);
 
 /// Relative size of a harmonic that is round-off.
+/// Kind: rounding.
 const CONTROLLER_ROUND_OFF: f64 = 1e-13;
 
 /// Levels by which a point is refined if the next one was not found from it.
+/// Kind: tuned; measured on: not recorded.
 const BACKTRACK: usize = 3;
 
 /// A point with the harmonics that its error requires, at the current resolution.
@@ -78,7 +81,7 @@ impl AdaptivityController {
         let half = levels.level_of_half(self.history.highest());
         Signs {
             occasion,
-            share: MARGIN * error / self.tolerance,
+            share: ESTIMATE_MARGIN * error / self.tolerance,
             choices: Choices {
                 level,
                 required: levels.level_with(required),
@@ -110,7 +113,7 @@ impl AdaptivityController {
     }
 
     fn accepts(&self, error: f64) -> bool {
-        MARGIN * error <= self.tolerance
+        ESTIMATE_MARGIN * error <= self.tolerance
     }
 
     /// Counts an estimate.
@@ -218,9 +221,10 @@ impl AdaptivityController {
         if let Some(found) = &found {
             self.count(found);
             let may_fall = equations.resolution() > equations.levels().few();
-            let error = (found.error, self.tolerance / MARGIN);
+            let error = (found.error, self.tolerance / ESTIMATE_MARGIN);
             self.spacing.note(equations.resolution(), trend, error, may_fall);
-            self.history.note_estimate(MARGIN * found.error / self.tolerance);
+            self.history
+                .note_estimate(ESTIMATE_MARGIN * found.error / self.tolerance);
         }
         Ok(found)
     }
@@ -228,7 +232,7 @@ impl AdaptivityController {
     /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
     fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, trend: Trend) -> Result<bool> {
         self.spacing.note_step(point.step);
-        let largest = self.tolerance / MARGIN;
+        let largest = self.tolerance / ESTIMATE_MARGIN;
         let Some(factor) = self.spacing.factor(equations.resolution(), trend, largest) else {
             return Ok(false);
         };
@@ -245,7 +249,7 @@ impl AdaptivityController {
     /// Whether two solutions have one response within the tolerance.
     fn is_same(&self, before: &Point, after: &Point) -> bool {
         let change = (after.amplitude - before.amplitude).norm();
-        MARGIN * change <= self.tolerance * after.amplitude.norm()
+        ESTIMATE_MARGIN * change <= self.tolerance * after.amplitude.norm()
     }
 
     /// The point from which the next one was not found, with more harmonics; `None` if that is not found either.
@@ -305,7 +309,7 @@ impl AdaptivityController {
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
         // continues.
         let largest = if on_trial {
-            AIM.1 * self.tolerance / MARGIN - error
+            AIM.1 * self.tolerance / ESTIMATE_MARGIN - error
         } else {
             self.tolerance
         };
@@ -340,7 +344,7 @@ impl AdaptivityController {
         let aim = if equations.levels().are_costly() { AIM.1 } else { AIM.0 };
         // If the estimated error is zero, keep every harmonic above round-off.
         let bound = if found.error > 0.0 && left_out > 0.0 {
-            aim * self.tolerance * left_out / (MARGIN * found.error)
+            aim * self.tolerance * left_out / (ESTIMATE_MARGIN * found.error)
         } else {
             CONTROLLER_ROUND_OFF
         };

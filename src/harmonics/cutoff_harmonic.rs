@@ -21,25 +21,32 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Norm of kt^½ G kt^½ from which on the structure is compliant in a harmonic.
+/// Kind: tuned; measured on: not recorded.
 const COMPLIANT: f64 = 0.5;
 
 /// Degrees of freedom up to which every harmonic may be checked.
+/// Kind: tuned; measured on: not recorded.
 const CUTOFF_HARMONIC_SMALL_UP_TO: usize = 32;
 
 /// Harmonics up to which a model carries all waves: those of a thousand sectors. The memory of a wheel of more sectors
 /// than any machine has must not follow from their number.
+/// Kind: cap.
 const MOST_WAVES: usize = 2048;
 
 /// Ratio of neighbouring harmonics that are checked in a large structure.
+/// Kind: tuned; measured on: not recorded.
 const CUTOFF_HARMONIC_RATIO: f64 = 1.25;
 
 /// Relative distance within which the cut-off harmonic of a large structure is found.
+/// Kind: tuned; measured on: not recorded.
 const FINE: f64 = 0.03;
 
 /// Relative change of frequency up to which a cut-off, as a frequency, is reused where harmonics are different waves.
+/// Kind: tuned; measured on: not recorded.
 const CUTOFF_HARMONIC_NEAR: f64 = 0.01;
 
 /// Iterations for the norm of a matrix.
+/// Kind: cap.
 const NORM_ITERATIONS: usize = 8;
 
 /// Highest harmonic up to which a model has at most this many unknowns.
@@ -306,7 +313,8 @@ fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result
     Ok(Some(highest))
 }
 
-/// The least harmonic to which a point of a response that carries a set is extended: with twice its harmonics, and two more of them at least. The
+/// The least harmonic to which a point of a response that carries a set is extended: with twice its harmonics, and two more of
+/// them at least. The
 /// change by the first that was left out may vanish by chance where that by the second does not.
 pub(super) fn least_extension(set: &HarmonicSet) -> usize {
     let own = set.numbers().last().copied().unwrap_or(0);

@@ -28,15 +28,19 @@
 //! its level while something is nonlinear, nor any branch below half of its most harmonics.
 
 /// Share of the tolerance above which the next point is refined in advance, unless harmonics cost much.
+/// Kind: tuned; measured on: not recorded.
 const RAISE: f64 = 0.7;
 
 /// Share of the tolerance below which the next point is coarsened.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const DROP: f64 = 0.08;
 
 /// Successive estimates below that share after which the branch is coarsened: one alone may be an exception.
+/// Kind: tuned; measured on: not recorded.
 const LOW: usize = 2;
 
 /// Most refinements of one point.
+/// Kind: cap.
 pub(super) const MOST_REFINEMENTS: usize = 12;
 
 /// The past of a branch, as far as it bears on the next decision.

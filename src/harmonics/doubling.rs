@@ -5,18 +5,21 @@
 //! of their norm.
 
 use crate::error::{Result, try_copy};
-use crate::harmonics::estimate::{CONTEXT, Estimate, MARGIN, norm_of_responses, relative};
+use crate::harmonics::estimate::{CONTEXT, ESTIMATE_MARGIN, Estimate, norm_of_responses, relative};
 use num_complex::Complex64;
 
 /// The next change, relative to the whole, at which the response has settled, and at which it will do where no further
 /// extension is possible.
+/// Kind: tuned; measured on: not recorded.
 const DOUBLING_SETTLED: f64 = 0.2;
 const SUFFICIENT: f64 = 0.6;
 
 /// Largest change, relative to the tolerance, that is harmless after one extension.
-const HARMLESS: f64 = 0.05;
+/// Kind: tuned; measured on: not recorded.
+const DOUBLING_HARMLESS: f64 = 0.05;
 
 /// Least and largest change that may be missing behind the last one, over that.
+/// Kind: tuned; measured on: not recorded.
 const MISSING: (f64, f64) = (0.5, 2.0);
 
 /// Responses of a point and of its extensions.
@@ -116,15 +119,15 @@ impl Doubling {
         let whole = self.whole();
         match self.extensions {
             0 => false,
-            1 => whole <= HARMLESS * tolerance,
-            _ => MARGIN * (whole + self.missing()) <= tolerance,
+            1 => whole <= DOUBLING_HARMLESS * tolerance,
+            _ => ESTIMATE_MARGIN * (whole + self.missing()) <= tolerance,
         }
     }
 
     /// Whether the whole change is known well enough and misses a tolerance: a further extension would not change what follows.
     pub fn misses(&self, tolerance: f64) -> bool {
         let whole = self.whole() * (1.0 + self.next());
-        tolerance > 0.0 && self.suffices() && MARGIN * whole > tolerance
+        tolerance > 0.0 && self.suffices() && ESTIMATE_MARGIN * whole > tolerance
     }
 
     /// The estimate of the last extension, with the change that may be missing.

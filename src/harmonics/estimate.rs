@@ -27,20 +27,25 @@ use num_complex::Complex64;
 pub(super) const CONTEXT: &str = "the error estimate";
 
 /// Largest size of the next step relative to the change: 0.1 costs about one step more than 0.3.
-pub(super) const SHARE: f64 = 0.1;
+/// Kind: tuned; measured on: not recorded.
+pub(super) const ESTIMATE_SHARE: f64 = 0.1;
 
 /// Largest ratio of an error to its estimate for which the selection of harmonics allows.
-pub(crate) const MARGIN: f64 = 1.5;
+/// Kind: tuned; measured on: not recorded.
+pub(crate) const ESTIMATE_MARGIN: f64 = 1.5;
 
 /// Unknowns of an extended problem above which no estimate is made.
+/// Kind: cap.
 pub(super) const MOST_EXTENDED: usize = 30_000;
 
 /// Share of the change up to which the tail, beyond the middle of the extended harmonics, counts as converged; then
 /// harmonics above a limit that lies below the cut-off may be omitted.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const CONVERGED_TAIL: f64 = 0.1;
 
 /// Relative size of the forces in the extended harmonics below which they are round-off.
-pub(super) const ROUNDING: f64 = 1e-12;
+/// Kind: rounding.
+pub(super) const ESTIMATE_ROUNDING: f64 = 1e-12;
 
 /// Errors of a solved point that its omitted harmonics cause, and in sampled laws its samples.
 #[derive(Clone, Debug)]
@@ -277,7 +282,7 @@ pub(super) fn omits_nothing(
     below: &HarmonicSet,
     tolerance: f64,
 ) -> bool {
-    above(set, below, residual) <= rounding.max(ROUNDING * scale)
+    above(set, below, residual) <= rounding.max(ESTIMATE_ROUNDING * scale)
         && norm(residual) <= rounding.max(10.0 * tolerance * scale)
 }
 
@@ -295,6 +300,7 @@ fn above(set: &HarmonicSet, below: &HarmonicSet, packed: &[f64]) -> f64 {
 }
 
 /// Error of the structure on a basis that an estimate of an error may have.
+/// Kind: tuned; measured on: not recorded.
 const CERTIFICATE: f64 = 1e-3;
 
 /// Options of the extended problem. Samples grow faster than the harmonics, so that the estimate includes the

@@ -16,30 +16,37 @@ use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
 
 /// Largest ratio of an error to its prediction, either way, for which the spacing grows.
+/// Kind: tuned; measured on: not recorded.
 const HOLDS: f64 = 2.0;
 
 /// Largest spacing, where errors are known and where they are not. With the fewest harmonics of a curve nothing is missed
 /// where an error is found to be low later.
+/// Kind: tuned; measured on: not recorded.
 const ESTIMATE_SPACING_MOST: usize = 4;
 const MOST_WITH_FEWEST: usize = 8;
 const MOST_UNKNOWN: usize = 32;
 
 /// Factor between a predicted error and the largest for which no estimate is made, at the first point after an estimate and
 /// farther on: one and a half times, and three times the factor of two within which the rule held.
+/// Kind: tuned; measured on: not recorded.
 const ESTIMATE_SPACING_SAFETY: (f64, f64) = (3.0, 6.0);
 
 /// Share of the largest error below which a prediction may be too large: estimates of so small errors differ by what they leave
 /// unfinished.
-const HARMLESS: f64 = 0.05;
+/// Kind: tuned; measured on: not recorded.
+const ESTIMATE_SPACING_HARMLESS: f64 = 0.05;
 
 /// Ratio of the shares of two points beyond which nothing is predicted.
+/// Kind: tuned; measured on: not recorded.
 const ESTIMATE_SPACING_ALIKE: f64 = 5.0;
 
 /// Ratio of two shares from which on the exponent follows from them, and its range.
+/// Kind: tuned; measured on: not recorded.
 const DIFFERENT: f64 = 1.05;
 const EXPONENTS: (f64, f64) = (0.5, 8.0);
 
 /// Share of the step before, below which a step shows that the branch was hard to predict.
+/// Kind: tuned; measured on: not recorded.
 const SHORTENED: f64 = 0.5;
 
 /// Share of the harmonics above half of the carried ones in packed motions; 0 where none is below.
@@ -172,7 +179,7 @@ impl EstimateSpacing {
             Some(known) => {
                 let predicted = known.error * known.factor_to(trend);
                 let ratio = error / predicted;
-                let is_harmless = predicted <= HARMLESS * allowed;
+                let is_harmless = predicted <= ESTIMATE_SPACING_HARMLESS * allowed;
                 (ratio <= HOLDS && (ratio >= HOLDS.recip() || is_harmless), largest)
             }
         };

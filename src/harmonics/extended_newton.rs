@@ -1,35 +1,42 @@
 //! The damped Newton method on the extended problem; the size of its next step stops it.
 
 use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::harmonics::estimate::{CONTEXT, SHARE};
+use crate::harmonics::estimate::{CONTEXT, ESTIMATE_SHARE};
 use crate::harmonics::extended_system::ExtendedSystem;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Most Newton steps.
+/// Kind: cap.
 const EXTENDED_NEWTON_MOST_STEPS: usize = 24;
 
 /// Relative size of a first step that suffices where the extended harmonics are weak.
+/// Kind: tuned; measured on: not recorded.
 const SHORT: f64 = 0.1;
 
 /// Size of a first step, relative to the change, up to which a guess is as good as a point that a step has reached.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_NEWTON_CLOSE: f64 = 0.3;
 
 /// Share of the residual of the start above which the next step is not yet the last one, and need not be found exactly, and the
 /// damping factor up to which that is so: a shorter one changes the step too little.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_NEWTON_FAR: f64 = 0.3;
 const LONG: f64 = 0.25;
 
 /// Share of the residual before a step that shows it to be right, whatever the next one is: where a contact grazes, the matrix
 /// changes with the side, and the simplified step is long on both.
+/// Kind: tuned; measured on: not recorded.
 const FALLEN: f64 = 0.25;
 
 /// Share of a damped step by which the residual of monotone equations falls where the step is right: they have one solution, to which
 /// every descent leads.
+/// Kind: tuned; measured on: not recorded.
 const LEAST_DESCENT: f64 = 0.1;
 
 /// Damping factor below which a step is accepted without the monotonicity test.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_NEWTON_SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
 /// Whether a short first step is returned as δ, the next one being far shorter.
@@ -122,7 +129,7 @@ pub(super) fn extend<P: Problem>(
                 next: with_parameter(step)?,
                 certified: true,
                 steps,
-                missing: SHARE,
+                missing: ESTIMATE_SHARE,
             }));
         }
         if is_guess && steps == 1 {

@@ -12,20 +12,25 @@ use crate::problem::{Problem, Residual};
 
 /// Residual of steps that are found by iteration over that of the point: a hundredth of the share that decides; and the same
 /// for a point that was extended before, whose further change is a part of the whole.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_SYSTEM_TOLERANCE: f64 = 1e-3;
 const OF_EXTENDED: f64 = 1e-2;
 
 /// Largest residual of a step over that of its start.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_SYSTEM_COARSEST: f64 = 0.1;
 
 /// Unknowns of a whole wheel from which its waves are factored instead of a block: with fewer the block is the cheaper one.
+/// Kind: tuned; measured on: not recorded.
 const WAVES_FROM: usize = 480;
 
 /// Unknowns up to which factoring the whole matrix is faster than iterating with factors of the compliant harmonics.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_SYSTEM_DENSE_UP_TO: usize = 24;
 
 /// Most products of an iteration.
-const MOST_PRODUCTS: usize = 240;
+/// Kind: cap.
+const EXTENDED_SYSTEM_MOST_PRODUCTS: usize = 240;
 
 /// The carried harmonics that an iterative linear system factors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +50,7 @@ pub(super) struct ExtendedSystem<P> {
     /// Harmonics that the linear system factors, or the sectors of a wheel whose waves it factors.
     factored: Factored,
     sectors: Option<usize>,
-    /// Whether some solution did not converge in [`MOST_PRODUCTS`] products.
+    /// Whether some solution did not converge in [`EXTENDED_SYSTEM_MOST_PRODUCTS`] products.
     pub stalled: bool,
     /// Whether the equations are those of exchanged motions, see [`crate::condense::exchange`].
     pub is_monotone: bool,
@@ -163,7 +168,7 @@ impl<P: Problem> ExtendedSystem<P> {
         let n = step.len();
         let each = self.of_product();
         let most = (self.work.left() / each) as usize;
-        self.system.limit_products(most.min(MOST_PRODUCTS));
+        self.system.limit_products(most.min(EXTENDED_SYSTEM_MOST_PRODUCTS));
         for (b, r) in self.b.iter_mut().zip(&self.at.values) {
             *b = -r;
         }
@@ -171,7 +176,7 @@ impl<P: Problem> ExtendedSystem<P> {
         let solved = self
             .system
             .solve(&mut self.problem, tolerance, &mut self.b, interrupt)?;
-        self.stalled |= !solved && most >= MOST_PRODUCTS;
+        self.stalled |= !solved && most >= EXTENDED_SYSTEM_MOST_PRODUCTS;
         step.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
@@ -181,7 +186,7 @@ impl<P: Problem> ExtendedSystem<P> {
         let n = x.len();
         let each = self.of_product();
         self.system
-            .limit_products(((self.work.left() / each) as usize).min(MOST_PRODUCTS));
+            .limit_products(((self.work.left() / each) as usize).min(EXTENDED_SYSTEM_MOST_PRODUCTS));
         self.b[..n].copy_from_slice(b);
         self.b[n] = 0.0;
         let solved = self
@@ -266,7 +271,7 @@ fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<(KrylovS
     let part = packed_up_to(set, factored.block);
     let group = set.packed_len();
     if let Some(ring) = problem.ring().filter(|_| part < group && problem.size() >= WAVES_FROM) {
-        let system = KrylovSystem::of_ring(problem.size(), (group, ring), MOST_PRODUCTS)?;
+        let system = KrylovSystem::of_ring(problem.size(), (group, ring), EXTENDED_SYSTEM_MOST_PRODUCTS)?;
         return Ok((system, Some(ring.sectors)));
     }
     let lengths = Lengths {
@@ -275,7 +280,10 @@ fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<(KrylovS
         middle: packed_up_to(set, factored.each).max(part),
         behind: problem.behind(),
     };
-    Ok((KrylovSystem::new(problem.size(), lengths, MOST_PRODUCTS)?, None))
+    Ok((
+        KrylovSystem::new(problem.size(), lengths, EXTENDED_SYSTEM_MOST_PRODUCTS)?,
+        None,
+    ))
 }
 
 #[cfg(test)]

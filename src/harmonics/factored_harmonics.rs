@@ -4,9 +4,11 @@ use crate::harmonics::extended_system::Factored;
 use crate::harmonics::work::{Sizes, Work};
 
 /// Factorisations of the block for which the work must suffice.
+/// Kind: tuned; measured on: not recorded.
 const FACTORISATIONS: f64 = 5.0;
 
 /// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
+/// Kind: tuned; measured on: not recorded.
 const FACTORED_HARMONICS_BLOCK: f64 = 200.0;
 
 /// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones

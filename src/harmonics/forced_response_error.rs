@@ -8,7 +8,7 @@ use crate::contact::Contact;
 use crate::error::{Result, boxed, try_push};
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::harmonics::doubling::Doubling;
-use crate::harmonics::estimate::{CONTEXT, MARGIN, extended_options, or_unknown, relative};
+use crate::harmonics::estimate::{CONTEXT, ESTIMATE_MARGIN, extended_options, or_unknown, relative};
 use crate::harmonics::extended_newton::FirstStep;
 use crate::harmonics::extended_system::ExtendedSystem;
 use crate::harmonics::factored_harmonics::{factored, whole};
@@ -26,23 +26,29 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Evaluations, each with a product, for which the work must suffice.
-const EVALUATIONS: f64 = 6.0;
+/// Kind: tuned; measured on: not recorded.
+const FORCED_RESPONSE_ERROR_EVALUATIONS: f64 = 6.0;
 
 /// Flexibility tables by factorisation of a full matrix after which all modes of a structure are expected to pay: they cost about
 /// 24 of them.
+/// Kind: tuned; measured on: not recorded.
 const FORCED_RESPONSE_ERROR_TABLES: usize = 4;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
+/// Kind: tuned; measured on: not recorded.
 const FORCED_RESPONSE_ERROR_SMALL: usize = 32;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
+/// Kind: tuned; measured on: not recorded.
 const SHARED: f64 = 0.5;
 
 /// Relative error of tables over the tolerance, and its range.
+/// Kind: tuned; measured on: not recorded.
 const OF_TABLES: f64 = 1e-3;
 const EXACTEST: (f64, f64) = (1e-7, 1e-5);
 
 /// Extended problems that are kept for the next point.
+/// Kind: tuned; measured on: not recorded.
 const FORCED_RESPONSE_ERROR_MOST_KEPT: usize = 3;
 
 /// Relative error of tables for an estimate whose tolerance is given.
@@ -208,9 +214,12 @@ impl<'a> ForcedEstimator<'a> {
 
     /// The highest harmonic to which the work suffices to extend a point; `enough` where that is no higher.
     fn affordable(&self, solved: &Solved<'_>, work: &Work, enough: usize) -> usize {
-        work.highest((solved.condensed, enough), &self.options, EVALUATIONS, |sizes| {
-            sizes.evaluation() + sizes.product(0.0, sizes.packed())
-        })
+        work.highest(
+            (solved.condensed, enough),
+            &self.options,
+            FORCED_RESPONSE_ERROR_EVALUATIONS,
+            |sizes| sizes.evaluation() + sizes.product(0.0, sizes.packed()),
+        )
     }
 
     fn extend(&mut self, solved: &Solved<'_>, work: Work) -> Result<Option<Estimate>> {
@@ -234,7 +243,7 @@ impl<'a> ForcedEstimator<'a> {
     fn with_half(&mut self, solved: &Solved<'_>, mut found: Estimate, work: Work) -> Result<Option<Estimate>> {
         let tolerance = self.options.tolerance;
         let own = solved.condensed.set().numbers().last().copied().unwrap_or(0);
-        let misses = tolerance > 0.0 && MARGIN * found.response > tolerance;
+        let misses = tolerance > 0.0 && ESTIMATE_MARGIN * found.response > tolerance;
         let excited = solved.condensed.blocks().iter().filter(|block| block.has_force());
         let excited = excited.map(|block| block.number).max().unwrap_or(1);
         let slot = self.models.slot_with((own / 2).max(excited));

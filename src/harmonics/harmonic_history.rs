@@ -5,6 +5,7 @@ use crate::harmonics::decision::{DROP, State};
 
 /// Number of points for which a branch is not coarsened to a level at which one missed the tolerance, and the most points
 /// where the error of one was unknown there time and again.
+/// Kind: tuned; measured on: not recorded.
 const CONTROLLER_PATIENCE: usize = 10;
 const MOST_PATIENCE: usize = 80;
 

@@ -22,15 +22,19 @@ use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 
 /// Error of a point over its change with twice the harmonics, where it falls as 1/H.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const OF_JUMPS: f64 = 2.0;
 
 /// Share of the change from half the harmonics that an error may be: where it falls as 1/H, it is a whole one.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const OF_HALF: f64 = 0.5;
 
 /// Share of the lateness 1/h_r of the forces that their equations do not have.
+/// Kind: tuned; measured on: not recorded.
 const OF_RING: f64 = 0.5;
 
 /// Highest harmonic over that of a ring from which the lateness falls.
+/// Kind: tuned; measured on: not recorded.
 const BEYOND_RING: f64 = 2.0;
 
 /// The error of a point over its change, and what it errs besides, in the solver's unit: 1 and 0 without exchanged motions. `None` where

@@ -10,9 +10,11 @@ use crate::harmonics::estimate::CONTEXT;
 use num_complex::Complex64;
 
 /// Ratios of the sizes of two motions within which one serves for the other.
+/// Kind: tuned; measured on: not recorded.
 const KEPT_CHANGES_ALIKE: (f64, f64) = (0.5, 2.0);
 
 /// Most changes that are kept.
+/// Kind: tuned; measured on: not recorded.
 const KEPT_CHANGES_MOST: usize = 6;
 
 /// From what to what a motion was extended: its highest harmonic, and the slot of the extended model.

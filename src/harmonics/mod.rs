@@ -32,6 +32,6 @@ pub(crate) mod transfer;
 mod work;
 
 pub(crate) use cutoff_harmonic::affordable;
-pub(crate) use estimate::MARGIN;
+pub(crate) use estimate::ESTIMATE_MARGIN;
 pub use estimate::{Corrected, Estimate, Solved};
 pub(crate) use work::{allow_point, is_allowed};

@@ -5,7 +5,8 @@ use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::harmonics::estimate::{
-    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
+    CONTEXT, ESTIMATE_ROUNDING, ESTIMATE_SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown,
+    relative, tail,
 };
 use crate::harmonics::extended_newton::{FirstStep, extend};
 use crate::harmonics::extended_system::ExtendedSystem;
@@ -24,22 +25,28 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Evaluations, each with a product, for which the work must suffice.
-const EVALUATIONS: f64 = 6.0;
+/// Kind: tuned; measured on: not recorded.
+const MODE_ERROR_EVALUATIONS: f64 = 6.0;
 
 /// Extended problems that are kept for the next point.
+/// Kind: cap.
 const MODE_ERROR_MOST_KEPT: usize = 3;
 
 /// Change of frequency or damping ratio, relative to the tolerance, that does not matter.
+/// Kind: tuned; measured on: not recorded.
 const NEGLIGIBLE_CHANGE: f64 = 0.1;
 
 /// Relative error of the damping ratio below which its last change need not be small against its whole change: along
 /// a backbone the latter passes through zero.
+/// Kind: tuned; measured on: not recorded.
 const MODE_ERROR_NEGLIGIBLE: f64 = 1e-3;
 
 /// Size of a harmonic over the rounding of its residual, up to which it is rounding as well.
+/// Kind: rounding.
 const HIDDEN: f64 = 10.0;
 
 /// Damping ratio below which a mode has none but round-off, so that errors are not relative to it.
+/// Kind: rounding.
 pub const NO_DAMPING: f64 = 1e-8;
 
 /// Estimates the errors of points of one nonlinear mode, one after the other.
@@ -178,9 +185,12 @@ impl<'a> ModeEstimator<'a> {
 
     /// The highest harmonic to which the work suffices to extend a point.
     fn affordable(&self, solved: &Solved<'_>, work: &Work) -> usize {
-        work.highest((solved.condensed, usize::MAX), &self.options, EVALUATIONS, |sizes| {
-            sizes.evaluation() + sizes.product(0.0, sizes.packed())
-        })
+        work.highest(
+            (solved.condensed, usize::MAX),
+            &self.options,
+            MODE_ERROR_EVALUATIONS,
+            |sizes| sizes.evaluation() + sizes.product(0.0, sizes.packed()),
+        )
     }
 
     /// Extends to twice the harmonics, to four times, and on: up to the cut-off harmonic, or until the next changes of frequency and
@@ -339,7 +349,7 @@ impl<'a> ModeEstimator<'a> {
             return Ok(Some(exact));
         }
         system.measure_by_point(from.is_some());
-        let most = SHARE * NEGLIGIBLE_CHANGE * self.options.tolerance;
+        let most = ESTIMATE_SHARE * NEGLIGIBLE_CHANGE * self.options.tolerance;
         let of_damping = |u: &[f64]| Epmc::damping_of_change(u).abs();
         let enough = |_: &Epmc<'_>, _: &[f64], change: &[f64], next: &[f64]| {
             let (moved, last) = (norm(&change[..n - 2]), norm(&next[..n - 2]));
@@ -347,12 +357,14 @@ impl<'a> ModeEstimator<'a> {
             if stage.by_doubling {
                 let of_frequency = |u: &[f64]| Epmc::frequency_of_change(u).abs();
                 let (moved, last) = (of_frequency(&change[..n]), of_frequency(&next[..n]));
-                return (last <= SHARE * moved || last <= most.max(ROUNDING))
-                    && (left <= SHARE * changed
-                        || left <= (most * state.damping_unit).max(SHARE * MODE_ERROR_NEGLIGIBLE * NO_DAMPING));
+                return (last <= ESTIMATE_SHARE * moved || last <= most.max(ESTIMATE_ROUNDING))
+                    && (left <= ESTIMATE_SHARE * changed
+                        || left
+                            <= (most * state.damping_unit).max(ESTIMATE_SHARE * MODE_ERROR_NEGLIGIBLE * NO_DAMPING));
             }
-            (last <= SHARE * moved || last <= rounding.max(ROUNDING * norm(&start)))
-                && (left <= SHARE * changed || left <= SHARE * MODE_ERROR_NEGLIGIBLE * damping.abs().max(NO_DAMPING))
+            (last <= ESTIMATE_SHARE * moved || last <= rounding.max(ESTIMATE_ROUNDING * norm(&start)))
+                && (left <= ESTIMATE_SHARE * changed
+                    || left <= ESTIMATE_SHARE * MODE_ERROR_NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
         let Some(extended) = extend(system, (&start, &start), enough, FirstStep::Checked, self.interrupt)? else {
             return Ok(None);

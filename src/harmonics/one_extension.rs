@@ -3,7 +3,7 @@
 use crate::condense::Condensed;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::harmonics::estimate::{
-    CONTEXT, ROUNDING, SHARE, has_converged_tail, norm_of_responses, omits_nothing, relative, tail,
+    CONTEXT, ESTIMATE_ROUNDING, ESTIMATE_SHARE, has_converged_tail, norm_of_responses, omits_nothing, relative, tail,
 };
 use crate::harmonics::extended_newton::{ExtendedSolution, FirstStep, extend};
 use crate::harmonics::extended_system::ExtendedSystem;
@@ -17,6 +17,7 @@ use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
 
 /// Share of the residual that a guess from another point may leave.
+/// Kind: tuned; measured on: not recorded.
 const CLOSER: f64 = 0.5;
 
 /// The harmonics to which a point is extended.
@@ -69,10 +70,11 @@ pub(super) fn extend_once(
     let enough = |problem: &HarmonicBalance<'_>, at: &[f64], change: &[f64], next: &[f64]| {
         if !extent.by_doubling || !solved.watched.is_empty() {
             let next = norm(&next[..n]);
-            return next <= SHARE * norm(change) || next <= ROUNDING * norm(&before);
+            return next <= ESTIMATE_SHARE * norm(change) || next <= ESTIMATE_ROUNDING * norm(&before);
         }
         let (x, dx) = problem.observe(at, next);
-        dx.norm() <= SHARE * (x + dx - solved.response / length).norm() || dx.norm() <= ROUNDING * x.norm()
+        dx.norm() <= ESTIMATE_SHARE * (x + dx - solved.response / length).norm()
+            || dx.norm() <= ESTIMATE_ROUNDING * x.norm()
     };
     let below = from.map_or(solved.condensed.set(), |from| &from.set);
     let extension = Extension {

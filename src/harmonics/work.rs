@@ -13,45 +13,59 @@ use crate::harmonics::estimate::{MOST_EXTENDED, extended_options};
 use crate::options::SolverOptions;
 
 /// Least number of Newton iterations that the first point of a branch counts, which may become harder.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const OF_A_START: usize = 40;
 
 /// The same for a point at a single frequency, and after an estimate of it that told nothing.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const OF_A_POINT: (usize, usize) = (32, 16);
 
 /// Newton iterations of an extension.
+/// Kind: tuned; measured on: not recorded.
 const EXTENSION: f64 = 12.0;
 
 /// Work of an estimate as a multiple of that of such a point.
+/// Kind: tuned; measured on: not recorded.
 const WORK_MULTIPLE: f64 = 8.0;
 
 /// Operations that every estimate may take: about as many as the set-up of a small model.
+/// Kind: tuned; measured on: not recorded.
 const WORK_LEAST: f64 = 6e6;
 
 /// Share of the work that is small.
+/// Kind: tuned; measured on: not recorded.
 const WORK_SMALL: f64 = 0.25;
 
 /// Bytes that every estimate may take, and as a multiple of those of the point.
+/// Kind: tuned; measured on: not recorded.
 const BYTES: (f64, f64) = (100e6, 4.0);
 
 /// Bytes of a sample and direction of a law.
+/// Kind: tuned; measured on: not recorded.
 const OF_A_SAMPLE: f64 = 300.0;
 
 /// Tables of the flexibility, per harmonic, whose time the preparation and the solution of such a point take.
+/// Kind: tuned; measured on: not recorded.
 const WORK_TABLES: f64 = 6.0;
 
 /// Unknowns of a structure that one of them couples with in the factors.
+/// Kind: tuned; measured on: not recorded.
 const WORK_WIDTH: f64 = 300.0;
 
 /// Operations of a law for each direction, for each number of its motion, and for each number of its Jacobian.
+/// Kind: tuned; measured on: not recorded.
 const OF_LAW: (f64, f64, f64) = (8e3, 3e2, 12.0);
 
 /// Operations for each sample and number of a packed signal.
+/// Kind: tuned; measured on: not recorded.
 const OF_SAMPLE: f64 = 4.0;
 
 /// Operations for each unknown by which a vector is made orthogonal to those before.
+/// Kind: tuned; measured on: not recorded.
 const BASIS: f64 = 100.0;
 
 /// Operations of a simple loop that take the time of one of a factorisation.
+/// Kind: tuned; measured on: not recorded.
 const OF_FACTORS: f64 = 0.2;
 
 /// Sizes of a problem from which its work follows.

@@ -14,9 +14,11 @@ use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
+/// Kind: rounding.
 const FULL_WHEEL_ROUNDING: f64 = 1e-14;
 
 /// Operations, about, that an entry takes until it is placed and sorted.
+/// Kind: block.
 const FULL_WHEEL_OF_ONE_ENTRY: u64 = 20;
 
 impl Structure {

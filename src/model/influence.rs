@@ -22,6 +22,7 @@ pub enum AeroForm {
 }
 
 /// Number of forms.
+/// Kind: fixed.
 pub(super) const FORMS: usize = 2;
 
 /// Influence coefficients as they were given, checked.

@@ -5,7 +5,7 @@ use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite;
 use crate::linalg::inner;
-use crate::linalg::quadratic::{ROUNDING, quadratic, terms};
+use crate::linalg::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
@@ -36,9 +36,11 @@ pub struct SelectedMode {
 }
 
 /// Frequencies that differ by no more than this, relative, count as equal.
+/// Kind: rounding.
 const MODE_SELECTION_EQUAL: f64 = 1e-8;
 
 /// Number of modes of a large structure with which a given shape is compared.
+/// Kind: tuned; measured on: not recorded.
 const COMPARED: usize = 40;
 
 const CONTEXT: &str = "the start mode";
@@ -256,7 +258,7 @@ impl<'a> KnownModes<'a> {
         let shape = &self.modes.shapes[index * n..(index + 1) * n];
         let k = &self.pencil.stiffness;
         let energy = quadratic(k, shape);
-        let rounding = ROUNDING * terms(k, shape);
+        let rounding = QUADRATIC_ROUNDING * terms(k, shape);
         if energy < -rounding {
             return fail!(
                 Argument,

@@ -49,4 +49,4 @@ pub use special::Special;
 pub(crate) use stored_fields::PointField;
 pub use time_history::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
 pub(crate) use verdict::Verdict;
-pub use verdict::{Bifurcation, BifurcationKind, Stretch, UNIT};
+pub use verdict::{Bifurcation, BifurcationKind, Stretch, VERDICT_UNIT};

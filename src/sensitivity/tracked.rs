@@ -12,6 +12,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the parameter response";
 
 /// Step of the differences by the parameter, over its range.
+/// Kind: tuned; measured on: not recorded.
 const PARAMETER_STEP: f64 = 1e-5;
 
 /// A result over a parameter. Motions come first among its unknowns, in one unit of length for all harmonics and all values

@@ -14,9 +14,11 @@ use crate::results::{BifurcationKind, SpecialKind};
 use crate::tracing::branch_tracer::BranchTracer;
 
 /// Halvings of the arc across a branch point.
+/// Kind: cap.
 const BRANCH_POINTS_HALVINGS: usize = 26;
 
 /// Least cosine between the directions at both ends of the arc: across a corner the sign may change, too.
+/// Kind: tuned; measured on: not recorded.
 const BRANCH_POINTS_SMOOTH: f64 = 0.9;
 
 impl BranchTracer<'_> {

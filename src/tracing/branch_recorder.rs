@@ -74,9 +74,11 @@ pub(crate) struct BranchRecorder<'a> {
 }
 
 /// Change of forces with half the samples over their error: samples are of second order.
+/// Kind: tuned; measured on: not recorded.
 const SAMPLING: f64 = 3.0;
 
 /// Share of the tolerance that the error of sampling may take.
+/// Kind: tuned; measured on: not recorded.
 const BRANCH_RECORDER_SHARE: f64 = 0.5;
 
 /// Largest change of sampled forces with half the samples that meets a tolerance.

@@ -15,13 +15,16 @@ use crate::tracing::resonance_grid::LinearGrid;
 use crate::tracing::retracing::RecentPoints;
 
 /// Largest number of successive refinements of the last point, made if the next one is not found.
+/// Kind: cap.
 const MOST_BACKTRACKS: usize = 2;
 
 /// Number of points with linear contacts after an onset, beyond which the response is followed as a linear one again.
+/// Kind: tuned; measured on: not recorded.
 const BRANCH_TRACER_PATIENCE: usize = 3;
 
 /// First step after an onset, as a share of the distance to a value at which a contact is known to have left its linear
 /// state.
+/// Kind: tuned; measured on: not recorded.
 const ONSET_SHARE: f64 = 0.25;
 
 /// The range to follow, and the solutions requested in it.

@@ -10,13 +10,16 @@ use crate::interrupt::Phase;
 use crate::tracing::branch_tracer::BranchTracer;
 
 /// Most starts, each with at least twice the harmonics of the one before.
+/// Kind: cap.
 const COLD_START_MOST_STARTS: usize = 3;
 
 /// Most points of a homotopy to such a start.
+/// Kind: cap.
 const COLD_START_MOST_POINTS: usize = 100;
 
 /// Newton iterations that a start may take as a multiple of those of the one before, for which so many count at least: with
 /// twice the harmonics the path to a solution is about as long, and most of a path that is longer leads to none.
+/// Kind: tuned; measured on: not recorded.
 const COLD_START_MULTIPLE: usize = 4;
 const COLD_START_LEAST: usize = 40;
 

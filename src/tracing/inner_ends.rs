@@ -15,17 +15,21 @@ use crate::linalg::norm;
 const CONTEXT: &str = "the end of a branch";
 
 /// Points of the curve before it may close.
+/// Kind: block.
 const INNER_ENDS_LEAST: usize = 4;
 
 /// Distance of the first point to an arc, over its chord, at which the curve closes there, and least cosine between their
 /// directions.
+/// Kind: tuned; measured on: not recorded.
 const INNER_ENDS_CLOSE: f64 = 0.1;
 const INNER_ENDS_ALONG: f64 = 0.5;
 
 /// Share of a motion in the directions of its own that a curve does not have where it has run onto that branch.
+/// Kind: tuned; measured on: not recorded.
 const INNER_ENDS_MERGED: f64 = 1e-6;
 
 /// Corrections of the place on an arc.
+/// Kind: cap.
 const INNER_ENDS_CORRECTIONS: usize = 8;
 
 /// The harmonics that a symmetric motion does not have: those whose number over `base` has this remainder modulo 2.

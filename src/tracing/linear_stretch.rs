@@ -23,28 +23,36 @@ enum Next {
 }
 
 /// Share of its linear range above which the motion of a contact may have a maximum beyond it between two values.
+/// Kind: tuned; measured on: not recorded.
 const LINEAR_STRETCH_NEARLY: f64 = 0.7;
 
 /// Evaluations of a search for such a maximum.
+/// Kind: cap.
 const GOLDEN_STEPS: usize = 16;
 
 /// Ratio of the golden section.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Kind: fixed.
+const LINEAR_STRETCH_GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Relative width of an interval that is rounding.
+/// Kind: rounding.
 const LINEAR_STRETCH_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Parts of the cubic between two neighbours in which peaks are searched.
+/// Kind: tuned; measured on: not recorded.
 const PARTS: usize = 8;
 
 /// Relative change of the amplitude over the distance of two neighbours whose sign the cubic does not tell for certain.
+/// Kind: tuned; measured on: not recorded.
 const UNCERTAIN: f64 = 0.05;
 
 /// Largest number of evaluations of a root search.
+/// Kind: cap.
 const LINEAR_STRETCH_MAX_EVALUATIONS: usize = 100;
 
 /// Half width of the first bracket around an approximate root, relative to the parameter, and the factor by which it
 /// widens.
+/// Kind: tuned; measured on: not recorded.
 const BRACKET: f64 = 1e-10;
 const WIDENING: f64 = 100.0;
 
@@ -148,7 +156,10 @@ impl BranchTracer<'_> {
         }
         // The share may have a maximum above 1 between two values.
         let (mut low, mut high) = (here.parameter(), value);
-        let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        let mut inner = [
+            high - LINEAR_STRETCH_GOLDEN * (high - low),
+            low + LINEAR_STRETCH_GOLDEN * (high - low),
+        ];
         let mut found = [0.0; 2];
         for (at, share) in inner.iter().zip(&mut found) {
             match self.share_at(analysis, here, *at)? {
@@ -162,13 +173,13 @@ impl BranchTracer<'_> {
                 high = inner[1];
                 inner[1] = inner[0];
                 found[1] = found[0];
-                inner[0] = high - GOLDEN * (high - low);
+                inner[0] = high - LINEAR_STRETCH_GOLDEN * (high - low);
                 inner[0]
             } else {
                 low = inner[0];
                 inner[0] = inner[1];
                 found[0] = found[1];
-                inner[1] = low + GOLDEN * (high - low);
+                inner[1] = low + LINEAR_STRETCH_GOLDEN * (high - low);
                 inner[1]
             };
             match self.share_at(analysis, here, at)? {

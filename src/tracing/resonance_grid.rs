@@ -8,18 +8,23 @@ use crate::error::{Result, try_push};
 use crate::model::resonances::Resonance;
 
 /// Distances from a pole in half widths. Those of equidistant poles that overlap do not coincide.
+/// Kind: tuned; measured on: not recorded.
 const RESONANCE_GRID_NEAR: [f64; 5] = [0.0, 0.4, 1.0, 1.8, 5.0];
 
 /// Points beside a pole, from the last of [`RESONANCE_GRID_NEAR`] to the middle between two poles.
+/// Kind: tuned; measured on: not recorded.
 const RESONANCE_GRID_BESIDE: usize = 5;
 
 /// Least ratio of the distances of two such points.
+/// Kind: tuned; measured on: not recorded.
 const RESONANCE_GRID_RATIO: f64 = 2.0;
 
 /// Equidistant points over the whole range.
+/// Kind: tuned; measured on: not recorded.
 const BASE: usize = 36;
 
 /// Half width relative to the frequency that is assumed of an undamped resonance, so that it is passed at a distance.
+/// Kind: tuned; measured on: not recorded.
 const RESONANCE_GRID_UNDAMPED: f64 = 1e-4;
 
 const CONTEXT: &str = "the frequencies of a linear response";

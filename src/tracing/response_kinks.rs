@@ -17,27 +17,36 @@ use std::f64::consts::{PI, TAU};
 const CONTEXT: &str = "the kinks of a response";
 
 /// Smallest unexplained change of an instant that may be a jump.
+/// Kind: tuned; measured on: not recorded.
 const INSTANT_JUMP: f64 = 0.1;
 
 /// Distance of the two sides of a kink, over the arc, at which they are next to each other.
+/// Kind: rounding.
 const NEXT_TO: f64 = 1e-8;
 
 /// Smallest jump of the slope over the slopes: below it two instants that lead together are images of each other.
+/// Kind: rounding.
 const SLOPES_DIFFER: f64 = 1e-5;
 
 /// Share of the arc below which a slope that changes in proportion to the share, times this factor, has no jump.
+/// Kind: tuned; measured on: not recorded.
 const WITHOUT_JUMP: (f64, f64) = (1e-5, 3.0);
 
 /// Distance from the place where two parabolas meet to the far side, over the change of that place and at most over the gap, and
 /// halvings in search of it.
+/// Kind: tuned; measured on: not recorded.
 const BESIDE_MEETING: f64 = 10.0;
 const MOST_AWAY: f64 = 0.3;
+/// Halvings in search of the place where two parabolas meet.
+/// Kind: cap.
 const HALVINGS_OF_MEETING: usize = 50;
 
 /// Least distance of two solutions over the gap that tell how a slope changes.
+/// Kind: tuned; measured on: not recorded.
 const TELLS_BEND: f64 = 0.1;
 
 /// Most solutions in search of a kink, and most kinks of an arc.
+/// Kind: cap.
 const MOST_PLACES: usize = 40;
 const MOST_KINKS: usize = 4;
 

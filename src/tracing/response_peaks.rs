@@ -14,9 +14,11 @@ use crate::tracing::branch_tracer::BranchTracer;
 const CONTEXT: &str = "the peaks of a response";
 
 /// Solutions that are kept for the arc that follows.
+/// Kind: tuned; measured on: not recorded.
 const NODES_BEFORE: usize = 3;
 
 /// Parts of the cubic in which changes of sign are sought.
+/// Kind: tuned; measured on: not recorded.
 const PARTS_OF_ARC: usize = 16;
 
 impl BranchTracer<'_> {

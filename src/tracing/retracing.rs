@@ -17,17 +17,21 @@ use crate::linalg::norm;
 const CONTEXT: &str = "the last points of the branch";
 
 /// Number of recorded points before the last that are kept: steps grow by a small factor each.
+/// Kind: tuned; measured on: not recorded.
 const KEPT: usize = 5;
 
 /// Distance of a point to the recorded curve, over that to the point before it, below which it may lie on the curve.
+/// Kind: tuned; measured on: not recorded.
 const RETRACING_CLOSE: f64 = 0.2;
 
 /// Distance of two solutions that are one, over that step: at a corner the branch may come back at a small angle, so that
 /// its two sides are close to each other. The second one is for points whose sense is that of the recorded curve: a branch
 /// that comes back along its own points has the other one, unless rounding hides it.
+/// Kind: tuned; measured on: not recorded.
 const RETRACING_SAME: (f64, f64) = (1e-2, 1e-3);
 
 /// Bisections that find a parameter value on a cubic.
+/// Kind: cap.
 const RETRACING_BISECTIONS: usize = 50;
 
 /// The points recorded last, without a gap between them.

@@ -21,9 +21,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the synthesised response";
 
 /// Relative accuracy of the amplitude of a resonance.
+/// Kind: rounding.
 const RESONANCE_WIDTH: f64 = 1e-12;
 
 /// Largest number of evaluations for one resonance.
+/// Kind: cap.
 const RESONANCE_MAX_EVALUATIONS: usize = 60;
 
 /// Solves the mode between two points of its branch.
