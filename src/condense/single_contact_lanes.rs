@@ -18,7 +18,7 @@ const HARMONIC_LANES: usize = 8;
 
 /// Entries of a table: of the contact and the response by the contact, of both by the excitation.
 /// Kind: fixed.
-const SINGLE_CONTACT_LANES_ENTRIES: usize = 4;
+const LANE_ENTRIES: usize = 4;
 
 /// One number for each harmonic of a group.
 type Numbers = [f64; HARMONIC_LANES];
@@ -35,7 +35,7 @@ struct Mode {
     /// μ
     value: Numbers,
     /// Output times input of each entry.
-    products: [Lanes; SINGLE_CONTACT_LANES_ENTRIES],
+    products: [Lanes; LANE_ENTRIES],
 }
 
 /// Up to eight harmonics.
@@ -123,7 +123,7 @@ impl SingleContactLanes {
     /// small or a number is not finite.
     pub fn evaluate(&self, omega: f64, tables: &mut [Table]) -> bool {
         self.groups.iter().all(|group| {
-            let mut found = [[Lanes::ZERO; SINGLE_CONTACT_LANES_ENTRIES]; 2];
+            let mut found = [[Lanes::ZERO; LANE_ENTRIES]; 2];
             if !self.arch.dispatch(Evaluate(group, omega, &mut found)) {
                 return false;
             }
@@ -142,7 +142,7 @@ impl SingleContactLanes {
 }
 
 /// Fills in the entries of the tables of a group and their slopes at ω; `false` where that is not possible.
-struct Evaluate<'a>(&'a Group, f64, &'a mut [[Lanes; SINGLE_CONTACT_LANES_ENTRIES]; 2]);
+struct Evaluate<'a>(&'a Group, f64, &'a mut [[Lanes; LANE_ENTRIES]; 2]);
 
 impl WithSimd for Evaluate<'_> {
     type Output = bool;
@@ -244,7 +244,7 @@ impl<S: Simd> Vectors<S> {
 
     /// The tables and their slopes; `false` where a denominator is small or a number is not finite.
     #[inline(always)]
-    fn evaluate(self, group: &Group, omega: f64, tables: &mut [[Lanes; SINGLE_CONTACT_LANES_ENTRIES]; 2]) -> bool {
+    fn evaluate(self, group: &Group, omega: f64, tables: &mut [[Lanes; LANE_ENTRIES]; 2]) -> bool {
         let simd = self.simd;
         let (zero, one) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
         let none = Complex { re: zero, im: zero };
@@ -266,17 +266,9 @@ impl<S: Simd> Vectors<S> {
             re: self.mul(number, self.mul(simd.splat_f64s(2.0), nu)),
             im: simd.neg_f64s(self.mul(number, alpha)),
         };
-        let (mut sums, mut d_sums, mut least) = (
-            [none; SINGLE_CONTACT_LANES_ENTRIES],
-            [none; SINGLE_CONTACT_LANES_ENTRIES],
-            one,
-        );
+        let (mut sums, mut d_sums, mut least) = ([none; LANE_ENTRIES], [none; LANE_ENTRIES], one);
         let is_forced = self.k * (size_of::<S::f64s>() / size_of::<f64>()) < group.forced;
-        let entries = if is_forced {
-            SINGLE_CONTACT_LANES_ENTRIES
-        } else {
-            SINGLE_CONTACT_LANES_ENTRIES / 2
-        };
+        let entries = if is_forced { LANE_ENTRIES } else { LANE_ENTRIES / 2 };
         for mode in &group.modes {
             let value = self.read(&mode.value);
             let d = Complex {

@@ -170,23 +170,28 @@ pub(crate) fn decide(signs: &Signs, state: State) -> Action {
         Occasion::Solved { predicted: true } => Action::Keep,
         Occasion::Solved { predicted: false } => Action::Estimate,
         Occasion::Estimated {
-            unchanged_from: Some(before),
-            ..
-        } if signs.share.is_nan() => Action::Drop(before),
-        Occasion::Estimated { missed, .. } if signs.share <= 1.0 => {
-            let unjustified = state == State::Fresh && !missed && signs.share <= DROP;
-            if signs.share == 0.0 || unjustified {
-                choices.drop(choices.required)
-            } else {
-                Action::Keep
-            }
-        }
-        Occasion::Estimated { refinements, .. } if refinements >= MOST_REFINEMENTS => Action::Keep,
-        Occasion::Estimated { .. } if signs.share.is_nan() => refine(signs, choices.doubled),
-        Occasion::Estimated { .. } => refine(signs, choices.required),
+            missed,
+            unchanged_from,
+            refinements,
+        } => match unchanged_from {
+            Some(before) if signs.share.is_nan() => Action::Drop(before),
+            _ if signs.share <= 1.0 => met(signs, state == State::Fresh && !missed),
+            _ if refinements >= MOST_REFINEMENTS => Action::Keep,
+            _ if signs.share.is_nan() => refine(signs, choices.doubled),
+            _ => refine(signs, choices.required),
+        },
         Occasion::Recorded => next_step(signs, state),
         Occasion::Beside if signs.share <= 1.0 => Action::Keep,
         Occasion::Beside => refine(signs, choices.required),
+    }
+}
+
+/// The action at an estimated point that meets the tolerance; whether nothing has justified its harmonics.
+fn met(signs: &Signs, is_unjustified: bool) -> Action {
+    if signs.share == 0.0 || (is_unjustified && signs.share <= DROP) {
+        signs.choices.drop(signs.choices.required)
+    } else {
+        Action::Keep
     }
 }
 
