@@ -5,6 +5,8 @@
     python tests/ledger --rooms harmonics aft    those of some rooms
     python tests/ledger --sample 10 --seed 3     some drawn at random
 
+A share between one half and one is not doubled: its distance from one is halved.
+
 A number *breaks* where an answer leaves the tolerance of its case, or a case fails: then it is no heuristic, and needs an equation. It
 is *dear* where a case takes more than twice the processor time. It changes *nothing* where no answer differs in any digit and no time
 by a tenth: then it may be superfluous, unless a case that needs it is missing. *Unread* is what no case reads. Status 1 where a number

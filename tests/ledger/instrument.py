@@ -48,9 +48,10 @@ macro_rules! varied {
 
 varied!(u8, u32, u64, usize, i32, i64);
 
+// The double of a share or a cosine above one half would be none: half of its distance from one is left instead.
 impl Varied for f64 {
     fn times(self, factor: f64) -> Self {
-        self * factor
+        if factor > 1.0 && (0.5..1.0).contains(&self) { 1.0 - (1.0 - self) / factor } else { self * factor }
     }
 }
 
