@@ -7,15 +7,10 @@ use std::error::Error;
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use hbvib::analysis::{estimate_at, forced_response};
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Spring, estimate_at,
+    forced_response,
+};
 
 use model::{B2, Parameters};
 
@@ -42,7 +37,7 @@ fn fixed(harmonics: usize) -> SolverOptions {
     }
 }
 
-fn respond(model: &Model, solver: &SolverOptions, (from, to): (f64, f64)) -> hbvib::error::Result<Branch> {
+fn respond(model: &Model, solver: &SolverOptions, (from, to): (f64, f64)) -> hbvib::Result<Branch> {
     let range = ForcedOptions {
         omega_start: from,
         omega_stop: to,
@@ -52,7 +47,7 @@ fn respond(model: &Model, solver: &SolverOptions, (from, to): (f64, f64)) -> hbv
 }
 
 /// Wall time of something that is repeated for 0.3 s, in milliseconds.
-fn milliseconds<T>(mut work: impl FnMut() -> hbvib::error::Result<T>) -> hbvib::error::Result<f64> {
+fn milliseconds<T>(mut work: impl FnMut() -> hbvib::Result<T>) -> hbvib::Result<f64> {
     let started = Instant::now();
     let mut times = 0;
     while started.elapsed().as_secs_f64() < 0.3 {
@@ -104,7 +99,7 @@ fn bladed_disk() -> Result<(), Box<dyn Error>> {
 }
 
 /// Masses on springs in a row, the first one held; some of them rub on the ground.
-fn chain(masses: usize, contacts: usize) -> hbvib::error::Result<Model> {
+fn chain(masses: usize, contacts: usize) -> hbvib::Result<Model> {
     let mut mass = vec![0.0; masses * masses];
     for i in 0..masses {
         mass[i * masses + i] = 1.0;
@@ -136,7 +131,7 @@ fn chains() -> Result<(), Box<dyn Error>> {
         let lowest = 4.0 * (PI / (4 * masses + 2) as f64).sin();
         let model = chain(masses, contacts)?;
         for highest in [3, 9, 31] {
-            let timed = |estimate_error| -> hbvib::error::Result<(Branch, f64)> {
+            let timed = |estimate_error| -> hbvib::Result<(Branch, f64)> {
                 let solver = SolverOptions {
                     estimate_error,
                     ..fixed(highest)

@@ -3,13 +3,12 @@
 //!
 //! `cargo run --release --example friction_cost`
 
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::Law;
-use hbvib::contact::laws::friction_2d::Friction2d;
-use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::error::Result;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::Friction2d;
+use hbvib::internals::Friction3d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::{Evaluation, Evaluator};
+use hbvib::{Interrupt, Result};
 use std::time::Instant;
 
 /// Motions of one direction whose harmonics fall with the square of their number.

@@ -9,11 +9,7 @@ mod brick;
 #[path = "support/plate.rs"]
 mod plate;
 
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::error::Result;
-use hbvib::hooks::Hooks;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
+use hbvib::{ContactState, Flexibility, ForcedOptions, Hooks, Result, SolverOptions, forced_response};
 use plate::Plate;
 use std::f64::consts::TAU;
 use std::process::ExitCode;

@@ -12,16 +12,15 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use hbvib::interrupt::Interrupt;
+use hbvib::{Interrupt, SolverOptions};
 
-use hbvib::SolverOptions;
-use hbvib::condense::Condensed;
-use hbvib::linalg::bordered::Bordered;
-use hbvib::linalg::linear_system::Jacobian;
-use hbvib::linalg::norm;
-use hbvib::problem::contact_forces::ContactForces;
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem, Residual};
+use hbvib::internals::Bordered;
+use hbvib::internals::Condensed;
+use hbvib::internals::ContactForces;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::Jacobian;
+use hbvib::internals::norm;
+use hbvib::internals::{InitialGuess, Problem, Residual};
 
 use beam::{Beam, Z};
 use flags::{Flag, Flags};

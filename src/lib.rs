@@ -51,40 +51,29 @@
 #![deny(unsafe_code)]
 
 // The numerics below, under the paths that they have in this crate.
-#[doc(hidden)]
-pub use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
+use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
 
-#[doc(hidden)]
-pub mod aft;
-#[doc(hidden)]
-pub mod analysis;
+mod aft;
+mod analysis;
+mod at_a_point;
 mod byte_stream;
 #[doc(hidden)]
 pub mod capi;
+mod condense;
+mod contact;
+mod continuation;
+mod harmonics;
+mod hooks;
 #[doc(hidden)]
-pub mod condense;
-#[doc(hidden)]
-pub mod contact;
-#[doc(hidden)]
-pub mod continuation;
-#[doc(hidden)]
-pub mod harmonics;
-#[doc(hidden)]
-pub mod hooks;
-#[doc(hidden)]
-pub mod model;
-#[doc(hidden)]
-pub mod options;
-#[doc(hidden)]
-pub mod problem;
-#[doc(hidden)]
-pub mod results;
-#[doc(hidden)]
-pub mod sensitivity;
-#[doc(hidden)]
-pub mod stability;
-#[doc(hidden)]
-pub mod time_integration;
+pub mod internals;
+mod model;
+mod options;
+mod problem;
+mod results;
+mod sensitivity;
+mod stability;
+mod studies;
+mod time_integration;
 mod tracing;
 
 // Models.
@@ -97,70 +86,70 @@ pub use contact::relative_motion::{Direction, Frame};
 pub use contact::rigid_point::RigidPoint;
 pub use contact::{Contact, ContactKind};
 #[doc(inline)]
-pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
+pub use linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
-pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
 pub use model::damper::{Damper, DamperFace, DamperPlace};
-pub use model::linear_modes::{ContactState, LinearModes};
-pub use model::mistuning::{BladeProperty, Mistuning};
-pub use model::sector_faces::{SectorDescription, SectorFrame};
-pub use model::speed::Speed;
-pub use model::spring::Spring;
-pub use model::structure::MatrixKind;
+pub use model::matrices::aero::{AeroEntry, AeroForm, AeroInfluence};
+pub use model::matrices::sector_faces::{SectorDescription, SectorFrame};
+pub use model::matrices::speed::Speed;
+pub use model::matrices::spring::Spring;
+pub use model::matrices::structure::MatrixKind;
+pub use model::natural_modes::linear_modes::{ContactState, LinearModes};
+pub use model::wheels::mistuning::{BladeProperty, Mistuning};
 
 // Parameters.
 pub use contact::force_derivative::Constant;
 pub use sensitivity::{Parameter, Reason};
 
 // Analyses.
-pub use analysis::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
-pub use analysis::band_curve::{BandPoint, band_curve};
-pub use analysis::batch::{Batch, batch};
-pub use analysis::campbell::{Campbell, Crossing, campbell};
-pub use analysis::campbell_response::{CampbellResonance, campbell_response};
-pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
-pub use analysis::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
-pub use analysis::damped_modes::{DampedModes, damped_modes};
-pub use analysis::design_peak::DesignPeak;
-pub use analysis::fit::{
-    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
-    fit_profile, predict,
-};
-pub use analysis::floquet::floquet;
+pub use analysis::forced::point_error::{estimate_at, estimate_at_with};
 pub use analysis::forced_response::forced_response;
-pub use analysis::freedom::{FreeSlider, freedom, freedom_with};
-pub use analysis::harmonic_residual::{
+pub use analysis::in_time::run_through::sweep;
+pub use analysis::in_time::time_response::time_response;
+pub use analysis::in_time::verify::{Verification, verify};
+pub use analysis::linear::damped_modes::{DampedModes, damped_modes};
+pub use analysis::linear::linear_contacts::LinearContacts;
+pub use analysis::linear::static_history::{LoadHistory, StaticStep, static_history};
+pub use analysis::modes::nonlinear_mode::nonlinear_mode;
+pub use analysis::over_parameter::parameter_range::{Follow, ParameterRange};
+pub use analysis::over_parameter::parameter_response::parameter_response;
+pub use analysis::perturbed::smallest_kick::{Kick, smallest_kick};
+pub use analysis::residual_states::band::{Band, BandEnd, BandOf, BandOptions, BandState, band};
+pub use analysis::residual_states::band_curve::{BandPoint, band_curve};
+pub use analysis::residual_states::freedom::{FreeSlider, freedom, freedom_with};
+pub use analysis::residual_states::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
+pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
+pub use at_a_point::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use at_a_point::complex_sensitivity::{ComplexSensitivities, complex_sensitivity, complex_sensitivity_with};
+pub use at_a_point::floquet::floquet;
+pub use at_a_point::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
-pub use analysis::interference::{Interference, interference};
-pub use analysis::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
-pub use analysis::life_load::{BestLoad, best_load_for_life};
-pub use analysis::linear_contacts::LinearContacts;
-pub use analysis::mission::{Mission, MissionCrossing, mission};
-pub use analysis::mode_band::{ModeBand, ModeBandOf, ModeBandState, mode_band};
-pub use analysis::nonlinear_mode::nonlinear_mode;
-pub use analysis::parameter_range::{Follow, ParameterRange};
-pub use analysis::parameter_response::parameter_response;
-pub use analysis::point_error::{estimate_at, estimate_at_with};
-pub use analysis::response_of_motion::response_of;
-pub use analysis::run_through::sweep;
-pub use analysis::run_up::{RunUp, RunUpTurn, run_up};
-pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
-pub use analysis::smallest_kick::{Kick, smallest_kick};
-pub use analysis::static_history::{LoadHistory, StaticStep, static_history};
-pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
-pub use analysis::time_response::time_response;
-pub use analysis::verify::{Verification, verify};
-pub use analysis::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
-pub use analysis::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
+pub use at_a_point::response_of_motion::response_of;
+pub use at_a_point::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use hooks::{Hooks, LogLevel, LogSink, Progress};
 #[doc(inline)]
 pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
-    Amplitude, BatchOptions, CampbellResponseOptions, Component, DampingForm, Duty, FloquetOptions, ForcedOptions,
-    LifeFollow, LifeOptions, MissionOptions, ModeChoice, ModeOptions, Response, RunUpOptions, SolverOptions,
-    SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
+    Amplitude, BatchOptions, CampbellResponseOptions, Component, DampingForm, Duty, Flexibility, FloquetOptions,
+    ForcedOptions, LifeFollow, LifeOptions, MissionOptions, ModeChoice, ModeGuess, ModeOptions, Response, RunUpOptions,
+    SolverOptions, SteadyMethod, SweepOptions, SynthesisOptions, TimeOptions, VerifyOptions, Waves, Wear, Woehler,
 };
+pub use studies::batch::{Batch, batch};
+pub use studies::campbell::{Campbell, Crossing, campbell};
+pub use studies::campbell_response::{CampbellResonance, campbell_response};
+pub use studies::design_peak::DesignPeak;
+pub use studies::fit::{
+    DataKind, Fit, FitData, FitOptions, FitProfile, Loss, Prediction, Profiled, Scale, Suspicion, Unknown, fit,
+    fit_profile, predict,
+};
+pub use studies::interference::{Interference, interference};
+pub use studies::mission::{Mission, MissionCrossing, mission};
+pub use studies::run_up::{RunUp, RunUpTurn, run_up};
+pub use studies::wear::life::{Life, LifeEvent, LifeEventKind, LifePoint, life};
+pub use studies::wear::life_load::{BestLoad, best_load_for_life};
+pub use studies::wheel_identify::{IdentifiedPattern, MeasuredModes, wheel_identify};
+pub use studies::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 
 // Results.
 pub use condense::Reduction;
@@ -171,7 +160,7 @@ pub use error::{Error, Result, Status};
 #[doc(inline)]
 pub use fourier::{Measure, Reading};
 pub use harmonics::{Corrected, Estimate};
-pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
+pub use results::stored::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,
     LimitCycle, Multiplier, MultiplierClass, Optimum, ResponseSeries, Searched, Special, Stretch, Turn,

@@ -7,33 +7,29 @@
 mod common;
 
 use common::{BASE, harmonics};
-use hbvib::aft::Evaluation;
-use hbvib::aft::hysteretic::HystereticEvaluator;
-use hbvib::aft::memoryless::MemorylessEvaluator;
-use hbvib::aft::plane_friction::PlaneFrictionEvaluator;
-use hbvib::condense::{Condensed, Reference};
-use hbvib::contact::Contact;
-use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::regularised::TanhFriction;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::continuation::corrector::{Corrector, Outcome};
-use hbvib::continuation::step_control::StepControl;
-use hbvib::continuation::{Metric, Settings};
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::linalg::norm;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{DampingForm, ModeChoice, SolverOptions};
-use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::static_state::StaticState;
-use hbvib::problem::{InitialGuess, Problem, Residual};
-use hbvib::results::energy::balance;
+use hbvib::internals::Evaluation;
+use hbvib::internals::Friction3d;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::HystereticEvaluator;
+use hbvib::internals::Jacobian;
+use hbvib::internals::Memoryless;
+use hbvib::internals::MemorylessEvaluator;
+use hbvib::internals::PlaneFrictionEvaluator;
+use hbvib::internals::StaticState;
+use hbvib::internals::StepControl;
+use hbvib::internals::TanhFriction;
+use hbvib::internals::balance;
+use hbvib::internals::norm;
+use hbvib::internals::{Condensed, Reference};
+use hbvib::internals::{Corrector, Outcome};
+use hbvib::internals::{Epmc, Gauge, LinearMode};
+use hbvib::internals::{InitialGuess, Problem, Residual};
+use hbvib::internals::{Metric, Settings};
+use hbvib::{
+    Call, Contact, DampingForm, Interrupt, MatrixKind, MatrixView, ModeChoice, Model, Polynomial, SolverOptions, User,
+    UserForce,
+};
 use num_complex::Complex64;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -4,10 +4,10 @@
 //! Large requests beyond the limit fail, so that a matrix that is asked for without a check ends this test with a message of the
 //! runtime. Small ones are served, and those of products, as the reserve of the shared library does.
 
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::options::{FloquetOptions, ForcedOptions, SolverOptions, Waves};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, floquet, forced_response};
+use hbvib::{
+    Contact, FloquetOptions, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, Waves,
+    floquet, forced_response,
+};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 

@@ -5,12 +5,11 @@ use std::f64::consts::TAU;
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use hbvib::interrupt::Interrupt;
+use hbvib::{Interrupt, Model, SolverOptions};
 
-use hbvib::condense::Condensed;
-use hbvib::condense::flexibility::Workspace;
-use hbvib::linalg::lu::Lu;
-use hbvib::{Model, SolverOptions};
+use hbvib::internals::Condensed;
+use hbvib::internals::Lu;
+use hbvib::internals::Workspace;
 
 use crate::memory::peak_memory;
 use crate::response::Response;

@@ -135,7 +135,7 @@ impl Sector {
     /// # Errors
     ///
     /// Those of the library.
-    pub fn model(&self, interface: Interface) -> hbvib::error::Result<Model> {
+    pub fn model(&self, interface: Interface) -> hbvib::Result<Model> {
         let mut model = self.structure.clone();
         if interface != Interface::Absent {
             let springs: Vec<Spring> = self.pairs.iter().map(|p| p.normal).collect();
@@ -153,7 +153,7 @@ impl Sector {
     /// # Errors
     ///
     /// Those of the library.
-    pub fn forced(&self, force: f64) -> hbvib::error::Result<Model> {
+    pub fn forced(&self, force: f64) -> hbvib::Result<Model> {
         let mut model = self.model(Interface::Friction2d)?;
         model.add_force(self.size.tip(), 1, Complex64::new(force, 0.0))?;
         Ok(model)
@@ -165,16 +165,11 @@ impl Sector {
 /// # Errors
 ///
 /// Those of the library.
-pub fn natural_frequencies(
-    model: &Model,
-    diameter: i64,
-    state: ContactState,
-    count: usize,
-) -> hbvib::error::Result<Vec<f64>> {
+pub fn natural_frequencies(model: &Model, diameter: i64, state: ContactState, count: usize) -> hbvib::Result<Vec<f64>> {
     Ok(model.lowest_modes(diameter, state, count)?.omega)
 }
 
-fn give(model: &mut Model, which: MatrixKind, coupling: bool, view: &MatrixView<'_>) -> hbvib::error::Result<()> {
+fn give(model: &mut Model, which: MatrixKind, coupling: bool, view: &MatrixView<'_>) -> hbvib::Result<()> {
     if coupling {
         model.set_coupling(which, view)
     } else {

@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use hbvib::error::Result as Checked;
 use hbvib::{
-    Amplitude, Branch, DampingForm, Hooks, ModeChoice, ModeOptions, Progress, SolverOptions, Status, nonlinear_mode,
+    Amplitude, Branch, DampingForm, Hooks, ModeChoice, ModeOptions, Progress, Result as Checked, SolverOptions, Status,
+    nonlinear_mode,
 };
 use serde_json::{Map, Value};
 

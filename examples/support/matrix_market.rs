@@ -10,7 +10,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use flate2::bufread::MultiGzDecoder;
-use hbvib::model::structure::MAX_DOF;
+use hbvib::internals::MAX_DOF;
 use hbvib::{MatrixView, Part, Storage, Values};
 
 /// A sparse matrix in compressed columns; all indices count from 1, as in the file.

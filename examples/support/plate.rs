@@ -2,11 +2,7 @@
 #![allow(dead_code, reason = "each program uses a part of this module")]
 
 use crate::brick::{self, Material};
-use hbvib::contact::Contact;
-use hbvib::error::Result;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Part, Result, Storage, Values};
 use num_complex::Complex64;
 
 const STEEL: Material = Material {

@@ -5,36 +5,25 @@ use hbvib::{MatrixKind, MatrixView, Model, Part, Storage, Values};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What the modules of the command expect.
 #[allow(dead_code)]
-mod build {
-    pub type Outcome<T> = Result<T, String>;
+#[path = "../../crates/hbvib-cli/src/job_file/mod.rs"]
+mod job_file;
+/// Decks, without the rest of what the command has on meshes.
+#[allow(dead_code)]
+#[path = "."]
+mod meshes {
+    #[path = "../../crates/hbvib-cli/src/meshes/inp_cards.rs"]
+    pub mod inp_cards;
+    #[path = "../../crates/hbvib-cli/src/meshes/mesh.rs"]
+    pub mod mesh;
+    #[path = "../../crates/hbvib-cli/src/meshes/mesh_elements.rs"]
+    pub mod mesh_elements;
 }
-#[allow(dead_code)]
-mod responses {
-    /// A response of a job, whose keys any table has here: the module of the command needs all of it.
-    pub type ResponsePart = std::collections::BTreeMap<String, f64>;
+#[path = "."]
+mod texts {
+    #[path = "../../crates/hbvib-cli/src/texts/outcome.rs"]
+    pub mod outcome;
 }
-#[allow(dead_code)]
-#[path = "../../crates/hbvib-cli/src/job.rs"]
-mod job;
-#[allow(dead_code)]
-#[path = "../../crates/hbvib-cli/src/job_motion.rs"]
-mod job_motion;
-#[allow(dead_code)]
-#[path = "../../crates/hbvib-cli/src/job_studies.rs"]
-mod job_studies;
-#[allow(dead_code)]
-#[path = "../../crates/hbvib-cli/src/job_surfaces.rs"]
-mod job_surfaces;
-#[allow(dead_code)]
-#[path = "../../crates/hbvib-cli/src/mesh.rs"]
-mod mesh;
-#[allow(dead_code)]
-#[path = "../../crates/hbvib-cli/src/mesh_elements.rs"]
-mod mesh_elements;
-#[path = "../../crates/hbvib-cli/src/nearest_name.rs"]
-mod nearest_name;
 
 /// Numbers from bytes, zeros after the last.
 struct Bytes<'a>(&'a [u8]);
@@ -162,8 +151,8 @@ fn file(name: &str, data: &[u8]) -> PathBuf {
 /// A job file, and a mesh.
 pub fn job(data: &[u8]) -> bool {
     let path = file("job.toml", data);
-    let accepted = job::Job::read(&path).is_ok();
-    let mesh = mesh::Mesh::read(&path).is_ok();
+    let accepted = job_file::job::Job::read(&path).is_ok();
+    let mesh = meshes::mesh::Mesh::read(&path).is_ok();
     let _ = fs::remove_file(path);
     accepted || mesh
 }

@@ -14,7 +14,7 @@
 use crate::contact::march::March;
 use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 /// Squarings in the search for Π; a part that decays by less than 1e-10 per period counts as kept.
 /// Kind: cap.

@@ -15,7 +15,7 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::add_outer_products_to;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 /// Products between two checks of a stop.
 /// Kind: block.

@@ -1,9 +1,9 @@
 //! Forced response over a range of frequency.
 
-use crate::analysis::all_solutions;
-use crate::analysis::forced_curve::alone;
-use crate::analysis::freedom_columns::record_freedom;
-use crate::analysis::freedom_warning::warn_of_freedom;
+use crate::analysis::forced::forced_curve::alone;
+use crate::analysis::other_solutions::all_solutions;
+use crate::analysis::residual_states::freedom_columns::record_freedom;
+use crate::analysis::residual_states::freedom_warning::warn_of_freedom;
 use crate::error::Result;
 use crate::hooks::Hooks;
 use crate::model::Model;

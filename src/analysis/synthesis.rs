@@ -15,17 +15,17 @@ mod mode_motions;
 mod oscillator;
 mod resonance;
 
-pub(super) use crate::analysis::synthesis::mode_motions::{ForceExtremum, Motions};
+pub(crate) use crate::analysis::synthesis::mode_motions::{ForceExtremum, Motions};
 pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
-pub(super) use crate::analysis::synthesis::oscillator::{Load, State, form};
-pub(super) use crate::analysis::synthesis::resonance::Refinement;
+pub(crate) use crate::analysis::synthesis::oscillator::{Load, State, form};
+pub(crate) use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::SynthesisOptions;
-use crate::results::mode_branch::ModeData;
+use crate::results::stored::mode_branch::ModeData;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 
@@ -130,7 +130,7 @@ pub fn synthesise_with(
 }
 
 /// The same as [`synthesise_with`], with the motions on request.
-pub(super) fn with_motions(
+pub(crate) fn with_motions(
     branch: &Branch,
     model: &Model,
     options: &SynthesisOptions,
@@ -215,7 +215,7 @@ pub(super) fn with_motions(
 ///
 /// # Errors
 /// As [`synthesise`].
-pub(super) fn load_of(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Option<Load>> {
+pub(crate) fn load_of(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Option<Load>> {
     options.check()?;
     let Some(data) = branch.mode_data() else {
         return fail!(

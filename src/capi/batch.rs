@@ -17,11 +17,11 @@ use super::solve_responses::{Watched, hbvib_response};
 use super::thread_start::together;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
-use crate::analysis::DesignPeak;
-use crate::analysis::batch::{Batch, Surroundings, batch_within};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::options::{BatchOptions, MOST_THREADS, Response, check_responses};
+use crate::studies::DesignPeak;
+use crate::studies::batch::{Batch, Surroundings, batch_within};
 
 /// The peaks of many designs, created by hbvib_batch_solve.
 pub struct hbvib_batch(());

@@ -9,7 +9,7 @@ use super::indices::index;
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
-use crate::analysis::{self, JacobianGap, Tangent};
+use crate::at_a_point::{self, JacobianGap, Tangent};
 use crate::contact::ContactKind;
 use crate::error::{Error, Status, fail};
 use crate::model::Model;
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn hbvib_check_jacobian(
         let len = count(amplitude_len, 5, "amplitude_len")?;
         let amplitudes = unsafe { input(amplitude, len, 4, "amplitude") }?;
         unsafe { check_out(out, 6) }?;
-        let found = analysis::check_jacobian(&model, contact, omega, amplitudes);
+        let found = at_a_point::check_jacobian(&model, contact, omega, amplitudes);
         let gap = found.map_err(|e| with_checked_argument(e, omega))?;
         unsafe { fill_out(out, gap.into()) };
         Ok(Status::Ok)

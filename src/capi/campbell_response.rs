@@ -11,10 +11,10 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::time_run_up::{of_mode, synthesis};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
-use crate::analysis::campbell_response;
 use crate::error::{Status, try_push};
 use crate::model::Model;
 use crate::options::CampbellResponseOptions;
+use crate::studies::campbell_response;
 
 /// Options of hbvib_campbell_response. Fill it by hbvib_campbell_options_init.
 #[repr(C)]

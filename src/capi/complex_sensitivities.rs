@@ -12,7 +12,7 @@ use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
-use crate::analysis;
+use crate::at_a_point;
 use crate::error::{Status, fail, try_push};
 use crate::model::Model;
 use crate::options::Response;
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn hbvib_response_sensitivity(
         let to = unsafe { output(derivatives, 2 * len, 7, "derivatives") }?;
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                analysis::complex_sensitivity_with(&model, &kept.branch, point, &response, &described, interrupt)
+                at_a_point::complex_sensitivity_with(&model, &kept.branch, point, &response, &described, interrupt)
             })
         }
         .map_err(|e| match e.status {

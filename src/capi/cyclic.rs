@@ -10,7 +10,7 @@ use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 
 /// Creates a cyclic structure, described by one of its sectors, under engine order 0: all matrices
 /// zero, no contact, no force.

@@ -11,7 +11,7 @@ use super::model_contents::fits;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
-use crate::model::aero::AeroForm;
+use crate::model::matrices::aero::AeroForm;
 use num_complex::Complex64;
 
 /// Motion that aerodynamic forces follow.

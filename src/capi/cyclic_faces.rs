@@ -11,8 +11,8 @@ use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
-use crate::model::sector_faces::{SectorDescription, SectorFrame};
-use crate::model::structure::MAX_DOF;
+use crate::model::matrices::sector_faces::{SectorDescription, SectorFrame};
+use crate::model::matrices::structure::MAX_DOF;
 use core::ptr;
 
 /// Frame of the degrees of freedom of a sector with faces.

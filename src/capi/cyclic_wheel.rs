@@ -11,8 +11,8 @@ use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
-use crate::model::mistuning::{BladeProperty, Mistuning};
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::wheels::mistuning::{BladeProperty, Mistuning};
 
 /// Makes the whole wheel of a cyclic model as a plain model, for every analysis. Degree of freedom
 /// i of sector s is s * ndof + i and contact c is s * contacts + c, with ndof degrees of freedom

@@ -12,10 +12,10 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
-use crate::analysis::{self, Fit, FitOptions, Loss, Scale, Suspicion, Unknown};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::sensitivity::Parameter;
+use crate::studies::{self, Fit, FitOptions, Loss, Scale, Suspicion, Unknown};
 
 /// Scale in which an unknown of a fit is changed.
 #[repr(C)]
@@ -327,7 +327,7 @@ pub unsafe extern "C" fn hbvib_fit(
         }
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::fit(&model, (&described, &unknowns), &listed, &solver, &options, hooks)
+                studies::fit(&model, (&described, &unknowns), &listed, &solver, &options, hooks)
             })
         }?;
         unsafe {
@@ -413,7 +413,7 @@ pub unsafe extern "C" fn hbvib_predict(
         )?;
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::predict(&model, &described, (theta, covariance), &listed[0], &solver, hooks)
+                studies::predict(&model, &described, (theta, covariance), &listed[0], &solver, hooks)
             })
         }?;
         for (p, argument, name, from) in [

@@ -7,9 +7,9 @@ use super::boundary::{WithArgument, call};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
-use crate::analysis::{DataKind, FitData};
 use crate::error::{Result, fail, try_push};
 use crate::options::Response;
+use crate::studies::{DataKind, FitData};
 use core::ptr;
 use num_complex::Complex64;
 

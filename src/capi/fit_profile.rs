@@ -13,9 +13,9 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
-use crate::analysis::{self, FitProfile, Profiled};
 use crate::error::{Result, fail};
 use crate::model::Model;
+use crate::studies::{self, FitProfile, Profiled};
 
 /// Numbers of a profile. Fill it by hbvib_fit_profile_info_init.
 #[repr(C)]
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn hbvib_fit_profile(
         let of = Profiled { theta, number, values };
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::fit_profile(
+                studies::fit_profile(
                     &model,
                     (&described, &unknowns),
                     &listed,

@@ -5,10 +5,10 @@
 //! The table is locked for the look-up alone. While a call uses an object, the slot counts its readers or
 //! notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
 
-use crate::analysis::batch::Batch;
 use crate::error::{Error, Result, Status, reserved, try_push};
 use crate::model::Model;
 use crate::results::Branch;
+use crate::studies::batch::Batch;
 use core::cell::UnsafeCell;
 use core::ops::{Deref, DerefMut};
 use std::sync::{Mutex, MutexGuard, PoisonError};

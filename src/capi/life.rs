@@ -11,10 +11,10 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
-use crate::analysis::{self, Life, LifeEventKind};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::options::{Duty, LIFE_MOST_STEPS, LIFE_TOLERANCE, LifeFollow, LifeOptions, Wear};
+use crate::studies::{self, Life, LifeEventKind};
 use core::ptr;
 
 /// Vibration that wears contacts.
@@ -396,7 +396,7 @@ pub unsafe extern "C" fn hbvib_life(
         if !info.is_null() {
             unsafe { check_out(info, 17) }?;
         }
-        let found = unsafe { with_hooks(&hooks, |hooks| analysis::life(&model, &solver, &options, hooks)) }?;
+        let found = unsafe { with_hooks(&hooks, |hooks| studies::life(&model, &solver, &options, hooks)) }?;
         unsafe {
             wanted.fill(&found, n)?;
             for (i, event) in found.events.iter().take(room).enumerate() {
@@ -539,7 +539,7 @@ pub unsafe extern "C" fn hbvib_best_load_for_life(
         let hooks = unsafe { load_hooks(hooks, 7) }?;
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::best_load_for_life(&model, &solver, &options, (factor_low, factor_high), hooks)
+                studies::best_load_for_life(&model, &solver, &options, (factor_low, factor_high), hooks)
             })
         }?;
         let value = hbvib_best_load {

@@ -10,7 +10,7 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::solve_options::{harmonics_and_samples, hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::load;
-use crate::analysis;
+use crate::at_a_point;
 use crate::contact::ContactKind;
 use crate::error::{Error, Result, Status, fail};
 use crate::model::Model;
@@ -156,7 +156,7 @@ pub unsafe extern "C" fn hbvib_contact_evaluate_with_hooks(
         let at = (harmonics, samples, omega);
         let evaluated = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                analysis::contact_evaluate_with(&contact, at, motion, force, jac, interrupt)
+                at_a_point::contact_evaluate_with(&contact, at, motion, force, jac, interrupt)
             })
         };
         evaluated.with_argument(5)?;
@@ -310,7 +310,7 @@ pub unsafe extern "C" fn hbvib_forced_residual_with_hooks(
         }
         unsafe {
             with_interrupt(&hooks, |interrupt| {
-                analysis::forced_residual_with(&model, &solver, omega, x, (r, jac, d_omega), interrupt)
+                at_a_point::forced_residual_with(&model, &solver, omega, x, (r, jac, d_omega), interrupt)
             })
         }?;
         Ok(Status::Ok)

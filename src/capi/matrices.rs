@@ -8,8 +8,8 @@ use super::boundary::{WithArgument, call};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::error::{Result, fail};
-use crate::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use crate::model::structure::MatrixKind;
+use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
+use crate::model::matrices::structure::MatrixKind;
 use core::ptr;
 
 /// Layouts of a matrix view.

@@ -10,7 +10,7 @@ use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
 use super::version_and_errors::hbvib_status;
 use crate::error::{Status, fail, try_push};
 use crate::model::Model;
-use crate::model::spring::Spring;
+use crate::model::matrices::spring::Spring;
 use num_complex::Complex64;
 
 /// A structure with its contacts and forces, created by hbvib_model_new or hbvib_cyclic_new.

@@ -10,9 +10,9 @@ use super::matrices::matrix_kind;
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
-use crate::linalg::sparse::Columns;
+use crate::linalg::sparse_storage::sparse::Columns;
 use crate::model::Model;
-use crate::model::contents::Block;
+use crate::model::saved::contents::Block;
 
 /// Blocks of a matrix, by the sectors of their columns.
 #[repr(C)]

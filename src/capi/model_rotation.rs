@@ -9,7 +9,7 @@ use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::error::Status;
 use crate::model::Model;
-use crate::model::rotation::Speed;
+use crate::model::matrices::rotation::Speed;
 
 /// Sets a fixed speed of rotation Omega: M x'' + (C + Omega G) x' + (K + Omega^2 K1) x + f = f_ex
 /// with the matrices HBVIB_GYROSCOPIC and HBVIB_STIFFNESS_SPEED2, and the loads of

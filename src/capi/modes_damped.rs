@@ -10,11 +10,11 @@ use super::model::hbvib_model;
 use super::modes_linear::contact_state_of;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::version_and_errors::hbvib_status;
-use crate::analysis::campbell::campbell;
-use crate::analysis::damped_modes::damped_modes;
-use crate::analysis::linear_contacts::LinearContacts;
+use crate::analysis::linear::damped_modes::damped_modes;
+use crate::analysis::linear::linear_contacts::LinearContacts;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
+use crate::studies::campbell::campbell;
 
 /// A number of modes, 1 .. ndof.
 pub(super) fn modes(count: i64, model: &Model, argument: i32) -> Result<usize> {

@@ -10,9 +10,9 @@ use super::modes_damped::modes;
 use super::modes_linear::contact_state_of;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::version_and_errors::hbvib_status;
-use crate::analysis::interference::interference;
 use crate::error::{Status, fail};
 use crate::model::Model;
+use crate::studies::interference::interference;
 
 /// Interference (SAFE) diagram: the lowest damped modes of all N waves of a wheel at the speed of
 /// the model, as hbvib_damped_modes. Together they are the modes of the wheel, each once. Both

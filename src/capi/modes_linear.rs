@@ -9,7 +9,7 @@ use super::handles::read;
 use super::model::hbvib_model;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
-use crate::analysis::linear_contacts::{LinearContacts, linear_modes};
+use crate::analysis::linear::linear_contacts::{LinearContacts, linear_modes};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
 

@@ -9,7 +9,7 @@ use super::solve::hbvib_branch;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::{Result, Status, fail};
-use crate::model::repeated_modes::Multiple;
+use crate::model::natural_modes::repeated_modes::Multiple;
 use crate::options::Amplitude;
 
 /// Numbers of one point of a nonlinear mode, in the units of the caller; energies are of one

@@ -14,7 +14,7 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::{Result, Status, fail, try_vec};
-use crate::results::mode_branch::ModeField;
+use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Branch, PointField};
 use core::ptr;
 use num_complex::Complex64;

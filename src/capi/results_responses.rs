@@ -14,7 +14,7 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out};
-use crate::analysis;
+use crate::at_a_point;
 use crate::error::{Status, fail};
 use crate::options::check_responses;
 use core::ptr;
@@ -325,7 +325,7 @@ pub unsafe extern "C" fn hbvib_response_of(
                 check_pointer(p, argument, name)?;
             }
         }
-        let found = analysis::response_of(&responses[0], ndof, omega, x)?;
+        let found = at_a_point::response_of(&responses[0], ndof, omega, x)?;
         unsafe {
             value.write(found.value);
             if !amplitude.is_null() {

@@ -12,11 +12,11 @@ use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
-use crate::analysis::{self, Quantity};
+use crate::at_a_point::{self, Quantity};
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::sensitivity::{Parameter, Reason};
 use core::ptr;
 
@@ -213,7 +213,7 @@ pub unsafe extern "C" fn hbvib_sensitivity(
         let values = unsafe { output(derivatives, len, 7, "derivatives") }?;
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                analysis::sensitivity_with(&model, &kept.branch, point, &described, of, interrupt)
+                at_a_point::sensitivity_with(&model, &kept.branch, point, &described, of, interrupt)
             })
         }
         .map_err(|e| match e.status {

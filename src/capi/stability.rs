@@ -11,7 +11,7 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::stored_point::StoredPoint;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
-use crate::analysis;
+use crate::at_a_point;
 use crate::contact::time_piece::Grazing;
 use crate::error::{Result, fail};
 use crate::options::{FloquetOptions, Waves};
@@ -232,7 +232,7 @@ pub unsafe extern "C" fn hbvib_floquet(
         )?;
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::floquet(&at.model, at.branch(), at.number, &options, hooks)
+                at_a_point::floquet(&at.model, at.branch(), at.number, &options, hooks)
             })
         }
         .map_err(|e| at.blame(e, 3))?;

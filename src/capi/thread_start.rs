@@ -1,6 +1,6 @@
 //! How calls start threads: as the C library tells when it is loaded, else by the standard library.
 
-use crate::analysis::further_threads::{Together, of_std};
+use crate::studies::further_threads::{Together, of_std};
 use std::sync::OnceLock;
 
 static TOGETHER: OnceLock<Together> = OnceLock::new();

@@ -11,10 +11,10 @@ use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
-use crate::analysis;
 use crate::error::{Error, Result, Status, fail};
 use crate::model::Model;
 use crate::options::{MissionOptions, RUN_UP_INTEGRATED_TURNS, RunUpOptions, SynthesisOptions, Woehler};
+use crate::studies;
 use core::ptr;
 
 /// Options of hbvib_branch_run_up. Fill it by hbvib_run_up_options_init, then set frequencies and
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn hbvib_branch_run_up(
         ];
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                analysis::run_up(&kept.branch, &model, &options, interrupt)
+                studies::run_up(&kept.branch, &model, &options, interrupt)
             })
         }
         .map_err(of_mode)?;
@@ -390,7 +390,7 @@ pub unsafe extern "C" fn hbvib_branch_mission(
         }
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                analysis::mission(&kept.branch, &model, &options, interrupt)
+                studies::mission(&kept.branch, &model, &options, interrupt)
             })
         }
         .map_err(of_mode)?;

@@ -10,9 +10,10 @@ use super::model::hbvib_model;
 use super::modes_linear::contact_state_of;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
-use crate::analysis::{MeasuredModes, wheel_identify};
 use crate::error::{Status, fail};
 use crate::model::Model;
+use crate::studies::MeasuredModes;
+use crate::studies::wheel_identify;
 use num_complex::Complex64;
 
 /// The pattern of a mistuned wheel from measured modes, with its covariance: that of the greatest

@@ -14,9 +14,9 @@ use super::solve_options::{hbvib_solver_options, solver_options};
 use super::solve_responses::{Watched, hbvib_response};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
-use crate::analysis::{self, BladePeak};
 use crate::model::Model;
 use crate::options::{ForcedOptions, Response};
+use crate::studies::{self, BladePeak};
 
 /// Numbers of the peaks of a wheel. Fill it by hbvib_wheel_info_init.
 #[repr(C)]
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn hbvib_wheel_peaks(
         }
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::wheel_peaks(&wheel, &cyclic, &blade, &solver, &options, hooks)
+                studies::wheel_peaks(&wheel, &cyclic, &blade, &solver, &options, hooks)
             })
         }?;
         let outcome = Outcome::from(&found.branch);

@@ -1,14 +1,14 @@
 //! The blocks of all carried harmonics: on bases, as those of a wheel that is tuned but for terms of low rank, or on all degrees of freedom.
 
-use crate::condense::basis_outlook::is_tuned_quicker;
-use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
-use crate::condense::memory_limit::{within_directly, within_matrices};
-use crate::condense::tuned_plan::TunedPlan;
-use crate::condense::wave_cache::ALL_UP_TO;
-use crate::condense::wave_reduction::{Request, reduced_blocks};
+use crate::condense::blocks::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
+use crate::condense::blocks::memory_limit::{within_directly, within_matrices};
+use crate::condense::by_modes::wave_cache::ALL_UP_TO;
+use crate::condense::on_a_basis::basis_outlook::is_tuned_quicker;
+use crate::condense::on_a_basis::wave_reduction::{Request, reduced_blocks};
+use crate::condense::tuned_wheel::tuned_plan::TunedPlan;
 use crate::error::{Result, try_push};
 use crate::interrupt::{Interrupt, Phase};
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::{DampingForm, Flexibility};
 use num_complex::Complex64;
 use std::sync::Arc;

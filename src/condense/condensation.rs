@@ -9,19 +9,19 @@
 //! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
 //! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+use crate::condense::blocks::condensed::{AssembledLaw, Condensed, Reference};
+use crate::condense::blocks::contact_classes::ContactClasses;
+use crate::condense::blocks::flexibility_way::FlexibilityWay;
+use crate::condense::blocks::memory_limit::within_for_contacts;
+use crate::condense::blocks::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
+use crate::condense::blocks::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
+use crate::condense::blocks::sweep::Sweep;
+use crate::condense::blocks::tied_load::TiedLoad;
+use crate::condense::by_factors::exchanged_motions::{check_rigid, select_exchanged};
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_modes::wave_cache::WaveCache;
 use crate::condense::chosen_blocks::{Chosen, chosen_blocks};
-use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
-use crate::condense::contact_classes::ContactClasses;
-use crate::condense::exchanged_motions::{check_rigid, select_exchanged};
-use crate::condense::flexibility::Workspace;
-use crate::condense::flexibility_way::FlexibilityWay;
-use crate::condense::memory_limit::within_for_contacts;
-use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
-use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
-use crate::condense::sweep::Sweep;
-use crate::condense::tied_load::TiedLoad;
-use crate::condense::wave_cache::WaveCache;
-use crate::condense::wave_reduction::Request;
+use crate::condense::on_a_basis::wave_reduction::Request;
 use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
 use crate::fourier::HarmonicSet;

@@ -1,10 +1,10 @@
 //! The flexibility tables of all carried harmonics at a frequency: sums over modes or poles where a sweep has them, by
 //! factorisation elsewhere.
 
-use crate::condense::flexibility::{Slopes, Table, Workspace};
-use crate::condense::modal_rows::ModalRows;
-use crate::condense::modal_table::{ModalTable, ModalWork};
-use crate::condense::single_contact_lanes::SingleContactLanes;
+use crate::condense::by_factors::flexibility::{Slopes, Table, Workspace};
+use crate::condense::by_modes::modal_rows::ModalRows;
+use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
+use crate::condense::by_modes::single_contact_lanes::SingleContactLanes;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};

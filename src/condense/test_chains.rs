@@ -1,10 +1,10 @@
 //! Structures for the tests of what follows from modes.
 
 use crate::contact::Contact;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::spring::Spring;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::spring::Spring;
+use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Degrees of freedom.

@@ -1,14 +1,14 @@
 //! Contacts of each law by their degrees of freedom and constants.
 
 use crate::contact::description::Contact;
-use crate::contact::laws::registry::{ContactKind, kinds};
+use crate::contact::laws::registry::ContactKind;
 
 impl Contact {
     /// A Jenkins contact between degree of freedom `a` and `b` (or the ground).
     #[must_use]
     pub fn jenkins(a: usize, b: Option<usize>, kt: f64, mu: f64, preload: f64) -> Self {
         Self {
-            kind: kinds::Jenkins,
+            kind: ContactKind::Jenkins,
             dof_a: [Some(a), None, None],
             dof_b: [b, None, None],
             frame: None,
@@ -58,7 +58,7 @@ impl Contact {
         preload: f64,
     ) -> Self {
         Self {
-            kind: kinds::Friction2d,
+            kind: ContactKind::Friction2d,
             dof_a: [a[0], None, a[1]],
             dof_b: [b[0], None, b[1]],
             kn,
@@ -77,7 +77,7 @@ impl Contact {
         preload: f64,
     ) -> Self {
         Self {
-            kind: kinds::Friction3d,
+            kind: ContactKind::Friction3d,
             dof_a: a,
             dof_b: b,
             kn,
@@ -89,7 +89,7 @@ impl Contact {
     #[must_use]
     pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
         Self {
-            kind: kinds::Regularised,
+            kind: ContactKind::Regularised,
             velocity,
             ..Self::jenkins(a, b, 0.0, mu, preload)
         }
@@ -100,7 +100,7 @@ impl Contact {
     #[must_use]
     pub fn cubic(a: usize, b: Option<usize>, kt: f64, k3: f64) -> Self {
         Self {
-            kind: kinds::Cubic,
+            kind: ContactKind::Cubic,
             cubic: k3,
             ..Self::jenkins(a, b, kt, 0.0, 0.0)
         }
@@ -111,7 +111,7 @@ impl Contact {
     #[must_use]
     pub fn unilateral(a: Option<usize>, b: Option<usize>, kn: f64, gap: f64) -> Self {
         Self {
-            kind: kinds::Unilateral,
+            kind: ContactKind::Unilateral,
             dof_a: [None, None, a],
             dof_b: [None, None, b],
             kn,

@@ -153,7 +153,7 @@ pub trait ContactLaw {
     /// Those of the constants.
     fn law(&self, length: f64) -> Result<Arc<dyn Law>>;
 
-    /// The same force over the exchanged motion of [`crate::condense::exchange`] with its stiffness; `None` where the law is
+    /// The same force over the exchanged motion of [`crate::condense::blocks::exchange`] with its stiffness; `None` where the law is
     /// no slider under a constant load.
     fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
         let _ = (stiffness, length);

@@ -26,4 +26,3 @@ pub use constants::Role;
 pub use description::Contact;
 pub use law::{Form, Law};
 pub use laws::registry::ContactKind;
-pub use piece::Piece;

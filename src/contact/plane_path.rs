@@ -8,7 +8,7 @@ use crate::contact::contact_state::State;
 use crate::contact::radau::{RADAU_STAGES, RadauTables};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

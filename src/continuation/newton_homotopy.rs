@@ -13,7 +13,7 @@
 //! turning points of the path like those of any branch.
 
 use crate::error::{Result, try_copy};
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 

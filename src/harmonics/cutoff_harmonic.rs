@@ -8,14 +8,14 @@
 //! the mesh, they are checked in geometric steps.
 
 use crate::condense::Condensed;
-use crate::condense::flexibility::Workspace;
+use crate::condense::by_factors::flexibility::Workspace;
 use crate::error::{Result, Status, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::estimate::CONTEXT;
 use crate::interrupt::Interrupt;
-use crate::linalg::eigen;
+use crate::linalg::dense::eigen;
+use crate::linalg::factors::lu::Lu;
 use crate::linalg::inner;
-use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -341,9 +341,9 @@ mod tests {
     use crate::contact::Contact;
     use crate::fourier::HarmonicSet;
     use crate::interrupt::Interrupt;
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::Model;
-    use crate::model::structure::MatrixKind;
+    use crate::model::matrices::structure::MatrixKind;
     use crate::options::SolverOptions;
     use num_complex::Complex64;
     use std::sync::Arc;

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::harmonics::Estimate;
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::interrupt::Interrupt;
-use crate::model::resonances::Resonance;
+use crate::model::natural_modes::resonances::Resonance;
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
 use crate::results::{Branch, SpecialKind, Verdict};

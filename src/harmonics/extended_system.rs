@@ -4,8 +4,8 @@ use crate::error::{Result, Status, try_vec};
 use crate::harmonics::estimate::CONTEXT;
 use crate::harmonics::work::{Sizes, Work};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::krylov::{KrylovSystem, Lengths};
-use crate::linalg::linear_system::{Border, LinearSystem};
+use crate::linalg::newton::linear_system::krylov::{KrylovSystem, Lengths};
+use crate::linalg::newton::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
 use crate::problem::newton_products::{PackedHarmonics, packed_up_to};
 use crate::problem::{Problem, Residual};
@@ -52,7 +52,7 @@ pub(super) struct ExtendedSystem<P> {
     sectors: Option<usize>,
     /// Whether some solution did not converge in [`EXTENDED_SYSTEM_MOST_PRODUCTS`] products.
     pub stalled: bool,
-    /// Whether the equations are those of exchanged motions, see [`crate::condense::exchange`].
+    /// Whether the equations are those of exchanged motions, see [`crate::condense::blocks::exchange`].
     pub is_monotone: bool,
     /// Residual that steps may leave.
     goal: f64,
@@ -68,7 +68,9 @@ impl<P: Problem> ExtendedSystem<P> {
     /// A problem of these sizes at a parameter value with the dense backend, and the work that it may take.
     #[cfg(test)]
     pub fn dense(problem: P, parameter: f64, sizes: Sizes, work: Work) -> Result<Self> {
-        let system = Box::new(crate::linalg::linear_system::dense::DenseSystem::new(problem.size())?);
+        let system = Box::new(crate::linalg::newton::linear_system::dense::DenseSystem::new(
+            problem.size(),
+        )?);
         let harmonics = usize::MAX;
         let factored = Factored {
             block: harmonics,
@@ -293,11 +295,11 @@ mod tests {
     use crate::contact::Contact;
     use crate::harmonics::work::{Sizes, Work};
     use crate::interrupt::Interrupt;
-    use crate::linalg::linear_system::{Jacobian, MatrixFree};
-    use crate::linalg::matrix_view::MatrixView;
+    use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
     use crate::linalg::norm;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::Model;
-    use crate::model::structure::MatrixKind;
+    use crate::model::matrices::structure::MatrixKind;
     use crate::options::SolverOptions;
     use crate::problem::harmonic_balance::HarmonicBalance;
 

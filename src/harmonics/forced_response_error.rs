@@ -1,8 +1,8 @@
 //! The error of a point of a forced response.
 
-use crate::condense::modal_rows::ModalRows;
-use crate::condense::modal_table::ModalTable;
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::modal_rows::ModalRows;
+use crate::condense::by_modes::modal_table::ModalTable;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::contact::Contact;
 use crate::error::{Result, boxed, try_push};

@@ -1,6 +1,6 @@
 //! The numbers of harmonics available to a run: one, or a rising list from which a tolerance selects.
 
-use crate::condense::wave_cache::have_modes;
+use crate::condense::by_modes::wave_cache::have_modes;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::{HarmonicSet, gcd};

@@ -1,4 +1,4 @@
-//! The error of a point with exchanged motions, see [`crate::condense::exchange`]: of forces that jump, and of sticks that ring.
+//! The error of a point with exchanged motions, see [`crate::condense::blocks::exchange`]: of forces that jump, and of sticks that ring.
 //!
 //! Where slip ends the force jumps, so that the response errs by about 1/H at least: twice its change with twice the harmonics. That
 //! change may be small by chance, so that half the change from half the harmonics counts, too.

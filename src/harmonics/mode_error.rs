@@ -1,6 +1,6 @@
 //! The error of a point of a nonlinear mode, including those of its frequency and damping ratio.
 
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
@@ -16,7 +16,7 @@ use crate::harmonics::mode_doubling::{ModeRatios, ModeSeries};
 use crate::harmonics::work::{OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};

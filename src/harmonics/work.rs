@@ -6,7 +6,7 @@
 
 use crate::aft::Evaluator;
 use crate::condense::Condensed;
-use crate::condense::memory_limit::within;
+use crate::condense::blocks::memory_limit::within;
 use crate::error::Result;
 use crate::harmonics::cutoff_harmonic::affordable;
 use crate::harmonics::estimate::{MOST_EXTENDED, extended_options};

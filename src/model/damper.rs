@@ -9,9 +9,9 @@ use crate::contact::Contact;
 use crate::contact::relative_motion::Frame;
 use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, fail, try_push, try_vec};
-use crate::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use std::ops::Range;
 
 const CONTEXT: &str = "a damper";

@@ -1,7 +1,7 @@
 //! Forces per degree of freedom and harmonic.
 
 use crate::error::{Result, fail, try_extend, try_push};
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::MAX_HARMONIC;
 use num_complex::Complex64;
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 
 impl Model {
     /// A copy whose fundamental is that of motions with `periods` times the period: forces in harmonic h act in harmonic

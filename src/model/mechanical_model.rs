@@ -5,13 +5,13 @@ use crate::contact::laws::iwan::Iwan;
 use crate::contact::patch::Patch;
 use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push, try_room};
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
-use crate::model::reduced_wave::KeptWaves;
-use crate::model::sector_faces::SectorDescription;
-use crate::model::speed::{Speed, SpeedLoad};
-use crate::model::spring::Spring;
-use crate::model::structure::{MatrixKind, Structure};
+use crate::model::few_motions::reduced_wave::KeptWaves;
+use crate::model::matrices::sector_faces::SectorDescription;
+use crate::model::matrices::speed::{Speed, SpeedLoad};
+use crate::model::matrices::spring::Spring;
+use crate::model::matrices::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
 /// Purpose of the memory, named in an error.
@@ -49,7 +49,7 @@ impl Model {
     /// A plain structure of `ndof` degrees of freedom, all matrices zero.
     ///
     /// # Errors
-    /// `Dimension` unless 1 ≤ ndof ≤ [`MAX_DOF`](crate::model::structure::MAX_DOF).
+    /// `Dimension` unless 1 ≤ ndof ≤ [`MAX_DOF`](crate::model::matrices::structure::MAX_DOF).
     pub fn new(ndof: usize) -> Result<Self> {
         Self::cyclic(ndof, 1)
     }
@@ -153,7 +153,7 @@ impl Model {
     }
 
     /// Sets the mass, damping, stiffness or structural matrix (of the sector itself), ndof × ndof. M must be symmetric or
-    /// Hermitian; the others may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
+    /// Hermitian; the others may be [`Part::General`](crate::linalg::sparse_storage::matrix_view::Part::General). Complex entries act
     /// on all harmonics above zero; the mean has the real part.
     ///
     /// # Errors

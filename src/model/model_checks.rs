@@ -6,7 +6,7 @@ use crate::contact::relative_motion::Direction;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
 use crate::model::excitation::Force;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Size of a force, over that of the largest one, from which its harmonic is watched.

@@ -2,13 +2,13 @@
 
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail};
-use crate::linalg::kept_matrix::KeptMatrix;
-use crate::linalg::matrix_view::MatrixView;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::blocks::Blocks;
-use crate::model::sector_matrices::{self, of_independent};
-use crate::model::structure::{MatrixKind, Structure};
+use crate::model::matrices::blocks::Blocks;
+use crate::model::matrices::sector_matrices::{self, of_independent};
+use crate::model::matrices::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
 impl Model {

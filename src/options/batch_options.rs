@@ -14,7 +14,7 @@ pub struct BatchOptions<'a> {
     pub omega_start: f64,
     /// Last angular frequency; below the first for downward sweeps.
     pub omega_stop: f64,
-    /// Threads, the calling one included, 1 .. [`MOST_THREADS`]. Their number changes no bit of a result.
+    /// Threads, the calling one included, 1 .. 1,024. Their number changes no bit of a result.
     pub threads: usize,
     /// Whether the branch of each design is kept.
     pub keep: bool,

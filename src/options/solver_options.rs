@@ -57,9 +57,8 @@ pub struct SolverOptions {
     pub response_dof: Option<usize>,
     /// Carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,
-    /// Estimate the error of every stored point, see [`crate::harmonics`]. Each estimate costs about as much
-    /// time as a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in
-    /// any case.
+    /// Estimate the error of every stored point, by a few Newton steps with more harmonics. Each estimate costs about as much time as
+    /// a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in any case.
     pub estimate_error: bool,
     /// The way to the flexibility of the structure at the contacts of a forced response.
     pub flexibility: Flexibility,
@@ -75,7 +74,7 @@ pub struct SolverOptions {
     /// Free sliders of each stored point of a forced response, with the derivatives of its amplitude by their places (see
     /// [`freedom`](crate::freedom())). A nonlinear mode refuses it.
     pub freedom: bool,
-    /// Sliders that have exchanged motions, see [`crate::condense::exchange`]; an analysis sets it.
+    /// Sliders that have exchanged motions; an analysis sets it.
     pub exchange: Exchanged,
     /// Harmonics that are carried beyond those which forces and laws excite by themselves; an analysis with a guess sets it.
     pub content: Content,

@@ -15,13 +15,13 @@ mod functional;
 mod mode_products;
 
 use crate::condense::Condensed;
-use crate::condense::mode_flexibility::ModeFlexibility;
+use crate::condense::by_modes::mode_flexibility::ModeFlexibility;
 use crate::contact::onset::Onset;
 use crate::error::{Result, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::{Jacobian, MatrixFree};
+use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::{inner, norm};
-use crate::model::spring::{Row, along};
+use crate::model::matrices::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};

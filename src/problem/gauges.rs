@@ -7,12 +7,12 @@
 //! whatever the number of gauges. They are read at solved points alone: Newton's iterations do not know them.
 
 use crate::condense::Condensed;
-use crate::condense::flexibility::Workspace;
-use crate::condense::near_rigid_motion;
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_factors::near_rigid_motion;
 use crate::error::{Result, try_extend, try_push, try_vec};
 use crate::fourier::{Reader, Reading};
 use crate::interrupt::Interrupt;
-use crate::model::reduced_wave::MotionRow;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use crate::options::{Measure, Response};
 use crate::problem::contact_forces::ContactForces;
 use num_complex::Complex64;

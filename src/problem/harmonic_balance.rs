@@ -5,13 +5,13 @@
 
 use crate::condense::Condensed;
 use crate::condense::FlexibilityWay;
+use crate::condense::by_modes::modal_table::ModalTable;
 use crate::condense::frequency_cache::FrequencyCache;
-use crate::condense::modal_table::ModalTable;
 use crate::error::{Result, Status, boxed, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::{Jacobian, MatrixFree};
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::norm;
 use crate::options::Response;
 use crate::problem::contact_forces::ContactForces;

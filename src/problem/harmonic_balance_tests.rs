@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::contact::Contact;
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::structure::MatrixKind;
 use crate::options::SolverOptions;
 
 const N: usize = 90;

@@ -6,7 +6,7 @@
 //! their tangent stiffness at the static state to the laws, for contacts that are linear at no amplitude.
 
 use crate::error::Result;
-use crate::linalg::linear_system::{Jacobian, MatrixFree};
+use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 

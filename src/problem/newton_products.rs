@@ -3,8 +3,8 @@
 
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::linalg::complex_columns;
-use crate::linalg::linear_system::{MatrixFree, Ring};
+use crate::linalg::dense::complex_columns;
+use crate::linalg::newton::linear_system::{MatrixFree, Ring};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::{Problem, put};
 use crate::problem::ring_blocks::RingBlocks;

@@ -1,7 +1,7 @@
 //! The interface between a mechanical problem and the continuation: R(u, p) = 0 with one parameter p.
 
 use crate::error::{Result, try_vec};
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use num_complex::Complex64;
 
 /// Residual at one point and its derivative by the parameter. The derivative by the unknowns is the problem's

@@ -12,7 +12,7 @@
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_push, try_vec};
-use crate::linalg::linear_system::Ring;
+use crate::linalg::newton::linear_system::Ring;
 use crate::problem::contact_forces::ContactForces;
 use core::f64::consts::TAU;
 use num_complex::Complex64;

@@ -1,7 +1,7 @@
 //! The residual of a single relative motion, of which most models of one contact consist: with one coordinate most of the time
 //! would be spent around loops of length one.
 
-use crate::condense::flexibility::Table;
+use crate::condense::by_factors::flexibility::Table;
 use crate::fourier::HarmonicSet;
 use crate::problem::parametric_problem::Residual;
 use crate::problem::residual_scale::Squares;
@@ -73,7 +73,7 @@ mod tests {
     use crate::condense::test_chains::structure;
     use crate::contact::Contact;
     use crate::interrupt::Interrupt;
-    use crate::linalg::linear_system::Jacobian;
+    use crate::linalg::newton::linear_system::Jacobian;
     use crate::options::SolverOptions;
     use crate::problem::harmonic_balance::HarmonicBalance;
     use crate::problem::parametric_problem::{Problem, Residual};

@@ -1,7 +1,7 @@
 //! The static state of a model under constant forces and preload, about which a nonlinear mode vibrates.
 
 use crate::error::{Result, try_copy};
-use crate::model::static_tangents::StaticTangents;
+use crate::model::natural_modes::static_tangents::StaticTangents;
 
 /// The static state; the default is that of a model without constant forces and preload, which is at rest at zero.
 #[derive(Clone, Debug, Default)]

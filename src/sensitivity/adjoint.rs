@@ -2,7 +2,7 @@
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
-use crate::model::spring::{Row, along};
+use crate::model::matrices::spring::{Row, along};
 use num_complex::Complex64;
 
 pub(super) const CONTEXT: &str = "the sensitivities";

@@ -8,7 +8,7 @@ use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::{add_product, dot};
 use crate::model::Model;
-use crate::model::spring_stiffness::Wave;
+use crate::model::matrices::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use std::sync::Arc;
 

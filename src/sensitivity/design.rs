@@ -2,7 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::sensitivity::parameter::Parameter;
 
 impl Parameter<'_> {

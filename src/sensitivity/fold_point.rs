@@ -10,7 +10,7 @@
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 use crate::linalg::norm;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::forced_point::ForcedPoint;

@@ -2,15 +2,15 @@
 //!
 //! One transposed solution of Newton's matrix, and one of the structure per harmonic.
 
-use crate::condense::flexibility::Workspace;
-use crate::condense::near_rigid_motion;
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_factors::near_rigid_motion;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, boxed, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
-use crate::linalg::linear_system::Jacobian;
-use crate::model::reduced_wave::MotionRow;
+use crate::linalg::newton::linear_system::Jacobian;
+use crate::model::few_motions::reduced_wave::MotionRow;
 use crate::options::Response;
 use crate::problem::gauges::{Derivatives, Gauges};
 use crate::problem::harmonic_balance::HarmonicBalance;

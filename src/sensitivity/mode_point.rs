@@ -1,14 +1,14 @@
 //! The adjoint of the frequency or of the damping ratio of a nonlinear mode at a fixed amplitude.
 
 use crate::condense::Condensed;
-use crate::condense::flexibility::Workspace;
+use crate::condense::by_factors::flexibility::Workspace;
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::Jacobian;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Problem, Residual};
-use crate::results::mode_branch::ModePoint;
+use crate::results::stored::mode_branch::ModePoint;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 

@@ -6,7 +6,7 @@
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 
 /// Entry beside the diagonal, which is 1, up to which a column is that of the identity. Rounding of the stiffness of a contact that sticks.
 /// Kind: rounding.

@@ -2,10 +2,10 @@
 
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail};
-use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
-use crate::model::speed::Speed;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::speed::Speed;
+use crate::model::matrices::structure::MatrixKind;
 
 /// A parameter of a model.
 #[derive(Clone, Copy, Debug)]

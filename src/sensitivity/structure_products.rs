@@ -7,12 +7,12 @@
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::inner;
-use crate::linalg::matrix_view::MatrixView;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::matrix_view::MatrixView;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::aero::AeroForm;
-use crate::model::spring_stiffness::Wave;
-use crate::model::structure::MatrixKind;
+use crate::model::matrices::aero::AeroForm;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 

@@ -5,7 +5,7 @@ use crate::contact::force_derivative::Constant;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::contact_products::{ContactMotion, ContactProducts};
 use crate::sensitivity::parameter::{Parameter, Reason};

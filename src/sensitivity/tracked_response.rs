@@ -10,7 +10,7 @@
 //! [`fold_point`]: crate::sensitivity::fold_point
 //! [`extremum_point`]: crate::sensitivity::extremum_point
 
-use crate::condense::wave_cache::SharedWaves;
+use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference, Resolution};
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
@@ -18,8 +18,8 @@ use crate::fourier::HarmonicSet;
 use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::Jacobian;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::{dot, norm};
 use crate::model::Model;
 use crate::options::{Response, SolverOptions};

@@ -5,7 +5,7 @@
 //! c^{N/m} = 1. Block j holds the waves of the diameters j, j + N/m, j + 2N/m, … Blocks j and −j are conjugate.
 
 use crate::error::{Result, try_push};
-use crate::model::structure::Structure;
+use crate::model::matrices::structure::Structure;
 use crate::options::Waves;
 use num_complex::Complex64;
 

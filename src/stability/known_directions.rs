@@ -6,7 +6,7 @@
 //! the variational equations as a constant. The rate of an autonomous motion is a perturbation that returns as itself.
 
 use crate::error::{Error, Result, Status};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::stability::perturbations::Perturbations;
 use crate::stability::ring::Row;
 use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD};

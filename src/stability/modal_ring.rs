@@ -14,9 +14,9 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::fallible_matrix::{add_product, adjoint, filled, zeros};
-use crate::model::contact_modes::ContactModes;
-use crate::model::structure::Structure;
+use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, zeros};
+use crate::model::matrices::structure::Structure;
+use crate::model::natural_modes::contact_modes::ContactModes;
 use crate::stability::closure::Closure;
 use crate::time_integration::Number;
 use nalgebra::DMatrix;

@@ -7,8 +7,9 @@
 
 use crate::error::{Result, check_memory, try_copy, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::{eigenvalues, general_eigen};
-use crate::model::structure::Structure;
+use crate::linalg::dense::eigenvalues;
+use crate::linalg::dense::general_eigen;
+use crate::model::matrices::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;

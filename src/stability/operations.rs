@@ -1,7 +1,7 @@
 //! Counted operations of the multipliers of a motion, from which it follows whether a structure is too large to be
 //! carried as a whole.
 
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 
 /// Operations of the eigenvalues of a complex matrix of order 1 (Golub & Van Loan, Matrix Computations, 2013, §7.5: 25 n³
 /// complex ones).

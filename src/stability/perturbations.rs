@@ -6,7 +6,7 @@
 
 use crate::contact::time_piece::Grazing;
 use crate::error::{Result, try_push};
-use crate::model::structure::Structure;
+use crate::model::matrices::structure::Structure;
 use crate::stability::closure::Closure;
 use crate::stability::ring::Ring;
 use crate::time_integration::{Interval, PerturbationBasis, System, Variation};

@@ -5,10 +5,10 @@
 
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Csc, Form};
-use crate::model::sector_motion::{MOTION_TERMS, SectorMotion};
-use crate::model::structure::{MatrixKind, Structure};
-use crate::model::wave::Wave;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use crate::model::matrices::sector_motion::{MOTION_TERMS, SectorMotion};
+use crate::model::matrices::structure::{MatrixKind, Structure};
+use crate::model::matrices::wave::Wave;
 use crate::stability::closure::Closure;
 use crate::time_integration::{Number, System, VariationalElement, VariationalEquations};
 use num_complex::Complex64;

@@ -10,8 +10,8 @@
 
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::fallible_matrix::{add_product, adjoint, filled, product, zeros};
-use crate::linalg::lu::Scalar;
+use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, product, zeros};
+use crate::linalg::factors::lu::Scalar;
 use crate::stability::modal_ring::ModalRing;
 use crate::stability::slider_motion::{Change, Path};
 use crate::stability::slipping::Slipping;

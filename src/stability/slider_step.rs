@@ -3,7 +3,7 @@
 //! Coordinates, forces of slipping sliders and relative motions are polynomials of θ, the share of the step.
 
 use crate::error::{Result, fail, try_room, try_vec};
-use crate::linalg::fallible_matrix::{zero_vector, zeros};
+use crate::linalg::dense::fallible_matrix::{zero_vector, zeros};
 use crate::stability::slider_motion::{SliderMotion, SliderState};
 use crate::stability::slipping::Slipping;
 use nalgebra::{DMatrix, DVector};

@@ -9,8 +9,10 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::fallible_matrix::{add_product, adjoint, filled, invert_definite, product, zero_vector, zeros};
-use crate::linalg::lu::Scalar;
+use crate::linalg::dense::fallible_matrix::{
+    add_product, adjoint, filled, invert_definite, product, zero_vector, zeros,
+};
+use crate::linalg::factors::lu::Scalar;
 use crate::stability::modal_ring::ModalRing;
 use crate::time_integration::Number;
 use nalgebra::{DMatrix, DVector};

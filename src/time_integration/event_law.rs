@@ -17,8 +17,8 @@ use crate::contact::time_piece::Instant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
-use crate::model::sector_motion::{MOTION_TERMS, SectorMotion};
-use crate::model::structure::Structure;
+use crate::model::matrices::sector_motion::{MOTION_TERMS, SectorMotion};
+use crate::model::matrices::structure::Structure;
 
 const CONTEXT: &str = "the contacts";
 

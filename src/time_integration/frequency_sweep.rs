@@ -6,7 +6,7 @@
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
-use crate::model::speed::Speed;
+use crate::model::matrices::speed::Speed;
 use crate::options::SweepOptions;
 use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::initial_state::state_of;

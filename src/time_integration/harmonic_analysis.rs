@@ -8,7 +8,7 @@ use crate::error::{Result, try_vec};
 use crate::fourier::gcd;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::degree_map::DegreeMap;
+use crate::model::matrices::degree_map::DegreeMap;
 use crate::time_integration::gauss::nodes;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial};
 use crate::time_integration::unrolled_structure::System;

@@ -9,7 +9,7 @@
 
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Error, Result, Status, fail, try_vec};
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 use crate::time_integration::gauss::{GAUSS_STAGES, GaussTables};
 use crate::time_integration::smooth_laws::Smooth;
 use crate::time_integration::step_polynomial::StepPolynomial;

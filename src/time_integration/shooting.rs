@@ -7,7 +7,7 @@
 
 use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
-use crate::linalg::least_squares::LeastSquares;
+use crate::linalg::dense::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
 use crate::time_integration::event_loop::{EventLoop, LapseSummary, Observers, State};
 use crate::time_integration::sensitivity::Sensitivity;

@@ -4,11 +4,11 @@
 use crate::contact::time_piece::Mode;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::factor::Factor;
-use crate::linalg::sparse::Csc;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
-use crate::model::degree_map::DegreeMap;
-use crate::model::structure::{MatrixKind, Structure};
+use crate::model::matrices::degree_map::DegreeMap;
+use crate::model::matrices::structure::{MatrixKind, Structure};
 use crate::time_integration::event_law::{Element, OF_ONE_SECTOR, Spring, unroll};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -3,11 +3,11 @@
 
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::factor::Factor;
-use crate::linalg::lu::Scalar;
-use crate::linalg::sparse::Csc;
-use crate::linalg::triangle::Entry;
-use crate::model::sector_motion::MOTION_TERMS;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::lu::Scalar;
+use crate::linalg::sparse_storage::sparse::Csc;
+use crate::linalg::sparse_storage::triangle::Entry;
+use crate::model::matrices::sector_motion::MOTION_TERMS;
 use crate::time_integration::unrolled_structure::{OF_ONE_ELEMENT, Sparse, System};
 use num_complex::Complex64;
 

@@ -6,7 +6,7 @@
 
 use crate::error::{Result, Status, fail, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
+use crate::linalg::factors::lu::Lu;
 use crate::time_integration::gauss::GAUSS_STAGES;
 use crate::time_integration::perturbation_products::Products;
 use crate::time_integration::variation::{Collocation, Interval};

@@ -3,7 +3,7 @@
 use crate::condense::{Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_copy, try_push};
 use crate::options::MAX_REFINEMENT;
-use crate::results::mode_branch::ModePoint;
+use crate::results::stored::mode_branch::ModePoint;
 use crate::results::{Branch, Record, SeenWithError, SpecialKind, Verdict};
 use core::cmp::Ordering;
 use num_complex::Complex64;

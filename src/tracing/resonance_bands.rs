@@ -8,7 +8,7 @@ use crate::continuation::Continuation;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::model::linear_modes::ContactState;
+use crate::model::natural_modes::linear_modes::ContactState;
 
 /// Degrees of freedom up to which the natural frequencies cost less than the points that they save.
 /// Kind: tuned; measured on: not recorded.
@@ -90,8 +90,8 @@ impl ResonanceBands {
 mod tests {
     use super::*;
     use crate::contact::Contact;
-    use crate::linalg::matrix_view::MatrixView;
-    use crate::model::structure::MatrixKind;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
+    use crate::model::matrices::structure::MatrixKind;
 
     /// A mass of 1 on a spring of 1, with a slider of stiffness 3 to the ground: bands from 1 to 2 over the harmonic.
     #[test]

@@ -5,7 +5,7 @@
 //! logarithm of that distance.
 
 use crate::error::{Result, try_push};
-use crate::model::resonances::Resonance;
+use crate::model::natural_modes::resonances::Resonance;
 
 /// Distances from a pole in half widths. Those of equidistant poles that overlap do not coincide.
 /// Kind: tuned; measured on: not recorded.

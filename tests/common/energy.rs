@@ -1,8 +1,7 @@
 //! Shared code of the tests of energies: comparisons, and means and maxima of time signals.
 
 use crate::common::{all_harmonics, harmonics};
-use hbvib::options::SolverOptions;
-use hbvib::results::{Branch, Energy};
+use hbvib::{Branch, Energy, SolverOptions};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

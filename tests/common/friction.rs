@@ -1,13 +1,13 @@
 //! Motions in two directions under friction with a varying normal load, and the law marched over
 //! samples, for its tests.
 
-use hbvib::aft::Evaluation;
-use hbvib::aft::varying_normal_load::VaryingNormalLoadEvaluator;
-use hbvib::contact::Piece;
-use hbvib::contact::laws::friction_2d::Friction2d;
-use hbvib::contact::piece::CoupledPiece;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::Interrupt;
+use hbvib::internals::CoupledPiece;
+use hbvib::internals::Evaluation;
+use hbvib::internals::Friction2d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Piece;
+use hbvib::internals::VaryingNormalLoadEvaluator;
 use std::f64::consts::TAU;
 
 pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluation {

@@ -2,15 +2,10 @@
 
 use crate::common::energy::exactly;
 use crate::common::solve_at;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Call, Contact, ContactKind, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Table, User,
+    UserForce,
+};
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -2,14 +2,7 @@
 //! motion in time.
 
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at};
-use hbvib::analysis::time_response::{TimeResponse, time_response};
-use hbvib::contact::Contact;
-use hbvib::error::{Error, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::TimeOptions;
+use hbvib::{Contact, Error, Hooks, MatrixKind, MatrixView, Model, Status, TimeOptions, TimeResponse, time_response};
 use num_complex::Complex64;
 
 /// Harmonics that are compared.

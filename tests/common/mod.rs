@@ -26,14 +26,9 @@ pub mod rotating;
 pub mod stencil;
 pub mod stopping;
 
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, forced_response,
+};
 use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::TAU;

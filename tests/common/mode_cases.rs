@@ -2,16 +2,10 @@
 //! and a separate solver for the linear problems with two real unknowns.
 
 use crate::common::{Blisk, SECTORS, Wheel, all_harmonics, phase};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{
+    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, SolverOptions, Status,
+    nonlinear_mode,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

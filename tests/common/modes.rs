@@ -1,11 +1,7 @@
 //! Structures whose linear modes are known, and checks of a mode.
 
 use crate::common::{B1, B2, BASE, D, NDOF, SECTORS, largest};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Spring};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

@@ -1,9 +1,6 @@
 //! Structures on which other programs for harmonic balance were measured.
 
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model};
 use std::f64::consts::PI;
 
 /// A structure from column-major matrices.

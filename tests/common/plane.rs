@@ -1,12 +1,12 @@
 //! Friction in a plane, for its tests: random motions, one law, and comparisons of numbers.
 
-use hbvib::interrupt::Interrupt;
+use hbvib::Interrupt;
 
-use hbvib::aft::Evaluation;
-use hbvib::aft::plane_friction::PlaneFrictionEvaluator;
-use hbvib::contact::law::Law;
-use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::Evaluation;
+use hbvib::internals::Friction3d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::PlaneFrictionEvaluator;
 
 pub const OMEGA: f64 = 1.7;
 

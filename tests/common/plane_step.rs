@@ -2,9 +2,9 @@
 //! second order in the length of a step.
 
 use crate::common::plane::{gap, largest};
-use hbvib::contact::law::Law;
-use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::Friction3d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
 use std::f64::consts::TAU;
 
 fn scaled(a: [f64; 2], factor: f64) -> [f64; 2] {

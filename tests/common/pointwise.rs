@@ -1,14 +1,11 @@
 //! Shared code of the tests of laws without memory: motions, laws, one evaluation, dense sampling.
 
-use hbvib::aft::Evaluation;
-use hbvib::aft::memoryless::MemorylessEvaluator;
-use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::samples::Samples;
-use hbvib::error::{Error, Status};
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::Evaluation;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Memoryless;
+use hbvib::internals::MemorylessEvaluator;
+use hbvib::internals::Samples;
+use hbvib::{Call, Error, Interrupt, Monomial, Polynomial, Status, User, UserForce};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,8 +1,7 @@
 //! Checks of a refused call.
 
 use crate::common::{BASE, all_harmonics, harmonics, solve_at};
-use hbvib::error::{Result, Status};
-use hbvib::model::Model;
+use hbvib::{Model, Result, Status};
 use std::f64::consts::TAU;
 
 /// A frequency at which the base case slips.

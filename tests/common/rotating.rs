@@ -1,9 +1,6 @@
 //! Terms that depend on speed, and structural damping, added to random models.
 
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{MatrixKind, MatrixView, Model, Speed};
 use num_complex::Complex64;
 use proptest::prelude::*;
 

@@ -1,10 +1,7 @@
 //! Runs of an analysis that are stopped at a check of their interrupt, and how late they return.
 
 use crate::common::processor_time;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::results::Branch;
-use hbvib::{Phase, PhaseReport};
+use hbvib::{Branch, Hooks, Phase, PhaseReport, Result, Status};
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 

@@ -1,13 +1,11 @@
 //! The cubic spring on prescribed motions, and what every law promises about easing.
 
 use crate::common::relative_gap;
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::analysis::harmonic_residual::contact_evaluate;
-use hbvib::contact::Contact;
-use hbvib::contact::law::Law;
-use hbvib::contact::linearisation::Range;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::Range;
+use hbvib::internals::{Evaluation, Evaluator};
+use hbvib::{Contact, Interrupt, contact_evaluate};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

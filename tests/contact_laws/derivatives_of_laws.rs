@@ -2,8 +2,7 @@
 //! same-H equations, whatever the motion.
 
 use crate::common::stencil::{Checked, Stencil, config, pairs, parts};
-use hbvib::analysis::harmonic_residual::contact_evaluate;
-use hbvib::contact::Contact;
+use hbvib::{Contact, contact_evaluate};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::TAU;

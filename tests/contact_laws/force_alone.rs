@@ -1,9 +1,7 @@
 //! Forces without their Jacobian: the same as with it, for every law; and they follow many harmonics in little memory.
 
 use crate::common::laws::cases;
-use hbvib::analysis::contact_evaluate;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
+use hbvib::{Call, Contact, ContactKind, User, UserForce, contact_evaluate};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;

@@ -3,15 +3,14 @@
 
 use crate::common::depth::{some_of, thorough};
 use crate::common::friction::{March, Random, distance, evaluate, pieces, slipping_at_closing};
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::Law;
-use hbvib::contact::contact_state::State;
-use hbvib::contact::laws::friction_2d::Friction2d;
-use hbvib::contact::laws::jenkins::Jenkins;
-use hbvib::contact::laws::unilateral::Unilateral;
-use hbvib::contact::piece::CoupledPiece;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::CoupledPiece;
+use hbvib::internals::Friction2d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Jenkins;
+use hbvib::internals::Law;
+use hbvib::internals::Unilateral;
+use hbvib::internals::{Evaluation, Evaluator};
+use hbvib::{Interrupt, State};
 use std::f64::consts::{PI, TAU};
 
 fn scalar(law: &dyn Law, set: &HarmonicSet, motion: &[f64]) -> Evaluation {

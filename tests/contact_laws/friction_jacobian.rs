@@ -2,9 +2,9 @@
 //! the march over samples in `friction.rs` checks.
 
 use crate::common::friction::{March, Random, distance, evaluate, pieces, slipping_at_closing, sticking_at_closing};
-use hbvib::aft::Evaluation;
-use hbvib::contact::laws::friction_2d::Friction2d;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::Evaluation;
+use hbvib::internals::Friction2d;
+use hbvib::internals::HarmonicSet;
 
 /// Column by column differences of the force, by the four-point rule.
 fn differences(law: &Friction2d, set: &HarmonicSet, motion: &[f64], step: f64) -> Vec<f64> {

@@ -3,13 +3,13 @@
 
 use crate::common::plane::{OMEGA, Random, evaluate, gap, largest, law, short};
 use crate::common::plane_step::stepped;
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::law::Law;
-use hbvib::contact::laws::friction_2d::Friction2d;
-use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::contact::laws::jenkins::Jenkins;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::Interrupt;
+use hbvib::internals::Friction2d;
+use hbvib::internals::Friction3d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Jenkins;
+use hbvib::internals::Law;
+use hbvib::internals::{Evaluation, Evaluator};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

@@ -2,12 +2,11 @@
 
 use crate::common::depth::some_of;
 use crate::common::plane::{Random, evaluate, largest, law};
-use hbvib::aft::Evaluation;
-use hbvib::contact::contact_state::State;
-use hbvib::contact::law::Law;
-use hbvib::contact::plane_path::PlanePiece;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::Evaluation;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::PlanePiece;
+use hbvib::{Interrupt, State};
 use std::f64::consts::PI;
 
 #[test]

@@ -3,11 +3,11 @@
 
 use crate::common::plane::{Random, evaluate, gap, largest, law};
 use crate::common::rest::{Disc, nearest_of_many, outside};
-use hbvib::aft::plane_friction::PlaneFrictionEvaluator;
-use hbvib::contact::law::Law;
-use hbvib::contact::laws::friction_3d::Friction3d;
-use hbvib::contact::plane_path::Repetition;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::Friction3d;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::PlaneFrictionEvaluator;
+use hbvib::internals::Repetition;
 use std::f64::consts::TAU;
 
 /// The discs in which the slider may rest, at equidistant times.

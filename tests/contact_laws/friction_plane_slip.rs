@@ -1,9 +1,9 @@
 //! Friction in a plane: slip takes power at every time of its path, and its force does not depend on where the sides stand.
 
 use crate::common::plane::{Random, evaluate, gap, largest, law};
-use hbvib::contact::law::Law;
-use hbvib::contact::plane_path::PlaneForce;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::PlaneForce;
 use std::f64::consts::TAU;
 
 /// Values of the signals of a packed motion at τ.

@@ -1,12 +1,7 @@
 //! The Iwan joint against its closed forms.
 
 use crate::common::{harmonics, solve_at};
-use hbvib::analysis::contact_evaluate;
-use hbvib::contact::Contact;
-use hbvib::contact::laws::iwan::Iwan;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, Iwan, MatrixKind, MatrixView, Model, contact_evaluate};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

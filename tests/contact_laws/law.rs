@@ -2,8 +2,7 @@
 //! time here (the truth up to its step), and the mean of a slider that was never dragged.
 
 use crate::common::{data, largest, number, relative_gap};
-use hbvib::analysis::harmonic_residual::contact_evaluate;
-use hbvib::contact::Contact;
+use hbvib::{Contact, contact_evaluate};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

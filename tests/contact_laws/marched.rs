@@ -1,15 +1,14 @@
 //! Laws marched over samples: a law of rates with its derivative by the frequency.
 
 use crate::common::plane::{OMEGA, Random, gap, largest};
-use hbvib::aft::Evaluation;
-use hbvib::aft::hysteretic::HystereticEvaluator;
-use hbvib::contact::law::Hysteretic;
-use hbvib::contact::law::{Form, Law};
-use hbvib::contact::linearisation::Range;
-use hbvib::contact::march::March;
-use hbvib::error::Result;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::Evaluation;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Hysteretic;
+use hbvib::internals::HystereticEvaluator;
+use hbvib::internals::March;
+use hbvib::internals::Range;
+use hbvib::internals::{Form, Law};
+use hbvib::{Interrupt, Result};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

@@ -2,14 +2,8 @@
 
 use crate::common::refusal::{refused, unharmed};
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::patch::Patch;
-use hbvib::contact::relative_motion::Frame;
-use hbvib::contact::{Contact, ContactKind, Role};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::internals::Role;
+use hbvib::{Contact, ContactKind, Frame, MatrixKind, MatrixView, Model, Patch, Polynomial, Status};
 use num_complex::Complex64;
 
 type Vector = [f64; 3];

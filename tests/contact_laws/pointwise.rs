@@ -6,13 +6,11 @@ use crate::common::pointwise::{
     van_der_pol,
 };
 use crate::common::stencil::Stencil;
-use hbvib::aft::memoryless::MemorylessEvaluator;
-use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::regularised::TanhFriction;
-use hbvib::contact::laws::user_law::User;
-use hbvib::error::Status;
-use hbvib::fourier::HarmonicSet;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Memoryless;
+use hbvib::internals::MemorylessEvaluator;
+use hbvib::internals::TanhFriction;
+use hbvib::{Polynomial, Status, User};
 use std::f64::consts::TAU;
 
 /// Every kind of law, with motions and velocities, odd and not.

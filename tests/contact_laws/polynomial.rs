@@ -4,12 +4,11 @@ use crate::common::pointwise::{
     at_one_time, coupled, dense, evaluate, evaluate_with, gap, largest, mixed, motion, quintic, sets, suits, tensor,
     term, van_der_pol,
 };
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::{Contact, Law};
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Law;
+use hbvib::internals::Memoryless;
+use hbvib::internals::{Evaluation, Evaluator};
+use hbvib::{Contact, Interrupt, Polynomial};
 
 #[test]
 fn a_cubic_polynomial_is_the_cubic_spring() {

@@ -2,14 +2,7 @@
 //! from many more samples.
 
 use crate::common::{all_harmonics, relative_gap, solve_at};
-use hbvib::analysis::contact_evaluate;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::{Contact, ContactKind, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Status, contact_evaluate};
 use num_complex::Complex64;
 
 const HARMONICS: usize = 5;

@@ -2,17 +2,14 @@
 //! finite differences and its own symmetries.
 
 use crate::common::stencil::{Stencil, config};
-use hbvib::aft::piecewise_exact::Exact;
-use hbvib::aft::piecewise_sampled::Sampled;
-use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::Contact;
-use hbvib::contact::law::{Law, PiecewiseLinear};
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::piece::Piece;
-use hbvib::error::Status;
-use hbvib::fourier::HarmonicSet;
-use hbvib::fourier::TurningPoints;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::Exact;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Piece;
+use hbvib::internals::Sampled;
+use hbvib::internals::TurningPoints;
+use hbvib::internals::{Evaluation, Evaluator};
+use hbvib::internals::{Law, PiecewiseLinear};
+use hbvib::{Contact, Interrupt, Status, Table};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 

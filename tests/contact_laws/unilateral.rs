@@ -2,15 +2,10 @@
 //! with a stop: the law, static preload, coexisting solutions.
 
 use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::analysis::{contact_evaluate, forced_response, nonlinear_mode};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Status, contact_evaluate,
+    forced_response, nonlinear_mode,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,15 +1,12 @@
 //! Callbacks of the caller as laws: what they are asked, what they may answer.
 
 use crate::common::pointwise::{Pendulum, dense, evaluate, gap, motion, pendulum, refused};
-use hbvib::aft::Evaluation;
-use hbvib::aft::memoryless::MemorylessEvaluator;
-use hbvib::contact::law::Memoryless;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::samples::automatic_samples;
-use hbvib::error::Status;
-use hbvib::fourier::HarmonicSet;
-use hbvib::interrupt::Interrupt;
+use hbvib::internals::Evaluation;
+use hbvib::internals::HarmonicSet;
+use hbvib::internals::Memoryless;
+use hbvib::internals::MemorylessEvaluator;
+use hbvib::internals::automatic_samples;
+use hbvib::{Call, Interrupt, Polynomial, Status, User, UserForce};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 

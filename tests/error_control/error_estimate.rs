@@ -1,11 +1,7 @@
 //! The error estimate of solved points against the true error: effectivity = estimate over truth.
 
 use crate::common::{self, B2, Blisk, D, NDOF, R, all_harmonics, harmonics, slip, solve_at};
-use hbvib::analysis::estimate_at;
-use hbvib::harmonics::Estimate;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::SolverOptions;
-use hbvib::results::Branch;
+use hbvib::{Branch, ContactState, Estimate, SolverOptions, estimate_at};
 use num_complex::Complex64;
 use std::time::Instant;
 

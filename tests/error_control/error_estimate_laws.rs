@@ -3,15 +3,10 @@
 
 use crate::common::laws;
 use crate::common::{self, B2, BASE, all_harmonics, harmonics, largest, one_mass, relative_gap, slip, solve_at, sweep};
-use hbvib::analysis::{estimate_at, forced_response, time_response};
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions, TimeOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Spring, TimeOptions,
+    estimate_at, forced_response, time_response,
+};
 use num_complex::Complex64;
 
 /// The solution with the options of a truth, from another solution on: there may be several.

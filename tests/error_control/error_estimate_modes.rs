@@ -2,10 +2,7 @@
 
 use crate::common::mode_cases::{damped, follow};
 use crate::common::{BASE, BETA, Blisk, harmonics};
-use hbvib::analysis::estimate_at;
-use hbvib::model::Model;
-use hbvib::options::{DampingForm, ModeOptions, SolverOptions};
-use hbvib::results::{Branch, Special};
+use hbvib::{Branch, DampingForm, ModeOptions, Model, SolverOptions, Special, estimate_at};
 use std::fmt::Write as _;
 use std::time::Instant;
 

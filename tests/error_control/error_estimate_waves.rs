@@ -2,9 +2,7 @@
 //! sectors tell the two apart: harmonics 7 to 11 travel backward. An estimate that takes one for the other has no end of harmonics.
 
 use crate::common::{BASE, R, harmonics, sweep};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::options::SolverOptions;
+use hbvib::{Contact, SolverOptions, Status};
 use std::f64::consts::TAU;
 
 #[test]

@@ -3,16 +3,10 @@
 //! rest of it in the law has the truth.
 
 use crate::common::{all_harmonics, harmonics};
-use hbvib::analysis::forced_response;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Polynomial, SolverOptions,
+    Status, forced_response,
+};
 use num_complex::Complex64;
 
 const OMEGA: f64 = 0.8;

@@ -1,12 +1,7 @@
 //! The error told with a law of the caller whose friction falls with the velocity, against many harmonics.
 
 use crate::common::{harmonics, relative_gap, solve_at};
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::{Call, Contact, ContactKind, MatrixKind, MatrixView, Model, SolverOptions, User, UserForce};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -101,7 +96,7 @@ fn errors_told_where_friction_falls_with_the_velocity_are_the_true_ones() {
             };
             solve_at(&model, &solver, omega)
         };
-        let first = |branch: &hbvib::results::Branch| branch.response_at(0).unwrap()[0];
+        let first = |branch: &hbvib::Branch| branch.response_at(0).unwrap()[0];
         let truth = first(&solve(SolverOptions {
             samples: 32_768,
             ..harmonics(201)

@@ -2,11 +2,7 @@
 //! a small velocity, against many harmonics.
 
 use crate::common::{harmonics, relative_gap, solve_at};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, SolverOptions};
 use num_complex::Complex64;
 
 /// Two masses in a row on the ground, with stiffness damping.
@@ -89,7 +85,7 @@ fn errors_told_at_few_harmonics_are_the_true_ones_within_a_factor_of_two() {
             };
             solve_at(&model, &solver, case.omega)
         };
-        let first = |branch: &hbvib::results::Branch| branch.response_at(0).unwrap()[0];
+        let first = |branch: &hbvib::Branch| branch.response_at(0).unwrap()[0];
         let truth = first(&solve(SolverOptions {
             samples: case.samples,
             ..harmonics(301)

@@ -5,16 +5,10 @@ use crate::common::mode_cases as modes;
 use crate::common::{
     self, B2, BASE, Blisk, all_harmonics, data, harmonics, one_mass, relative_gap, slip, solve_at, sweep,
 };
-use hbvib::analysis::{forced_response, synthesise};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions, SynthesisOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions,
+    Status, SynthesisOptions, forced_response, synthesise,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

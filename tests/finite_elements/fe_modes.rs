@@ -3,13 +3,10 @@
 
 use crate::response::{Range, Response};
 use crate::sector::{Sector, Size};
-use hbvib::analysis::{nonlinear_mode, synthesise};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{
+    Branch, Hooks, ModeChoice, ModeField, ModeOptions, Model, SolverOptions, Status, SynthesisOptions, nonlinear_mode,
+    synthesise,
+};
 use std::f64::consts::TAU;
 
 fn model(size: Size) -> (Model, usize) {

@@ -3,17 +3,10 @@
 
 use crate::common::{all_harmonics, harmonics, processor_time, relative_gap};
 use crate::sector::{Interface, Sector, Size};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::analysis::{nonlinear_mode, synthesise};
-use hbvib::contact::Contact;
-use hbvib::error::{Error, Status};
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{
+    Branch, Contact, Error, ForcedOptions, Hooks, MatrixKind, ModeChoice, ModeField, ModeOptions, Model, SolverOptions,
+    Spring, Status, SynthesisOptions, forced_response, nonlinear_mode, synthesise,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::time::Instant;

@@ -4,8 +4,7 @@
 use crate::response::{Range, Response};
 use crate::sector;
 use crate::sector::{Interface, Sector, Size, natural_frequencies};
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::SolverOptions;
+use hbvib::{ContactState, SolverOptions};
 use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::TAU;

@@ -3,11 +3,9 @@
 use crate::beam::{Beam, Z};
 use crate::common::stopping::{Analysis, Lateness, of_branch, of_call};
 use crate::sector::{ENGINE_ORDER, Sector, Size};
-use hbvib::analysis::{forced_response, nonlinear_mode};
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
+use hbvib::{
+    ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, forced_response, nonlinear_mode,
+};
 
 /// The analyses of a model around its first resonance in a pattern of some nodal diameters.
 fn analyses(model: &Model, response: usize, diameter: i64) -> Vec<Analysis<'_>> {

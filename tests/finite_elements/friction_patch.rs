@@ -3,17 +3,11 @@
 
 use crate::beam::{Beam, STEEL, Y, Z};
 use crate::brick;
-use hbvib::analysis::forced_response;
-use hbvib::condense::{Condensed, Reference};
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem, Residual};
-use hbvib::results::Branch;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::Jacobian;
+use hbvib::internals::{Condensed, Reference};
+use hbvib::internals::{InitialGuess, Problem, Residual};
+use hbvib::{Branch, ContactState, ForcedOptions, Hooks, Interrupt, Model, SolverOptions, forced_response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

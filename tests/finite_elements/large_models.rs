@@ -3,15 +3,11 @@
 
 use crate::common::{all_harmonics, processor_time, sweep};
 use crate::plate::Plate;
-use hbvib::contact::Contact;
-use hbvib::contact_evaluate;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::cholesky::{Definite, entries_of_factor};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, SolverOptions};
+use hbvib::internals::{Definite, entries_of_factor};
+use hbvib::{
+    Contact, ContactState, Flexibility, Interrupt, MatrixKind, Model, SectorDescription, SectorFrame, SolverOptions,
+    contact_evaluate,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::time::Instant;

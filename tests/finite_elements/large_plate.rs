@@ -3,9 +3,7 @@
 use crate::common::depth::some_of;
 use crate::common::{all_harmonics, sweep};
 use crate::plate::Plate;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{Flexibility, SolverOptions};
+use hbvib::{ContactState, Flexibility, Model, SolverOptions};
 use num_complex::Complex64;
 
 const PLATE: [usize; 3] = [20, 16, 2];

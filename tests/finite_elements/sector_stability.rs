@@ -1,10 +1,7 @@
 //! Stability of the finite-element sector with its 60 contacts, on modes and sliders.
 
 use crate::sector::{Sector, Size};
-use hbvib::Floquet;
-use hbvib::analysis::floquet;
-use hbvib::hooks::Hooks;
-use hbvib::options::{FloquetOptions, SolverOptions, Waves};
+use hbvib::{Floquet, FloquetOptions, Hooks, SolverOptions, Waves, floquet};
 use std::f64::consts::TAU;
 use std::time::Instant;
 

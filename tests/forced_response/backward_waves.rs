@@ -2,14 +2,7 @@
 //! that of the whole wheel, and a complex stiffness, whose backward wave is unknown, is refused there.
 
 use crate::common::{all_harmonics, harmonics, phase, relative_gap, slip, solve_at};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
+use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Status, forced_response};
 use num_complex::Complex64;
 
 const N: usize = 2;

@@ -1,17 +1,10 @@
 //! Undamped resonances forced beyond what the contacts can take: which are told, and which are not.
 
 use crate::common::{self, D, R, harmonics};
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, Model, Result, Status,
+    forced_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

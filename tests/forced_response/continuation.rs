@@ -2,15 +2,9 @@
 //! friction cases on which other tools walk back and forth or stop short. All same-H solutions.
 
 use crate::common::{self, BASE, Blisk, all_harmonics, harmonics, solve_at, sweep};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, forced_response,
+};
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 
@@ -102,7 +96,7 @@ fn a_hook_that_stops_keeps_what_was_found_and_sees_every_point() {
         ..ForcedOptions::default()
     };
     let mut seen = Vec::new();
-    let mut stop_at_5 = |p: &hbvib::hooks::Progress| {
+    let mut stop_at_5 = |p: &hbvib::Progress| {
         seen.push((p.point, p.parameter, p.fraction_done));
         p.point == 5
     };
@@ -160,9 +154,7 @@ fn a_linear_problem_is_followed_through_its_resonances() {
     assert_covers(&branch, from, to, "linear");
     assert_eq!(branch.carried_at(0).unwrap(), [1]);
     // Three families of nodal diameter 2 lie within; the truth is in the natural frequencies.
-    let natural = model
-        .linear_modes(2, hbvib::model::linear_modes::ContactState::Free)
-        .unwrap();
+    let natural = model.linear_modes(2, hbvib::ContactState::Free).unwrap();
     assert_eq!(branch.peaks().len(), 3);
     for (peak, omega) in branch.peaks().iter().zip(&natural.omega) {
         // A peak lies within the half width of its mode, which is the modal damping ratio.

@@ -3,10 +3,9 @@
 
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
-use hbvib::error::Status;
 use hbvib::{
     BandOf, BandOptions, Contact, ContactKind, Damper, DamperFace, Frame, Hooks, Interrupt, LoadHistory, MatrixKind,
-    MatrixView, Model, Parameter, Quantity, SolverOptions, Speed, band, freedom, sensitivity, static_history,
+    MatrixView, Model, Parameter, Quantity, SolverOptions, Speed, Status, band, freedom, sensitivity, static_history,
 };
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, TAU};

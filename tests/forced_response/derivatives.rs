@@ -5,17 +5,11 @@
 use crate::common;
 use crate::common::rotating::{rotate, speeds};
 use crate::common::stencil::{Checked, Stencil, config, pairs, parts};
-use hbvib::analysis::harmonic_residual::forced_residual;
-use hbvib::condense::Condensed;
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::{Contact, ContactKind, Role};
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem, Residual};
+use hbvib::internals::Condensed;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::Role;
+use hbvib::internals::{InitialGuess, Problem, Residual};
+use hbvib::{Contact, ContactKind, Interrupt, MatrixKind, MatrixView, Model, Part, Speed, Table, forced_residual};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -315,7 +309,7 @@ fn condensed_case(
     keep_even: bool,
     feed: &mut Feed<'_>,
 ) -> (Condensed, f64, Vec<f64>, Vec<f64>) {
-    let solver = hbvib::options::SolverOptions {
+    let solver = hbvib::SolverOptions {
         keep_even_harmonics: keep_even,
         ..common::harmonics(highest)
     };

@@ -6,14 +6,9 @@ use crate::common::depth::some_of;
 use crate::common::friction::Random;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::speed::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{
+    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, forced_response,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

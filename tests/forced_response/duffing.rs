@@ -2,16 +2,10 @@
 //! of its describing function, with many against the motion marched in time.
 
 use crate::common::{self, harmonics, relative_gap, solve_at, sweep};
-use hbvib::analysis::harmonic_residual::forced_residual;
-use hbvib::condense::{Condensed, Reference};
-use hbvib::contact::Contact;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Problem};
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::{Condensed, Reference};
+use hbvib::internals::{InitialGuess, Problem};
+use hbvib::{Contact, ContactState, Interrupt, MatrixKind, MatrixView, Model, forced_residual};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

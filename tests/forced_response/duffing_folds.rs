@@ -3,11 +3,7 @@
 //! the truth (two independent methods each: collocation and time integration).
 
 use crate::common::{harmonics, sweep};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::results::Branch;
+use hbvib::{Branch, Contact, MatrixKind, MatrixView, Model};
 
 const C: f64 = 0.05;
 const CUBIC: f64 = 0.1;

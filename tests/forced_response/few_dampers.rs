@@ -2,13 +2,8 @@
 //! single frequencies do, on both sides of each size at which the way changes, at first, last and requested points.
 
 use crate::reduced_structures::{plate, point};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::condense::FlexibilityWay::Modes;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
+use hbvib::internals::FlexibilityWay::Modes;
+use hbvib::{Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
 
 /// Damping of a plate.
 #[derive(Clone, Copy, Debug)]

@@ -2,14 +2,13 @@
 //! random models showed none), so the continuation is shown one on a problem of its own, the
 //! one-harmonic Duffing oscillator, whose folds have a closed form.
 
-use hbvib::continuation::corrector::{Corrector, Outcome};
-use hbvib::continuation::special_points::{Locator, SpecialPoint};
-use hbvib::continuation::step_control::StepControl;
-use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
-use hbvib::error::Result;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
-use hbvib::problem::{Homotopy, InitialGuess, Problem, Residual};
+use hbvib::internals::Jacobian;
+use hbvib::internals::StepControl;
+use hbvib::internals::{Advance, Continuation, Metric, Point, Settings};
+use hbvib::internals::{Corrector, Outcome};
+use hbvib::internals::{Homotopy, InitialGuess, Problem, Residual};
+use hbvib::internals::{Locator, SpecialPoint};
+use hbvib::{Interrupt, Result};
 use num_complex::Complex64;
 
 const DAMPING: f64 = 0.05;

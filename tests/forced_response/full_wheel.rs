@@ -4,10 +4,7 @@
 use crate::common::{
     BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, largest, phase, relative_gap, slip, solve_at,
 };
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Part};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,14 +1,10 @@
 //! Chains with so many sliding contacts that Newton's matrix is solved by iteration. The truth is the same-H residual,
 //! evaluated without condensation, and the other direction of the sweep.
 
-use hbvib::analysis::{forced_residual, forced_response};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{
+    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, forced_residual,
+    forced_response,
+};
 use num_complex::Complex64;
 
 const N: usize = 36;

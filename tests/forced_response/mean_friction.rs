@@ -2,11 +2,7 @@
 //! a distance of many vibrations. The balance is that of the truth: force of the support against the mean of the law's force.
 
 use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::analysis::contact_evaluate;
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, contact_evaluate};
 use num_complex::Complex64;
 
 /// Two bodies that move along the contact and across it; the second has the support `hold` along it. The static load

@@ -2,15 +2,7 @@
 //! with the root of the distance in the frequency there, so that the branch has a corner that it reaches along the surface of the event.
 
 use crate::common::harmonics;
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
-use hbvib::results::Branch;
+use hbvib::{Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, forced_response};
 use num_complex::Complex64;
 
 /// A chain of six masses with springs to the ground and damping 0.01 M + 0.02 K.

@@ -2,14 +2,7 @@
 //! unknown. Against closed forms of the linear structure that contacts make when they stick and press.
 
 use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
+use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, forced_response};
 use num_complex::Complex64;
 
 const KT: f64 = 2.0;

@@ -1,16 +1,9 @@
 //! A structure on a basis responds as by factors: random structures of every kind, and what forces other ways.
 
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::{Phase, PhaseReport};
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Phase, PhaseReport,
+    SolverOptions, Spring, Status, forced_response,
+};
 use num_complex::Complex64;
 use std::cell::Cell;
 
@@ -516,7 +509,7 @@ fn a_plate_with_many_resonances_responds_as_by_factors() {
     assert_eq!(branch.status(), Status::Ok);
     let reduction = branch.reduction();
     assert!(
-        reduction.basis == 0 && reduction.flexibility_way == hbvib::condense::FlexibilityWay::Modes,
+        reduction.basis == 0 && reduction.flexibility_way == hbvib::internals::FlexibilityWay::Modes,
         "{:?}",
         reduction.flexibility_way
     );

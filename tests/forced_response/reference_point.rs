@@ -2,7 +2,7 @@
 //! degree of freedom.
 
 use crate::common::{self, BASE, Blisk, NDOF, all_harmonics, complex, data, harmonics, number, slip, solve_at};
-use hbvib::options::SolverOptions;
+use hbvib::SolverOptions;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,10 +1,10 @@
 //! Forced response of the paper's blisk against stored same-H solutions: peaks and a curve.
 
 use crate::common::{BASE, Blisk, NDOF, all_harmonics, complex, data, harmonics, number, sweep};
-use hbvib::error::Status;
+use hbvib::Status;
 use std::f64::consts::TAU;
 
-fn highest_peak(branch: &hbvib::results::Branch) -> hbvib::results::Special {
+fn highest_peak(branch: &hbvib::Branch) -> hbvib::Special {
     let peaks = branch.peaks();
     assert!(!peaks.is_empty());
     peaks

@@ -3,12 +3,7 @@
 //! models that are built anew.
 
 use crate::common::{BASE, Blisk, data, harmonics, number, slip, sweep};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::{MatrixKind, MatrixView, Model, SolverOptions, Speed, Status};
 use std::f64::consts::TAU;
 
 /// Hz; all resonances of the figures lie within.

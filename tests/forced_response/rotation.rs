@@ -3,21 +3,13 @@
 //! differences and integration in time.
 
 use crate::common::{BASE, Blisk, all_harmonics, data, harmonics, number, relative_gap, solve_at, sweep};
-use hbvib::analysis::harmonic_residual::forced_residual;
-use hbvib::analysis::time_response::time_response;
-use hbvib::condense::Condensed;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{SolverOptions, TimeOptions};
-use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{Problem, Residual};
+use hbvib::internals::Condensed;
+use hbvib::internals::HarmonicBalance;
+use hbvib::internals::{Problem, Residual};
+use hbvib::{
+    Contact, ContactState, Hooks, Interrupt, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, Status,
+    TimeOptions, forced_residual, time_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

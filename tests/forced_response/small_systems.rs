@@ -4,14 +4,9 @@
 //! (stored, from an independent harmonic balance) or a limit.
 
 use crate::common;
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{
+    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, Status, forced_response,
+};
 use num_complex::Complex64;
 
 /// m = k = 1 with viscous damping c and a Jenkins contact to the ground.

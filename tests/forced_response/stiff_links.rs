@@ -3,15 +3,10 @@
 //! factor η; and contacts that press and hardly vibrate.
 
 use crate::common::depth::some_of;
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Status,
+    Storage, Values, forced_response,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

@@ -4,11 +4,7 @@
 use crate::common::energy::exactly;
 use crate::common::{phase, solve_at};
 use crate::structural_damping::{ETA, FORMS, Form, describing_function, set, set_stiffness};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Part, Spring, Storage, Values};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use num_complex::Complex64;
 use std::f64::consts::PI;

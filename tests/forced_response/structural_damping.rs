@@ -2,15 +2,10 @@
 //! cyclic, dense and sparse, with and without a contact.
 
 use crate::common::{harmonics, solve_at, sweep};
-use hbvib::analysis::time_response::time_response;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::TimeOptions;
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, ContactState, Hooks, MatrixKind, MatrixView, Model, Part, Status, Storage, TimeOptions, Values,
+    time_response,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};

@@ -2,8 +2,7 @@
 //! the same-H solution and the truth.
 
 use crate::common::{self, BASE, Blisk, NDOF, all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::contact::Contact;
-use hbvib::model::Model;
+use hbvib::{Contact, Model};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -54,7 +53,7 @@ fn below_the_stick_limit_the_response_is_that_of_the_stuck_structure() {
         };
         let modes = case
             .sector()
-            .linear_modes(engine_order, hbvib::model::linear_modes::ContactState::Stuck)
+            .linear_modes(engine_order, hbvib::ContactState::Stuck)
             .unwrap();
         // Away from the resonance and in it.
         for omega in [TAU * 150.0, 0.99 * modes.omega[0], modes.omega[0], TAU * 400.0] {
@@ -131,7 +130,7 @@ fn limits_of_the_law_are_linear_systems() {
         assert!(gap < 1e-12, "{name}");
         // A whole sweep over the resonances works without any nonlinear unknown.
         let branch = sweep(&model, &harmonics(5), TAU * 205.0, TAU * 213.0, &[]);
-        assert_eq!(branch.status(), hbvib::error::Status::Ok);
+        assert_eq!(branch.status(), hbvib::Status::Ok);
         assert_eq!(branch.peaks().len(), 1);
         assert_eq!(branch.reduction().unknowns, 0);
     }

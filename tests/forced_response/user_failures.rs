@@ -1,16 +1,10 @@
 //! Callbacks that fail within a solve: what can be tried again is, what cannot ends the branch with the
 //! points found, and no number that is not finite comes out.
 
-use hbvib::analysis::{forced_response, nonlinear_mode};
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Result,
+    SolverOptions, Status, User, UserForce, forced_response, nonlinear_mode,
+};
 use num_complex::Complex64;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,17 +1,10 @@
 //! Forces of the caller inside the analyses: equal to the library's own laws, with states, with a force at
 //! rest, with wrong tangents.
 
-use hbvib::analysis::{Tangent, check_jacobian, forced_response, nonlinear_mode};
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Polynomial,
+    Result, SolverOptions, Status, Tangent, User, UserForce, check_jacobian, forced_response, nonlinear_mode,
+};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -110,7 +103,7 @@ fn curved(force: Curved, odd: bool) -> User {
 
 /// The same as the library's own.
 fn polynomial() -> Contact {
-    use hbvib::contact::laws::polynomial::Monomial;
+    use hbvib::Monomial;
     let term = |coefficient, displacements: &'static [u32], velocities: &'static [u32]| Monomial {
         direction: 0,
         coefficient,

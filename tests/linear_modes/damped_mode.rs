@@ -4,15 +4,10 @@
 use crate::common::modes::{assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};
 use crate::common::refusal::refused;
 use crate::common::{self, BASE, largest};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::damped_mode::DampedMode;
-use hbvib::model::mode_selection::SelectedMode;
-use hbvib::model::spring_stiffness::Wave;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{DampingForm, ModeChoice};
+use hbvib::internals::DampedMode;
+use hbvib::internals::SelectedMode;
+use hbvib::internals::Wave;
+use hbvib::{Contact, DampingForm, MatrixKind, MatrixView, ModeChoice, Model, Part, Status};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

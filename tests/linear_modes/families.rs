@@ -1,9 +1,6 @@
 //! Natural modes of structures with a family of close frequencies far from zero: equal blades in a ring, a chain on springs.
 
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{ContactState, MatrixKind, MatrixView, Model};
 use std::f64::consts::PI;
 
 fn plain(n: usize, stiffness: &[f64]) -> Model {

@@ -2,13 +2,7 @@
 //! makes of its two eigenvalues zero.
 
 use crate::common::{all_harmonics, sweep};
-use hbvib::analysis::linear_contacts::LinearContacts;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Contact, SolverOptions, damped_modes};
+use hbvib::{Contact, Hooks, LinearContacts, MatrixKind, MatrixView, Model, SolverOptions, Speed, damped_modes};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::PI;

@@ -2,8 +2,7 @@
 //! tests check the truth.
 
 use crate::common::{BASE, Blisk, data, number};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
+use hbvib::{ContactState, Model};
 use serde_json::Value;
 use std::f64::consts::TAU;
 

@@ -3,16 +3,10 @@
 
 use crate::common::refusal::refused;
 use crate::common::{BASE, Blisk, SECTORS};
-use hbvib::analysis::linear_contacts::LinearContacts;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Campbell, DampedModes, campbell, damped_modes};
+use hbvib::{
+    Campbell, Contact, ContactState, DampedModes, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Part, Speed,
+    Status, Storage, Values, campbell, damped_modes,
+};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 

@@ -3,14 +3,7 @@
 
 use crate::common::phase;
 use crate::rotating_modes::first_order;
-use hbvib::analysis::linear_contacts::LinearContacts;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{campbell, damped_modes};
+use hbvib::{Contact, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Speed, campbell, damped_modes};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 

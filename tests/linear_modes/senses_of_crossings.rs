@@ -1,10 +1,9 @@
 //! Crossings of Campbell diagrams in the sense that an engine order excites, and the whirl of modes that gyroscopic forces do
 //! not touch.
 
-use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::{
-    AeroForm, Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, ModeOptions, Model,
-    SolverOptions, Speed, campbell, damped_modes, nonlinear_mode,
+    AeroForm, Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, MatrixView,
+    ModeOptions, Model, SolverOptions, Speed, campbell, damped_modes, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;

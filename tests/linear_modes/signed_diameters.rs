@@ -3,10 +3,9 @@
 //! wheel is found, each once.
 
 use crate::rotating_modes::first_order;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::{
-    AeroForm, Contact, ContactState, Hooks, Interference, LinearContacts, MatrixKind, Model, Speed, damped_modes,
-    interference,
+    AeroForm, Contact, ContactState, Hooks, Interference, LinearContacts, MatrixKind, MatrixView, Model, Part, Speed,
+    damped_modes, interference,
 };
 use nalgebra::DMatrix;
 use num_complex::Complex64;

@@ -4,14 +4,8 @@
 use crate::common::modes::{self, assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};
 use crate::common::refusal::refused;
 use crate::common::{BASE, NDOF, R, SECTORS, largest};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::repeated_modes::Multiple;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ModeChoice;
+use hbvib::internals::Multiple;
+use hbvib::{ContactState, MatrixKind, MatrixView, ModeChoice, Model, Part, Spring, Status};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,14 +1,7 @@
 //! Damped modes above the size that is solved densely: strong dampers at few places and Coriolis forces, against eigenvalues of the
 //! state-space matrix and of chains in closed form. None may be missing, none listed twice.
 
-use hbvib::analysis::linear_contacts::LinearContacts;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{campbell, damped_modes};
+use hbvib::{ContactState, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Speed, campbell, damped_modes};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 

@@ -1,14 +1,9 @@
 //! Modes do not depend on the units of single degrees of freedom, as radians beside micrometres: x = S x′ with S diagonal makes SMS and
 //! SKS, the same frequencies, and the shapes S⁻¹φ.
 
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{
+    Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response,
+};
 
 const STIFFNESS: [[f64; 3]; 3] = [[2.0, -1.0, 0.0], [-1.0, 3.0, -1.0], [0.0, -1.0, 1.5]];
 const MASS: [f64; 3] = [1.0, 0.8, 1.2];

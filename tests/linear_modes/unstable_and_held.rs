@@ -1,15 +1,10 @@
 //! Natural modes of stiffnesses that no structure has: a motion of negative stiffness is told by a frequency below zero, in as
 //! many places as Sturm's sequence counts, and degrees of freedom under a penalty of 1e36 are fixed ones.
 
-use hbvib::analysis::linear_contacts::LinearContacts;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Contact, ForcedOptions, SolverOptions, damped_modes, forced_response};
+use hbvib::{
+    Contact, ContactState, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Part, SolverOptions,
+    Speed, Status, Storage, Values, damped_modes, forced_response,
+};
 
 /// A tridiagonal matrix by its diagonal and what stands beside it.
 #[derive(Clone)]

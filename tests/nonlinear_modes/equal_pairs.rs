@@ -3,11 +3,7 @@
 
 use crate::common::harmonics;
 use crate::common::mode_cases::{follow, only};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions};
+use hbvib::{Contact, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, SolverOptions};
 use num_complex::Complex64;
 
 /// Masses on springs of their own; those behind the first `sliders` have a spring more in place of their slider.

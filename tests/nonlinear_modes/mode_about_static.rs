@@ -4,19 +4,11 @@
 use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic, only};
 use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::analysis::linear_contacts::{LinearContacts, linear_modes};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeChoice, ModeGuess, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::internals::linear_modes;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeGuess,
+    ModeOptions, Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

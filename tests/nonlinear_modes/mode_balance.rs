@@ -2,10 +2,7 @@
 
 use crate::common::mode_cases::{Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, follow, harmonic, only};
 use crate::common::{self, BASE, Blisk, all_harmonics, harmonics};
-use hbvib::model::Model;
-use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Amplitude, Branch, DampingForm, ModeChoice, ModeField, ModeOptions, Model};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};

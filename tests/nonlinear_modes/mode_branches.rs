@@ -1,14 +1,10 @@
 //! Curves that branch off from nonlinear modes, against closed forms.
 
 use crate::common::{all_harmonics, harmonics};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeGuess, ModeOptions};
-use hbvib::results::Branch;
-use hbvib::{BifurcationKind, Polynomial, nonlinear_mode};
+use hbvib::{
+    BifurcationKind, Branch, Contact, ContactKind, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions,
+    Model, Polynomial, nonlinear_mode,
+};
 use num_complex::Complex64;
 
 const COUPLING: f64 = 0.1;

@@ -6,8 +6,7 @@ use crate::common::mode_cases::{
     blisk_matrices, damped, delta, disk_minus_ring, follow, harmonic, only, singular_at, spring,
 };
 use crate::common::{self, BASE, Blisk, D, R, data, harmonics, number};
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{Amplitude, DampingForm, ModeOptions};
+use hbvib::{Amplitude, ContactState, DampingForm, ModeOptions};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -91,7 +90,7 @@ fn compare(case: &Blisk, beta: f64, family: usize, form: DampingForm, by_contact
         &damped(case, beta),
         &harmonics(1),
         &ModeOptions {
-            choice: hbvib::options::ModeChoice::Index(family),
+            choice: hbvib::ModeChoice::Index(family),
             amplitude: if by_contact {
                 Amplitude::Contact(0)
             } else {

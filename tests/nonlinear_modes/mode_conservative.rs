@@ -2,15 +2,10 @@
 //! against time integration.
 
 use crate::common::{data, harmonics, number};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeGuess, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions, Model, SolverOptions, Status,
+    nonlinear_mode,
+};
 use num_complex::Complex64;
 
 fn follow(model: &Model, solver: &SolverOptions, range: &ModeOptions) -> Branch {

@@ -4,11 +4,7 @@
 use crate::common::all_harmonics;
 use crate::common::harmonics;
 use crate::common::mode_cases::{damping, follow};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::{Contact, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -4,12 +4,9 @@
 
 use crate::common::mode_cases::{Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, follow, harmonic, only};
 use crate::common::{self, B1, B2, BASE, Blisk, all_harmonics, harmonics, relative_gap, slip};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, DampingForm, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, forced_response,
+};
 use nalgebra::DVector;
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -6,10 +6,7 @@ use crate::common::mode_cases::{
     spring,
 };
 use crate::common::{BASE, Blisk, data, harmonics, number};
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Amplitude, Branch, ContactState, DampingForm, ModeChoice, ModeField, ModeOptions};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

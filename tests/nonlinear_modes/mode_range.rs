@@ -3,14 +3,7 @@
 
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
 use crate::common::{self, BASE, Blisk, harmonics};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Branch, Contact, ContactState, MatrixKind, MatrixView, ModeChoice, ModeField, ModeOptions, Model};
 
 fn log10(branch: &Branch) -> &[f64] {
     branch.mode_field(ModeField::Log10Amplitude).unwrap()

@@ -1,13 +1,7 @@
 //! The nonlinear mode of the bladed disk against the reference data: same-H solutions.
 
 use crate::common::{BASE, Blisk, D, R, data, harmonics, number};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{ModeOptions, SolverOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Branch, Hooks, ModeField, ModeOptions, Model, SolverOptions, Status, nonlinear_mode};
 use num_complex::Complex64;
 
 /// The blisk without structural damping.

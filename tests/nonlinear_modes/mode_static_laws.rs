@@ -5,15 +5,10 @@ use crate::common::depth::some_of;
 use crate::common::mode_cases::{damping, follow, harmonic};
 use crate::common::{all_harmonics, harmonics, laws::Plate, relative_gap};
 use crate::mode_about_static::{answer, balancing, mass_of_three, pressed};
-use hbvib::contact::laws::iwan::Iwan;
-use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::patch::Patch;
-use hbvib::contact::relative_motion::Frame;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Call, Contact, ContactKind, Frame, Iwan, ModeChoice, ModeOptions, Monomial, Patch, Polynomial,
+    SolverOptions, Table, User, UserForce,
+};
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -3,11 +3,7 @@
 
 use crate::common::mode_cases::{follow, only};
 use crate::common::{all_harmonics, harmonics};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::{Contact, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions};
 use std::f64::consts::PI;
 
 /// ẍ + kx = F + max(kn(−x − c), 0).

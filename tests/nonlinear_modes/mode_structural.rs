@@ -3,19 +3,14 @@
 
 use crate::common::mode_cases::{follow, only};
 use crate::common::{BASE, harmonics};
-use hbvib::condense::Condensed;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::linear_system::Jacobian;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{DampingForm, ModeOptions, SolverOptions};
-use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
-use hbvib::problem::{Problem, Residual};
+use hbvib::internals::Condensed;
+use hbvib::internals::Jacobian;
+use hbvib::internals::{Epmc, Gauge, LinearMode};
+use hbvib::internals::{Problem, Residual};
+use hbvib::{
+    Contact, ContactState, DampingForm, Hooks, Interrupt, MatrixKind, MatrixView, ModeOptions, Model, Part,
+    SolverOptions, Speed,
+};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -43,7 +38,7 @@ fn a_loss_factor_on_a_linear_structure_is_half_of_it_as_damping_ratio() {
         for family in 0..3 {
             let undamped = model.linear_modes(engine_order, ContactState::Stuck).unwrap();
             let options = ModeOptions {
-                choice: hbvib::options::ModeChoice::Index(family),
+                choice: hbvib::ModeChoice::Index(family),
                 log10_start: -5.0,
                 log10_stop: -4.0,
                 ..ModeOptions::default()
@@ -154,7 +149,7 @@ fn gyroscopic(speed: Speed) -> Model {
 
 fn options(index: usize, form: DampingForm, at: &[f64]) -> ModeOptions<'_> {
     ModeOptions {
-        choice: hbvib::options::ModeChoice::Index(index),
+        choice: hbvib::ModeChoice::Index(index),
         log10_start: -3.0,
         log10_stop: 1.0,
         damping_form: form,
@@ -193,12 +188,12 @@ fn a_mode_whose_speed_follows_its_frequency_is_that_of_the_speed_at_each_amplitu
 #[test]
 fn the_derivatives_of_a_mode_contain_the_speed_that_follows_its_frequency() {
     let model = gyroscopic(Speed::PerOmega(0.6));
-    let start = model.select_mode(hbvib::options::ModeChoice::Index(0)).unwrap();
+    let start = model.select_mode(hbvib::ModeChoice::Index(0)).unwrap();
     let linear = LinearMode {
         omega: start.omega,
         damping: 0.01,
         shape: start.shape.clone(),
-        rest: hbvib::problem::static_state::StaticState::default(),
+        rest: hbvib::internals::StaticState::default(),
     };
     let gauge = Gauge {
         contact: None,
@@ -296,7 +291,7 @@ fn a_complex_symmetric_stiffness_has_the_modes_of_the_loss_factor() {
             assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
         }
         let damped = |model: &Model| {
-            let state = hbvib::analysis::linear_contacts::LinearContacts::Stuck;
+            let state = hbvib::LinearContacts::Stuck;
             hbvib::damped_modes(model, diameter, state, 2, &mut Hooks::default()).unwrap()
         };
         for (a, b) in damped(&by_matrix).eigenvalue.iter().zip(damped(&by_factor).eigenvalue) {
@@ -316,7 +311,7 @@ fn a_complex_symmetric_stiffness_has_the_modes_of_the_loss_factor() {
                 let ((omega, d, point), (known_omega, known_d, known_point)) = (only(&found, i), only(&known, i));
                 assert!((omega / known_omega - 1.0).abs() < 1e-12, "{omega} {known_omega}");
                 assert!((d / known_d - 1.0).abs() < 1e-12, "{d} {known_d}");
-                let energy = |branch: &hbvib::results::Branch, point| branch.mode_at(point).unwrap().energy;
+                let energy = |branch: &hbvib::Branch, point| branch.mode_at(point).unwrap().energy;
                 let (a, b) = (energy(&found, point), energy(&known, known_point));
                 assert!((a / b - 1.0).abs() < 1e-11, "{a} {b}");
             }

@@ -2,14 +2,10 @@
 //! harmonic balance that it stands for.
 
 use crate::common::{B2, BASE, Blisk, harmonics, sweep};
-use hbvib::analysis::{nonlinear_mode, synthesise};
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions, SynthesisOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions, SynthesisOptions,
+    nonlinear_mode, synthesise,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -3,14 +3,10 @@
 
 use crate::common::mode_cases::follow;
 use crate::common::{harmonics, sweep};
-use hbvib::analysis::synthesis::SynthesisPoint;
-use hbvib::analysis::{nonlinear_mode, synthesise};
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::{
+    Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, SolverOptions, SynthesisOptions,
+    SynthesisPoint, nonlinear_mode, synthesise,
+};
 
 /// Three masses in a chain under a force on one of them.
 fn chain(beta: f64, contacts: &[Contact], constant: f64, (dof, force): (usize, f64)) -> Model {

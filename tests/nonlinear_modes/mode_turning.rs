@@ -2,16 +2,7 @@
 //! frequency falls to nothing.
 
 use crate::common::{all_harmonics, harmonics};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ModeOptions;
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Branch, Contact, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, Status, nonlinear_mode};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

@@ -3,12 +3,7 @@
 
 use crate::common::mode_cases::{damping, delta, follow, only};
 use crate::common::{BASE, Blisk, D, R, data, harmonics, number};
-use hbvib::contact::Contact;
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Branch, Contact, ModeChoice, ModeField, ModeOptions, Model, SolverOptions, Spring};
 
 /// The sector of a nodal diameter without structural damping, its contact's stiffness scaled, and
 /// the ring's too.

@@ -3,10 +3,8 @@
 
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
 use crate::common::{self, B2, BASE, Blisk, NDOF, SECTORS, all_harmonics, harmonics, phase, relative_gap};
-use hbvib::model::Model;
-use hbvib::model::repeated_modes::Multiple;
-use hbvib::options::{DampingForm, ModeChoice, ModeOptions};
-use hbvib::results::Branch;
+use hbvib::internals::Multiple;
+use hbvib::{Branch, DampingForm, ModeChoice, ModeOptions, Model};
 use num_complex::Complex64;
 
 /// Amplitudes of the sector at which both are compared, over that of the onset.

@@ -5,14 +5,7 @@
 
 use crate::common::markdown::{Fence, fences, headings, links, pages, read};
 use crate::common::programs::{library, printed, python, root, run, soname};
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, forced_response};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

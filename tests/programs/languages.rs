@@ -6,9 +6,7 @@
 
 use crate::common::programs::{printed, python, root, run, soname};
 use crate::common::{self, BASE, Blisk, data, number};
-use hbvib::analysis::forced_response;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{ForcedOptions, Hooks, SolverOptions, forced_response};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fs;

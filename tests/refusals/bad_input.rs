@@ -3,12 +3,7 @@
 
 use crate::common::refusal::{OMEGA, refused, unharmed};
 use crate::common::{BASE, harmonics, solve_at};
-use hbvib::analysis::harmonic_residual::{contact_evaluate, forced_residual};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Part, Status, Storage, Values, contact_evaluate, forced_residual};
 use num_complex::Complex64;
 
 #[test]

@@ -3,17 +3,11 @@
 
 use crate::common::refusal::refused;
 use crate::common::{BASE, harmonics, solve_at};
-use hbvib::analysis::floquet::floquet;
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::analysis::time_response::time_response;
-use hbvib::analysis::verify;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{FloquetOptions, ForcedOptions, SolverOptions, TimeOptions, VerifyOptions, Waves};
+use hbvib::{
+    FloquetOptions, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, Status, Storage,
+    TimeOptions, Values, VerifyOptions, Waves, floquet, forced_response, time_response,
+};
+
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -230,7 +224,7 @@ fn structural_damping_is_refused_in_time_with_its_viscous_equivalent() {
         );
         let branch = solve_at(&model, &harmonics(3), omega);
         refused(
-            verify::verify(&model, &branch, 0, &VerifyOptions::default(), &mut Hooks::default()),
+            hbvib::verify(&model, &branch, 0, &VerifyOptions::default(), &mut Hooks::default()),
             Status::Unsupported,
             &words,
         );

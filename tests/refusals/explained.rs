@@ -3,13 +3,10 @@
 
 use crate::common::refusal::refused;
 use crate::common::{harmonics, peers::structure, sweep};
-use hbvib::analysis::{forced_response, nonlinear_mode};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
+use hbvib::{
+    Contact, ContactState, ForcedOptions, Hooks, ModeOptions, Model, SolverOptions, Status, forced_response,
+    nonlinear_mode,
+};
 
 #[test]
 fn a_contact_without_stiffness_is_refused_by_the_name_of_its_constant() {

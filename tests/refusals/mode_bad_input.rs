@@ -3,15 +3,10 @@
 use crate::common::mode_cases as modes;
 use crate::common::refusal::{self, refused};
 use crate::common::{BASE, harmonics};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Amplitude, ModeChoice, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Amplitude, Branch, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, Result, SolverOptions,
+    Status, nonlinear_mode,
+};
 use num_complex::Complex64;
 
 const RANGE: ModeOptions = ModeOptions {
@@ -21,7 +16,7 @@ const RANGE: ModeOptions = ModeOptions {
     log10_start: -4.0,
     log10_stop: 0.0,
     at: &[],
-    damping_form: hbvib::options::DampingForm::Mass,
+    damping_form: hbvib::DampingForm::Mass,
     reference_dof: None,
     guess: None,
     branches: 0,
@@ -333,7 +328,7 @@ fn a_refused_mode_leaves_the_model_as_it_was() {
 fn a_caller_may_stop_at_any_point_and_keeps_what_was_found() {
     let model = modes::damped(&BASE, 0.0);
     for wanted in [1, 3, 12] {
-        let mut progress = |p: &hbvib::hooks::Progress| p.point == wanted;
+        let mut progress = |p: &hbvib::Progress| p.point == wanted;
         let mut hooks = Hooks {
             progress: Some(&mut progress),
             ..Hooks::default()
@@ -361,7 +356,7 @@ fn stiffness_type_damping_is_refused_where_all_stiffness_is_in_springs_and_conta
         .unwrap();
     model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 1.0)).unwrap();
     let stiffness = ModeOptions {
-        damping_form: hbvib::options::DampingForm::Stiffness,
+        damping_form: hbvib::DampingForm::Stiffness,
         ..RANGE
     };
     refused(

@@ -3,14 +3,10 @@
 
 use crate::common::refusal::{OMEGA, refused, unharmed};
 use crate::common::{BASE, all_harmonics, harmonics, one_mass, solve_at};
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Amplitude, DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
+use hbvib::{
+    Amplitude, Contact, DampingForm, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model,
+    Result, SolverOptions, Status, forced_response,
+};
 use num_complex::Complex64;
 
 fn respond(model: &Model, solver: &SolverOptions, range: &ForcedOptions<'_>) -> Result<()> {

@@ -1,9 +1,8 @@
 //! Peaks of linear structures of every size and damping, also under gyroscopic forces: against maxima of their closed form.
 
 use crate::common::depth::some_of;
-use hbvib::contact::Contact;
 use hbvib::{
-    ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions, Special, Speed,
+    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions, Special, Speed,
     forced_response,
 };
 use num_complex::Complex64;

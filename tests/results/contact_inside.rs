@@ -3,9 +3,7 @@
 use crate::common::energy::{exactly, work};
 use crate::common::laws::{Case, case, cases, range, shaken, solve, structure};
 use crate::common::solve_at;
-use hbvib::contact::Contact;
-use hbvib::contact::contact_state::State;
-use hbvib::results::ContactLoop;
+use hbvib::{Contact, ContactLoop, State};
 
 fn of(values: &[f64], directions: usize, k: usize) -> impl Iterator<Item = f64> + '_ {
     values[k..].iter().step_by(directions).copied()

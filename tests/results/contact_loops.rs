@@ -3,16 +3,10 @@
 
 use crate::common::energy::{close, exactly};
 use crate::common::{self, B1, BASE, D, R, all_harmonics, harmonics, solve_at, sweep};
-use hbvib::analysis::{contact_evaluate, nonlinear_mode};
-use hbvib::contact::contact_state::State;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions};
-use hbvib::results::{Branch, ContactLoop, ContactSummary};
+use hbvib::{
+    Branch, Contact, ContactKind, ContactLoop, ContactSummary, Hooks, MatrixKind, MatrixView, ModeOptions, Model,
+    SolverOptions, State, Status, contact_evaluate, nonlinear_mode,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -383,7 +377,7 @@ fn units_and_wrong_numbers() {
     }
     let branch = &loops[0].1;
     let end = branch.stored();
-    let status = |e: hbvib::error::Error| e.status;
+    let status = |e: hbvib::Error| e.status;
     assert_eq!(branch.contact_loop(end, 0, 9).map_err(status), Err(Status::Index));
     assert_eq!(branch.contact_loop(0, 1, 9).map_err(status), Err(Status::Index));
     assert_eq!(branch.contact_loop(0, 0, 0).map_err(status), Err(Status::Dimension));

@@ -2,9 +2,7 @@
 //! against the laws' own formulas and marches of plain steps.
 
 use crate::common::laws::{Case, Plate, cases, range, solve};
-use hbvib::contact::ContactKind;
-use hbvib::contact::contact_state::State;
-use hbvib::results::{ContactLoop, ContactSummary};
+use hbvib::{ContactKind, ContactLoop, ContactSummary, State};
 use std::f64::consts::TAU;
 
 fn of(values: &[f64], directions: usize, k: usize) -> impl Iterator<Item = f64> + '_ {

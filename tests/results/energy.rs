@@ -2,12 +2,7 @@
 
 use crate::common::energy::{close, energy, exactly, maximum, work};
 use crate::common::{BASE, Blisk, all_harmonics, harmonics, slip, solve_at};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::results::Energy;
+use hbvib::{Contact, Energy, MatrixKind, MatrixView, Model, Part, Status};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -3,12 +3,7 @@
 
 use crate::common::energy::{close, energy, exactly, maximum, mean, work};
 use crate::common::{BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, phase, slip, solve_at};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
-use hbvib::results::{Branch, Energy};
+use hbvib::{Branch, Contact, Energy, MatrixKind, MatrixView, Model, SolverOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,9 +1,7 @@
 //! Loops of more times than are evaluated at once: each value is that of a loop of few times at the same time.
 
 use crate::common::laws::{cases, solve};
-use hbvib::Interrupt;
-use hbvib::error::Status;
-use hbvib::results::ContactLoop;
+use hbvib::{ContactLoop, Interrupt, Status};
 
 /// Every 49th time, and twice the times of a slice and more.
 const EVERY: usize = 49;

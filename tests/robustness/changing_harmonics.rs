@@ -3,13 +3,8 @@
 use crate::common::peers::structure;
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::eigen;
-use hbvib::model::Model;
-use hbvib::options::SolverOptions;
-use hbvib::results::Branch;
+use hbvib::internals::eigen;
+use hbvib::{Branch, Contact, Interrupt, Model, SolverOptions, Status};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 

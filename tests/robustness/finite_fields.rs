@@ -2,16 +2,10 @@
 //! that cannot be kept. Only error estimates may be NaN, where they are unknown.
 
 use crate::random_problems::random::Random;
-use hbvib::analysis::{forced_response, nonlinear_mode};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::{Hooks, Progress};
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{
+    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, Progress,
+    SolverOptions, Status, forced_response, nonlinear_mode,
+};
 use num_complex::Complex64;
 
 /// A chain of one to four masses with up to two contacts of any law, often undamped, in random units.

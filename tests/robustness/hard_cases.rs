@@ -19,7 +19,7 @@ mod several;
 mod stick_slip;
 mod stops;
 
-use hbvib::error::Status;
+use hbvib::Status;
 use serde_json::Value;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -133,7 +133,7 @@ impl Case {
 
     /// A number by default options, near the truth.
     fn near(&self, what: &str, found: f64, truth: f64) {
-        let harmonics = hbvib::options::SolverOptions::default().harmonics;
+        let harmonics = hbvib::SolverOptions::default().harmonics;
         let what = format!("default options against the truth: {what}");
         self.within(&what, Some(harmonics), found, truth, TRUNCATION);
     }

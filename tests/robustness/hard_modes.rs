@@ -3,12 +3,7 @@
 
 use crate::common::peers::{RANGE, blade_and_ring};
 use crate::common::{harmonics, solve_at, sweep};
-use hbvib::analysis::nonlinear_mode;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ModeOptions, SolverOptions};
-use hbvib::results::Branch;
-use hbvib::results::mode_branch::ModeField;
+use hbvib::{Branch, Hooks, ModeField, ModeOptions, SolverOptions, Status, nonlinear_mode};
 
 fn mode(highest: usize, log10: (f64, f64), at: &[f64]) -> Branch {
     let range = ModeOptions {

@@ -3,13 +3,7 @@
 
 use crate::common::peers::{RANGE, blade_and_ring, structure};
 use crate::common::{self, Blisk, all_harmonics, harmonics, relative_gap, slip, sweep};
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{Branch, Contact, ForcedOptions, Hooks, Model, SolverOptions, Status, forced_response};
 use std::f64::consts::PI;
 
 /// One mass with its Jenkins contact to the ground, under a force.

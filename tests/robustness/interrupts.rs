@@ -5,20 +5,11 @@
 
 use crate::common::laws;
 use crate::common::stopping::{Analysis, Lateness, of_branch, of_call, random, stop_when};
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{
-    Flexibility, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions,
-    VerifyOptions,
-};
-use hbvib::results::Branch;
 use hbvib::{
-    ContactState, Interrupt, Phase, PhaseReport, Progress, contact_evaluate_with, estimate_at_with,
-    forced_residual_with, forced_response, nonlinear_mode, synthesise_with, time_response, verify,
+    Branch, Contact, ContactState, Flexibility, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, ModeChoice,
+    ModeOptions, Model, Phase, PhaseReport, Progress, Result, SolverOptions, Status, SteadyMethod, SynthesisOptions,
+    TimeOptions, VerifyOptions, contact_evaluate_with, estimate_at_with, forced_residual_with, forced_response,
+    nonlinear_mode, synthesise_with, time_response, verify,
 };
 use num_complex::Complex64;
 use std::cell::RefCell;
@@ -281,7 +272,7 @@ fn no_step_of_a_large_structure_is_long() {
     // So many degrees of freedom that the condensation makes a basis.
     let case = Case::chain("full", 650, 8, true);
     let condensed = |interrupt: &Interrupt<'_>| {
-        hbvib::condense::Condensed::new(&case.model, &case.fixed(), case.omega, interrupt).map(|_| ())
+        hbvib::internals::Condensed::new(&case.model, &case.fixed(), case.omega, interrupt).map(|_| ())
     };
     let modes = |interrupt: &Interrupt<'_>| {
         case.model

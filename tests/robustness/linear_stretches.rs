@@ -4,13 +4,8 @@ use crate::common::peers::structure;
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
 use core::ops::Range;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::eigen;
-use hbvib::model::Model;
-use hbvib::options::SolverOptions;
-use hbvib::results::Branch;
+use hbvib::internals::eigen;
+use hbvib::{Branch, Contact, Interrupt, Model, SolverOptions, Status};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -173,9 +168,7 @@ fn check(
     let highest = peaks.iter().fold(0.0, |m: f64, p| m.max(p.1));
     let (mut count, mut worst) = (0, (0.0_f64, 0.0_f64));
     for (at, amplitude) in peaks.into_iter().filter(|p| p.1 > 0.05 * highest) {
-        let near = |a: &&hbvib::results::Special, b: &&hbvib::results::Special| {
-            (a.omega - at).abs().total_cmp(&(b.omega - at).abs())
-        };
+        let near = |a: &&hbvib::Special, b: &&hbvib::Special| (a.omega - at).abs().total_cmp(&(b.omega - at).abs());
         let found = branch
             .peaks()
             .iter()

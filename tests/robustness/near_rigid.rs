@@ -3,16 +3,9 @@
 
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
-use hbvib::Iwan;
-use hbvib::analysis::forced_residual;
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ContactKind, Iwan, MatrixKind, MatrixView, Model, SolverOptions, Status, Table, forced_residual,
+};
 use num_complex::Complex64;
 
 /// A chain fixed at one end, with springs of about `stiffness` and masses of about `mass`; or one sector of a wheel.

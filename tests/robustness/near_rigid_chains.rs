@@ -6,12 +6,7 @@
 use crate::common::peers::structure;
 use crate::common::{all_harmonics, harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
-use hbvib::analysis::verify;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{SolverOptions, VerifyOptions};
+use hbvib::{Contact, Hooks, Model, SolverOptions, Status, VerifyOptions, verify};
 
 /// Largest error over the tolerance, as estimates of errors promise.
 const MARGIN: f64 = 1.5;

@@ -2,16 +2,10 @@
 //! (relative error below 1e-8; rigid Coulomb friction from a separate program, which 2e6 and 4e8 meet within 4e-5).
 
 use crate::common::{all_harmonics, harmonics, sweep};
-use hbvib::analysis::{forced_response, nonlinear_mode, verify};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions, VerifyOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions,
+    Status, VerifyOptions, forced_response, nonlinear_mode, verify,
+};
 use num_complex::Complex64;
 
 const MASSES: usize = 8;

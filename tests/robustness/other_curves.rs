@@ -5,10 +5,7 @@ use crate::common::depth::some_of;
 use crate::common::peers::structure;
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
-use hbvib::contact::Contact;
-use hbvib::forced_response;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, SolverOptions, Waves};
+use hbvib::{Contact, ForcedOptions, Hooks, SolverOptions, Waves, forced_response};
 use std::time::Instant;
 
 /// Chains of 2 to 6 masses whose sliders rub on the ground or between two masses: friction under a constant load has one motion at each

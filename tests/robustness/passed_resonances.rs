@@ -5,11 +5,7 @@ use crate::common::depth::some_of;
 use crate::common::peers::structure;
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::model::Model;
-use hbvib::options::SolverOptions;
-use hbvib::results::{Branch, Special};
+use hbvib::{Branch, Contact, Model, SolverOptions, Special, Status};
 use nalgebra::DMatrix;
 
 /// Masses on springs, the first spring to the ground, with stiffness-proportional damping.
@@ -94,7 +90,7 @@ fn random_chain(number: u64) -> (Model, (f64, f64), usize) {
 
 /// Natural frequencies with stuck sliders.
 fn frequencies(model: &Model, count: usize) -> Vec<f64> {
-    use hbvib::model::linear_modes::ContactState;
+    use hbvib::ContactState;
     model.linear_modes(0, ContactState::Stuck).unwrap().omega[..count].to_vec()
 }
 

@@ -3,14 +3,8 @@
 use crate::common::peers::structure;
 use crate::common::{all_harmonics, harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::eigen;
-use hbvib::model::Model;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::internals::eigen;
+use hbvib::{Branch, Contact, ForcedOptions, Hooks, Interrupt, Model, SolverOptions, forced_response};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 

@@ -13,11 +13,7 @@ mod residual;
 
 use crate::common::depth::some_of;
 use crate::common::{all_harmonics, harmonics, relative_gap};
-use hbvib::analysis::{forced_response, time_response};
-use hbvib::error::{Error, Status};
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, SolverOptions, TimeOptions};
-use hbvib::results::Branch;
+use hbvib::{Branch, Error, ForcedOptions, Hooks, SolverOptions, Status, TimeOptions, forced_response, time_response};
 use law::LAWS;
 use num_complex::Complex64;
 use problem::{Case, Known};

@@ -1,12 +1,7 @@
 //! Solutions at requested frequencies: each within a covered range has one, though a step went over a bulge or two folds there.
 
 use crate::common::{all_harmonics, harmonics, sweep};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, SolverOptions, Status};
 
 /// Three masses with two stops that are open at rest, and a loss factor.
 fn model() -> Model {

@@ -2,17 +2,10 @@
 
 use crate::common::laws::{cases, shaken, structure};
 use crate::common::{BASE, Blisk, all_harmonics, harmonics, solve_at, sweep};
-use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Values};
-use hbvib::model::Model;
-use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
-use hbvib::model::speed::Speed;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Frame, Iwan};
+use hbvib::{
+    Contact, ContactKind, Frame, Iwan, MatrixKind, MatrixView, Model, Monomial, Part, Polynomial, SectorDescription,
+    SectorFrame, Speed, Spring, Status, Table, Values,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::time::Instant;

@@ -1,9 +1,7 @@
 //! A small finite-element sector with both faces: 36 nodes, curved faces, no mirror symmetry.
 
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::sector_faces::{Positions, SectorDescription, SectorFrame};
-use hbvib::model::structure::MatrixKind;
+use hbvib::internals::Positions;
+use hbvib::{MatrixKind, MatrixView, Model, SectorDescription, SectorFrame};
 use nalgebra::DMatrix;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -122,7 +120,7 @@ impl BoundarySector {
         &self,
         engine_order: i64,
         change: impl FnOnce(&mut SectorDescription<'_>),
-    ) -> hbvib::error::Result<Model> {
+    ) -> hbvib::Result<Model> {
         self.try_placed(engine_order, None, change)
     }
 
@@ -132,7 +130,7 @@ impl BoundarySector {
         engine_order: i64,
         coordinates: Option<(Positions<'_>, Positions<'_>)>,
         change: impl FnOnce(&mut SectorDescription<'_>),
-    ) -> hbvib::error::Result<Model> {
+    ) -> hbvib::Result<Model> {
         let [left, right] = [&self.left, &self.right].map(|face| dofs(face).into_iter().map(Some).collect::<Vec<_>>());
         let fixed = dofs(&self.clamped);
         let mut description = SectorDescription {

@@ -1,16 +1,10 @@
 //! The pattern of a wheel from its modes: those of the mistuned wheel as a plain model are the measurement.
 
 use crate::common::refusal::refused;
-use hbvib::analysis::{IdentifiedPattern, MeasuredModes, wheel_identify};
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::interrupt::Interrupt;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::mistuning::{BladeProperty, Mistuning};
-use hbvib::model::structure::MatrixKind;
-use hbvib::{LinearContacts, LinearModes};
+use hbvib::{
+    BladeProperty, Contact, ContactState, IdentifiedPattern, Interrupt, LinearContacts, LinearModes, MatrixKind,
+    MatrixView, MeasuredModes, Mistuning, Model, Result, Status, wheel_identify,
+};
 use num_complex::Complex64;
 
 const N: usize = 9;

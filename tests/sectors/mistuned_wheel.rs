@@ -3,18 +3,11 @@
 
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::analysis::{forced_response, wheel_peaks};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::contents::Block;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::mistuning::{BladeProperty, Mistuning};
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, Response, SolverOptions};
+use hbvib::internals::Block;
+use hbvib::{
+    BladeProperty, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Mistuning, Model, Response,
+    SolverOptions, Spring, Status, forced_response, wheel_peaks,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -3,17 +3,11 @@
 use crate::boundary_sector::{BoundarySector, N, dofs};
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::analysis::linear_contacts::LinearContacts;
-use hbvib::analysis::{forced_residual, forced_response, nonlinear_mode, verify};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::sector_faces::SectorFrame;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions, VerifyOptions};
+use hbvib::{
+    Contact, ContactState, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions,
+    Model, Part, SectorFrame, SolverOptions, Status, VerifyOptions, forced_residual, forced_response, nonlinear_mode,
+    verify,
+};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -199,7 +193,7 @@ fn the_response_in_time_agrees_on_the_right_face() {
 
 /// Three masses per sector, the last of them the first of the next sector; another one is fixed.
 fn lumped(engine_order: i64) -> (Model, usize) {
-    use hbvib::model::sector_faces::SectorDescription;
+    use hbvib::SectorDescription;
     let mut model = Model::sector(&SectorDescription {
         ndof: 4,
         sectors: 6,

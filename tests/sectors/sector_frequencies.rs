@@ -2,14 +2,9 @@
 
 use crate::boundary_sector::{BoundarySector, N, about_z, dofs};
 use crate::common::refusal::refused;
-use hbvib::contact::Contact;
-use hbvib::contact::relative_motion::Frame;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
-use hbvib::model::structure::MatrixKind;
+use hbvib::{
+    Contact, ContactState, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Status,
+};
 use nalgebra::{Cholesky, DMatrix};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -2,20 +2,14 @@
 
 use crate::boundary_sector::{BoundarySector, dofs};
 use crate::common::refusal::refused;
-use hbvib::contact::Contact;
-use hbvib::contact::relative_motion::Frame;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{
+    Contact, ContactState, Frame, MatrixKind, MatrixView, Model, SectorDescription, SectorFrame, Spring, Status,
+};
 
 fn changed(
     sector: &BoundarySector,
     change: impl FnOnce(&mut Vec<Option<usize>>, &mut Vec<Option<usize>>, &mut Vec<usize>),
-) -> hbvib::error::Result<Model> {
+) -> hbvib::Result<Model> {
     let mut left: Vec<_> = dofs(&sector.left).into_iter().map(Some).collect();
     let mut right: Vec<_> = dofs(&sector.right).into_iter().map(Some).collect();
     let mut fixed = dofs(&sector.clamped);

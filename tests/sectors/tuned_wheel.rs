@@ -3,17 +3,11 @@
 use crate::boundary_sector::{BoundarySector, N};
 use crate::common::{all_harmonics, harmonics, relative_gap, slip};
 use crate::sector_contacts::jenkins;
-use hbvib::analysis::forced_response;
-use hbvib::condense::FlexibilityWay;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::mistuning::{BladeProperty, Mistuning};
-use hbvib::model::sector_faces::SectorFrame;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, ForcedOptions, Response, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::internals::FlexibilityWay;
+use hbvib::{
+    BladeProperty, Branch, ContactState, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Mistuning, Model,
+    Response, SectorFrame, SolverOptions, forced_response,
+};
 
 const DELTA: [f64; N] = [
     0.011, -0.023, 0.004, 0.017, -0.009, 0.021, -0.014, 0.002, -0.019, 0.008, 0.013, -0.011,

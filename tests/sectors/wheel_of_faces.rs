@@ -5,13 +5,7 @@ use crate::boundary_sector::{BoundarySector, N, dofs};
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
 use crate::sector_contacts::{PAIR, Pair, jenkins};
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::mistuning::{BladeProperty, Mistuning};
-use hbvib::model::sector_faces::SectorFrame;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{BladeProperty, ContactState, MatrixKind, MatrixView, Mistuning, Model, SectorFrame, Status};
 use num_complex::Complex64;
 
 const DELTA: [f64; N] = [
@@ -114,7 +108,7 @@ fn a_mistuned_wheel_of_faces_is_that_of_the_sector_from_its_blocks() {
     let (all, own) = (expected.ndof(), pair.origin.len());
     let mut stiffness = vec![0.0; all * all];
     let known = expected
-        .block(MatrixKind::Stiffness, hbvib::model::contents::Block::Own)
+        .block(MatrixKind::Stiffness, hbvib::internals::Block::Own)
         .unwrap()
         .unwrap();
     for j in 0..all {

@@ -4,11 +4,10 @@
 use crate::common::laws::Plate;
 use crate::common::{BASE, one_mass};
 use crate::design::{Design, Results, tight};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Constant, Parameter, Quantity, Reason, Status, User, sensitivity};
+use hbvib::{
+    Constant, Contact, ContactKind, MatrixKind, MatrixView, Parameter, Quantity, Reason, Speed, Status, User,
+    sensitivity,
+};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -4,14 +4,10 @@
 use crate::common::laws::cases;
 use crate::common::{BASE, Blisk};
 use crate::design::{Change, Design, Results, tight};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
-use hbvib::{Batch, BatchOptions, Constant, Hooks, Parameter, SolverOptions, batch, forced_response};
+use hbvib::{
+    Batch, BatchOptions, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, Part,
+    SectorDescription, SectorFrame, SolverOptions, Status, batch, forced_response,
+};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 

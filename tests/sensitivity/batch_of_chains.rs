@@ -2,13 +2,10 @@
 //! resonances in the range, the highest of which may be any.
 
 use crate::common::friction::Random;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
-use hbvib::{BatchOptions, Hooks, Parameter, SolverOptions, batch, forced_response};
+use hbvib::{
+    BatchOptions, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, SolverOptions, Status,
+    batch, forced_response,
+};
 
 fn between(random: &mut Random, low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low) * (random.next() + 1.0)

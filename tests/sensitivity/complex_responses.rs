@@ -1,11 +1,9 @@
 //! Derivatives of complex amplitudes equal closed forms of a linear oscillator and differences of converged solutions.
 
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Component, ForcedOptions, Measure, Response, SolverOptions};
-use hbvib::{Constant, Hooks, Parameter, complex_sensitivity, forced_response};
+use hbvib::{
+    Component, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Parameter, Response,
+    SolverOptions, complex_sensitivity, forced_response,
+};
 use num_complex::Complex64;
 
 fn solved(model: &Model, omega: f64) -> hbvib::Branch {

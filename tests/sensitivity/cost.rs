@@ -1,11 +1,10 @@
 //! Derivatives by a hundred parameters take fewer evaluations of the contacts than three solutions of the point.
 
 use crate::design::{Results, tight};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Call, Constant, ContactKind, Parameter, Quantity, User, UserForce, sensitivity};
+use hbvib::{
+    Call, Constant, Contact, ContactKind, MatrixKind, MatrixView, Model, Parameter, Quantity, User, UserForce,
+    sensitivity,
+};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

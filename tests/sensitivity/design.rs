@@ -1,14 +1,10 @@
 //! Designs whose parameters change, and their results: shared by the tests of derivatives.
 
 use crate::common::{BETA, Blisk, SECTORS, harmonics};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::rotation::Speed;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
-use hbvib::{Constant, Hooks, Parameter, Quantity, Reason, forced_response, nonlinear_mode, sensitivity};
+use hbvib::{
+    Branch, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Parameter, Part,
+    Quantity, Reason, SolverOptions, Speed, forced_response, nonlinear_mode, sensitivity,
+};
 use num_complex::Complex64;
 
 /// A model as the numbers that it is made of.

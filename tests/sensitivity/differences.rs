@@ -3,10 +3,8 @@
 use crate::common::BASE;
 use crate::common::laws::{pulled, shaken};
 use crate::design::{Change, Design, Results, check};
-use hbvib::contact::Contact;
-use hbvib::model::structure::MatrixKind::{Damping, Mass, Stiffness};
-use hbvib::options::DampingForm;
-use hbvib::{Amplitude, Constant, ModeOptions};
+use hbvib::MatrixKind::{Damping, Mass, Stiffness};
+use hbvib::{Amplitude, Constant, Contact, DampingForm, ModeOptions};
 use std::f64::consts::TAU;
 
 const OF_CONTACT: [Constant; 5] = [

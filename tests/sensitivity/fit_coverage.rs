@@ -2,11 +2,10 @@
 
 use crate::common::{BASE, BETA, one_mass};
 use crate::design::Design;
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::{Constant, FitData, FitOptions, Hooks, Parameter, Response, SolverOptions, Unknown, fit, predict};
+use hbvib::{
+    Constant, Contact, FitData, FitOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, Response, SolverOptions,
+    Unknown, fit, predict,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,8 +1,10 @@
 //! Peaks, backbones and linear modes of a known model lead back to it.
 
 use crate::fit_of_responses::{AWAY, PARAMETERS, chain, from_start, nine_harmonics};
-use hbvib::options::{ForcedOptions, ModeOptions};
-use hbvib::{DataKind, FitData, FitOptions, Hooks, Response, SolverOptions, fit, forced_response, nonlinear_mode};
+use hbvib::{
+    DataKind, FitData, FitOptions, ForcedOptions, Hooks, ModeOptions, Response, SolverOptions, fit, forced_response,
+    nonlinear_mode,
+};
 use num_complex::Complex64;
 
 #[test]

@@ -1,13 +1,9 @@
 //! Fits to complex responses: a reference data set, and data that deceive.
 
 use crate::common::{data, number};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
 use hbvib::{
-    Constant, DataKind, FitData, FitOptions, Hooks, Loss, Parameter, Status, Suspicion, Unknown, fit, predict,
+    Constant, Contact, DataKind, FitData, FitOptions, Hooks, Loss, MatrixKind, MatrixView, Model, Parameter,
+    SolverOptions, Status, Suspicion, Unknown, fit, predict,
 };
 use num_complex::Complex64;
 use serde_json::Value;

@@ -3,10 +3,9 @@
 
 use crate::common::{BASE, Blisk};
 use crate::design::{Design, tight};
-use hbvib::contact::Contact;
 use hbvib::{
-    Branch, Constant, Follow, Hooks, MatrixKind, ModeChoice, ModeOptions, Parameter, ParameterRange, SolverOptions,
-    Status, nonlinear_mode, parameter_response,
+    Branch, Constant, Contact, Follow, Hooks, MatrixKind, ModeChoice, ModeOptions, Parameter, ParameterRange,
+    SolverOptions, Status, nonlinear_mode, parameter_response,
 };
 use std::f64::consts::{PI, TAU};
 

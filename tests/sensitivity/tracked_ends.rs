@@ -50,7 +50,7 @@ fn peak_that_meets_a_minimum_has_its_status() {
         for c in &mut other.matrices[1] {
             *c *= factor;
         }
-        let range = hbvib::options::ForcedOptions {
+        let range = hbvib::ForcedOptions {
             omega_start: 0.94,
             omega_stop: 1.15,
             ..Default::default()

@@ -2,11 +2,9 @@
 //! sweeps of a model with a stop.
 
 use crate::design::{Design, tight};
-use hbvib::contact::Contact;
-use hbvib::options::ForcedOptions;
 use hbvib::{
-    Branch, Follow, Hooks, MatrixKind, Parameter, ParameterRange, SolverOptions, Status, forced_response,
-    parameter_response,
+    Branch, Contact, Follow, ForcedOptions, Hooks, MatrixKind, Parameter, ParameterRange, SolverOptions, Status,
+    forced_response, parameter_response,
 };
 
 /// Mass 1, with ((k − ω² + ¾κz)² + c²ω²) z = F² for z = A² at H = 1.

@@ -3,9 +3,9 @@
 
 use crate::common::depth::some_of;
 use crate::design::{Design, tight};
-use hbvib::contact::{Contact, ContactKind};
 use hbvib::{
-    Branch, Follow, Hooks, Parameter, ParameterRange, Polynomial, SolverOptions, Status, Turn, parameter_response,
+    Branch, Contact, ContactKind, Follow, Hooks, Parameter, ParameterRange, Polynomial, SolverOptions, Status, Turn,
+    parameter_response,
 };
 
 /// Damper c₁v + c₃v³ + c₅v⁵ of an oscillator with m = k = 1.

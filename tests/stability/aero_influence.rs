@@ -5,15 +5,11 @@ use crate::common::mode_cases::follow;
 use crate::common::refusal::refused;
 use crate::common::{Wheel, all_harmonics, harmonics, phase, relative_gap, slip, solve_at};
 use crate::{multipliers, ordinary};
-use hbvib::analysis::{floquet, time_response, verify};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{FloquetOptions, ModeOptions, TimeOptions, VerifyOptions, Waves};
-use hbvib::{AeroForm, LinearContacts, SectorDescription, SectorFrame, damped_modes};
+use hbvib::{
+    AeroForm, Contact, FloquetOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeOptions, Model, Part,
+    SectorDescription, SectorFrame, Status, TimeOptions, VerifyOptions, Waves, damped_modes, floquet, time_response,
+    verify,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -441,7 +437,7 @@ fn bad_influence_is_refused() {
         refused(verified, Status::Unsupported, &words);
     }
     let krylov = hbvib::SolverOptions {
-        flexibility: hbvib::options::Flexibility::Krylov,
+        flexibility: hbvib::Flexibility::Krylov,
         ..harmonics(5)
     };
     let range = hbvib::ForcedOptions {

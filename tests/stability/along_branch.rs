@@ -3,12 +3,10 @@
 use crate::common::peers::structure;
 use crate::common::{BASE, harmonics, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{ModeOptions, SolverOptions, Waves};
-use hbvib::{Bifurcation, BifurcationKind, Polynomial, nonlinear_mode};
+use hbvib::{
+    Bifurcation, BifurcationKind, Contact, ContactKind, Hooks, ModeOptions, Model, Polynomial, SolverOptions, Status,
+    Waves, nonlinear_mode,
+};
 use std::f64::consts::TAU;
 use std::time::Instant;
 

@@ -2,13 +2,7 @@
 
 use crate::common::{all_harmonics, harmonics, one_mass, solve_at};
 use crate::{multipliers, ordinary};
-use hbvib::Polynomial;
-use hbvib::analysis::time_response;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{SteadyMethod, TimeOptions, Waves};
+use hbvib::{Contact, ContactKind, Hooks, Model, Polynomial, Status, SteadyMethod, TimeOptions, Waves, time_response};
 use num_complex::Complex64;
 
 /// The largest multiplier at a frequency, and whether marching from near the point settles on a motion of the same

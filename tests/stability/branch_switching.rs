@@ -2,14 +2,10 @@
 
 use crate::common::peers::structure;
 use crate::common::{all_harmonics, data, harmonics, largest, one_mass};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};
-use hbvib::results::Branch;
-use hbvib::{BifurcationKind, Polynomial, forced_response, verify};
+use hbvib::{
+    BifurcationKind, Branch, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part,
+    Polynomial, SolverOptions, VerifyOptions, forced_response, verify,
+};
 use num_complex::Complex64;
 
 /// A response with the branches that branch off from it.

@@ -2,14 +2,10 @@
 
 use crate::common::depth::some_of;
 use crate::common::harmonics;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions, Waves};
-use hbvib::results::Branch;
-use hbvib::{ContactState, forced_response};
+use hbvib::{
+    Branch, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Waves,
+    forced_response,
+};
 use std::time::Instant;
 
 /// Numbers in 0 … 1.

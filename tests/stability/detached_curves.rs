@@ -4,13 +4,10 @@
 use crate::common::peers::structure;
 use crate::common::{data, harmonics, one_mass};
 use core::f64::consts::PI;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{ForcedOptions, SolverOptions, SteadyMethod, TimeOptions};
-use hbvib::results::Branch;
-use hbvib::{Call, ContactState, MatrixKind, MatrixView, Polynomial, User, UserForce, forced_response, time_response};
+use hbvib::{
+    Branch, Call, Contact, ContactKind, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Polynomial,
+    SolverOptions, Status, SteadyMethod, TimeOptions, User, UserForce, forced_response, time_response,
+};
 use num_complex::Complex64;
 use std::sync::Arc;
 

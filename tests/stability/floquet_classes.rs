@@ -2,15 +2,10 @@
 
 use crate::common::{harmonics, one_mass, solve_at};
 use crate::{multipliers, of_class, ordinary};
-use hbvib::MultiplierClass;
-use hbvib::analysis::{floquet, nonlinear_mode};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{FloquetOptions, ModeOptions, Waves};
+use hbvib::{
+    Contact, FloquetOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, MultiplierClass, Status, Waves,
+    floquet, nonlinear_mode,
+};
 use std::f64::consts::TAU;
 
 /// A chain of three masses, the last of which only friction holds.

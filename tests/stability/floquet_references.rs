@@ -2,11 +2,7 @@
 
 use crate::common::{harmonics, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
-use hbvib::analysis::floquet;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{FloquetOptions, Waves};
+use hbvib::{Contact, FloquetOptions, Hooks, Model, Waves, floquet};
 use std::f64::consts::TAU;
 
 /// Hill's method with the tangents of the harmonic forces finds 0.447 and 0.951 in the first case: sliders remember.

@@ -2,12 +2,7 @@
 
 use crate::common::{BASE, SECTORS, Wheel, harmonics, solve_at};
 use crate::{multipliers, of_class, ordinary};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::Waves;
-use hbvib::{Floquet, MultiplierClass, Speed};
+use hbvib::{Contact, Floquet, MatrixKind, MatrixView, Model, MultiplierClass, Speed, Waves};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -3,17 +3,10 @@
 use crate::common::mode_cases::follow;
 use crate::common::{B2, BASE, Blisk, D, R, SECTORS, data, harmonics, number, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
-use hbvib::Floquet;
-use hbvib::analysis::floquet;
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{FloquetOptions, ForcedOptions, ModeOptions, SolverOptions, Waves};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Floquet, FloquetOptions, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model,
+    SolverOptions, Status, Waves, floquet, forced_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

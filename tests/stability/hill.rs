@@ -2,12 +2,7 @@
 
 use crate::common::{all_harmonics, harmonics, solve_at};
 use crate::{multipliers, ordinary};
-use hbvib::Polynomial;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::Waves;
+use hbvib::{Contact, ContactKind, MatrixKind, MatrixView, Model, Polynomial, Waves};
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

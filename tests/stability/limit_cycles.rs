@@ -4,13 +4,7 @@
 use crate::common::mode_cases::follow;
 use crate::common::{BASE, harmonics};
 use crate::{multipliers, of_class, ordinary};
-use hbvib::MultiplierClass;
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeOptions, Waves};
-use hbvib::results::Branch;
+use hbvib::{Branch, Contact, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, MultiplierClass, Waves};
 use num_complex::Complex64;
 
 /// Two masses, the first with negative damping, and friction between them.

@@ -21,12 +21,7 @@ mod senses_of_perturbations;
 mod smallest_kick;
 mod subharmonic_net;
 
-use hbvib::analysis::floquet;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{FloquetOptions, Waves};
-use hbvib::results::Branch;
-use hbvib::{Floquet, MultiplierClass};
+use hbvib::{Branch, Floquet, FloquetOptions, Hooks, Model, MultiplierClass, Waves, floquet};
 use num_complex::Complex64;
 
 /// Multipliers of a point after shooting.

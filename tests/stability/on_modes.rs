@@ -2,16 +2,10 @@
 
 use crate::common::{harmonics, solve_at};
 use crate::of_class;
-use hbvib::analysis::floquet;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Error;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{FloquetOptions, SolverOptions, Waves};
-use hbvib::results::Branch;
-use hbvib::{Floquet, MultiplierClass, Polynomial, Table};
+use hbvib::{
+    Branch, Contact, ContactKind, Error, Floquet, FloquetOptions, Hooks, MatrixKind, MatrixView, Model,
+    MultiplierClass, Polynomial, SolverOptions, Table, Waves, floquet,
+};
 use std::time::Instant;
 
 fn try_on(model: &Model, branch: &Branch, modes: Option<usize>, waves: Waves) -> Result<Floquet, Error> {

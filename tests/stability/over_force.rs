@@ -1,13 +1,10 @@
 //! Detached curves that no nonlinear mode shows: by peaks and folds over the force, and by deflation.
 
 use crate::common::{all_harmonics, harmonics, one_mass};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::model::Model;
-use hbvib::options::{ForcedOptions, SolverOptions, VerifyOptions};
-use hbvib::results::Branch;
-use hbvib::{Follow, Parameter, ParameterRange, Polynomial, forced_response, parameter_response, verify};
+use hbvib::{
+    Branch, Contact, ContactKind, Follow, ForcedOptions, Hooks, Model, Parameter, ParameterRange, Polynomial,
+    SolverOptions, Status, VerifyOptions, forced_response, parameter_response, verify,
+};
 use std::cell::Cell;
 
 /// x″ + 0.05 x′ − 0.05 x′³ + 0.012 x′⁵ + x under a force in harmonic 1.

@@ -2,11 +2,9 @@
 //! contacts stuck the multipliers of the wheel are e^{λT} with the eigenvalues λ of all signed diameters, and a flow and its
 //! mirror image have the same limit cycles in opposite waves.
 
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::options::{FloquetOptions, Waves};
 use hbvib::{
-    AeroForm, Contact, ForcedOptions, Hooks, LinearContacts, MatrixKind, ModeOptions, Model, MultiplierClass,
-    SolverOptions, Speed, damped_modes, floquet, forced_response, nonlinear_mode,
+    AeroForm, Contact, FloquetOptions, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeOptions,
+    Model, MultiplierClass, SolverOptions, Speed, Waves, damped_modes, floquet, forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -2,11 +2,9 @@
 //! returns, just above it does not, and no kick at other phases that is a few percent smaller leads across.
 
 use crate::common::{harmonics, one_mass};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::options::ForcedOptions;
 use hbvib::{
-    Branch, FloquetOptions, Hooks, Kick, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Status, Waves,
-    floquet, forced_response, smallest_kick,
+    Branch, Contact, ContactKind, FloquetOptions, ForcedOptions, Hooks, Kick, MatrixKind, MatrixView, Model,
+    Polynomial, SolverOptions, Status, Waves, floquet, forced_response, smallest_kick,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;

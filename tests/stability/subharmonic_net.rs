@@ -1,10 +1,7 @@
 //! A subharmonic curve under hard forcing, found without a guess: against an integration over many periods.
 
 use crate::common::{harmonics, one_mass};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, VerifyOptions};
-use hbvib::{Polynomial, forced_response, verify};
+use hbvib::{Contact, ContactKind, ForcedOptions, Hooks, Polynomial, VerifyOptions, forced_response, verify};
 use num_complex::Complex64;
 
 /// x″ + 0.01 x′ + 0.002 x′³ + x + 0.4 x³ = 8 cos 3.6 t moves with a third of the frequency from some starts: scipy found

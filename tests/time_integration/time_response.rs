@@ -5,14 +5,9 @@ use crate::common::{
     BASE, Blisk, SECTORS, all_harmonics, complex, data, harmonics, largest, number, phase, relative_gap, solve_at,
     sweep,
 };
-use hbvib::analysis::time_response::{TimeResponse, time_response};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{SteadyMethod, TimeOptions};
+use hbvib::{
+    Contact, Hooks, MatrixKind, MatrixView, Model, Part, Status, SteadyMethod, TimeOptions, TimeResponse, time_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

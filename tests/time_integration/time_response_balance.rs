@@ -2,14 +2,7 @@
 //! sectors, several laws at once, a beam that lifts off its support.
 
 use crate::common::{SECTORS, Wheel, all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::analysis::time_response::{TimeResponse, time_response};
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::TimeOptions;
+use hbvib::{Contact, Hooks, MatrixKind, MatrixView, Model, Part, Spring, TimeOptions, TimeResponse, time_response};
 use num_complex::Complex64;
 
 fn in_time(model: &Model, omega: f64, highest: usize, start: Option<&[Complex64]>) -> TimeResponse {

@@ -5,12 +5,7 @@ use crate::common::laws_in_time::{
     BETA, COMMON, KN, KT, MASS, SAMPLES, STIFFNESS, distances, forces, friction, in_time, model, slanted, try_in_time,
 };
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
-use hbvib::analysis::time_response::TimeResponse;
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{SteadyMethod, TimeOptions};
+use hbvib::{Contact, MatrixKind, MatrixView, Model, SteadyMethod, TimeOptions, TimeResponse};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -2,15 +2,10 @@
 
 use crate::common::BASE;
 use crate::common::refusal::{OMEGA, refused};
-use hbvib::analysis::time_response::time_response;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::hooks::{Hooks, Progress};
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{SteadyMethod, TimeOptions};
+use hbvib::{
+    Call, Contact, ContactKind, Hooks, MatrixKind, MatrixView, Model, Part, Progress, Status, SteadyMethod,
+    TimeOptions, User, UserForce, time_response,
+};
 use num_complex::Complex64;
 use std::sync::Arc;
 

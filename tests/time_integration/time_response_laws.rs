@@ -3,12 +3,7 @@
 
 use crate::common::laws_in_time::{distances, forces, friction, in_time, oscillator, slanted, try_in_time};
 use crate::common::relative_gap;
-use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Status;
-use hbvib::options::TimeOptions;
+use hbvib::{Call, Contact, ContactKind, Monomial, Polynomial, Status, Table, TimeOptions, User, UserForce};
 use std::sync::Arc;
 
 /// Softening, then stiff, without symmetry.

@@ -2,15 +2,10 @@
 //! over the motion itself, and against where the points come from.
 
 use crate::common::{B2, BASE, Blisk, Wheel, all_harmonics, complex, data, number, phase, relative_gap, sweep};
-use hbvib::analysis::{Verification, estimate_at, time_response, verify};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{SolverOptions, SteadyMethod, TimeOptions, VerifyOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, SteadyMethod, TimeOptions,
+    Verification, VerifyOptions, estimate_at, time_response, verify,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -1,15 +1,10 @@
 //! Checks of points in time that are refused, or that the caller stops.
 
 use crate::common::{BASE, Blisk, sweep};
-use hbvib::analysis::{nonlinear_mode, verify};
-use hbvib::contact::Contact;
-use hbvib::error::{Error, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions, SteadyMethod, VerifyOptions};
-use hbvib::results::Branch;
+use hbvib::{
+    Branch, Contact, Error, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions, Status, SteadyMethod,
+    VerifyOptions, nonlinear_mode, verify,
+};
 use std::f64::consts::TAU;
 
 /// Where the blisk slips.

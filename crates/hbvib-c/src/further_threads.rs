@@ -4,7 +4,7 @@
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 use core::ptr::null_mut;
-use engine::analysis::further_threads::STACK;
+use engine::internals::STACK;
 
 /// The work of a thread.
 struct Work<'a> {
@@ -31,7 +31,7 @@ extern "C" fn run(work: *mut c_void) -> *mut c_void {
     null_mut()
 }
 
-/// As [`engine::analysis::further_threads::Together`] says.
+/// As [`engine::internals::Together`] says.
 pub(super) fn together(others: usize, task: &(dyn Fn(usize) + Sync), own: &mut dyn FnMut(usize)) {
     let mut works = Vec::new();
     let mut started = Started(Vec::new());

@@ -1,20 +1,39 @@
 //! Running a job: its analyses one after the other, and what each writes.
 
-use crate::build::{Built, Outcome, built};
-use crate::curve::{Before, Curve};
-use crate::end::{self, End};
-use crate::files::Files;
-use crate::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
-use crate::job_solutions::SolutionsPart;
-use crate::progress::watched;
-use crate::responses::{self, ResponsePart};
-use crate::restart::{self, Begin};
-use crate::solver::solver;
-use crate::stored_response::Stored;
-use crate::{
-    band_curve, campbell, check, contact_tables, fit_run, html_report, kicks, life, map, mode_band, motion_files,
-    output, passages, residual_state, solutions, study, tornado, verification, wheel_patterns, wheel_response,
-};
+use crate::building::build::built;
+use crate::building::built::Built;
+use crate::building::check;
+use crate::building::responses;
+use crate::building::solver::solver;
+use crate::job_file::job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
+use crate::job_file::job_response::ResponsePart;
+use crate::job_file::job_solutions::SolutionsPart;
+use crate::outputs::contact_tables;
+use crate::outputs::curve::{Before, Curve};
+use crate::outputs::files::Files;
+use crate::outputs::html_report;
+use crate::outputs::motion_files;
+use crate::outputs::output;
+use crate::outputs::restart::{self, Begin};
+use crate::outputs::stored_response::Stored;
+use crate::studies::band_curve;
+use crate::studies::campbell;
+use crate::studies::fit_run;
+use crate::studies::kicks;
+use crate::studies::life;
+use crate::studies::map;
+use crate::studies::mode_band;
+use crate::studies::passages;
+use crate::studies::residual_state;
+use crate::studies::solutions;
+use crate::studies::study;
+use crate::studies::tornado;
+use crate::studies::verification;
+use crate::studies::wheel_patterns;
+use crate::studies::wheel_response;
+use crate::texts::end::{self, End};
+use crate::texts::outcome::Outcome;
+use crate::texts::progress::watched;
 use hbvib::{
     Branch, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, Waves, forced_response,
     nonlinear_mode,

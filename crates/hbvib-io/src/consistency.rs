@@ -1,22 +1,14 @@
 //! Consistency of the matrices of a model: totals that a reader compares with those of the finite-element program, and values
 //! that matrices of a structure do not have.
 
-use crate::directions::{self, Positions};
+use crate::consistency_report::Cases;
+use crate::consistency_report::Report;
+use crate::directions;
 use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
 use crate::nodes::Nodes;
+use crate::nodes::Positions;
 use crate::parts::dof_name;
 use crate::rows::Rows;
-
-/// Report on the matrices of a model.
-#[derive(Clone, Debug, Default)]
-pub struct Report {
-    /// Totals: sizes, mass along each direction, supports.
-    pub facts: Vec<String>,
-    /// Values that a structure does not have, or seldom has.
-    pub warnings: Vec<String>,
-    /// Mass of the structure along x, y and z; empty where the directions of rows are not known.
-    pub total_mass: Vec<f64>,
-}
 
 /// Relative difference of mirror images that is rounding of the file.
 const ROUNDING: f64 = 1e-7;
@@ -105,32 +97,6 @@ struct Check<'a> {
     dofs: &'a [Dof],
     stiffness: Option<&'a Rows>,
     mass: Option<&'a Rows>,
-}
-
-/// Counts cases, and keeps the first.
-#[derive(Default)]
-pub(crate) struct Cases {
-    count: usize,
-    first: Option<String>,
-}
-
-impl Cases {
-    pub fn add(&mut self, name: impl FnOnce() -> String) {
-        self.count += 1;
-        self.first.get_or_insert_with(name);
-    }
-
-    /// Number of cases.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// A sentence from the number of cases and the first one.
-    pub fn told(self, to: &mut Vec<String>, sentence: impl FnOnce(usize, &str) -> String) {
-        if let Some(first) = self.first {
-            to.push(sentence(self.count, &first));
-        }
-    }
 }
 
 impl Check<'_> {
@@ -284,7 +250,7 @@ impl Check<'_> {
                 }
             }
         }
-        if missing.count * 5 > all {
+        if missing.count() * 5 > all {
             missing.told(&mut report.warnings, |count, first| {
                 format!("the mass couples {count} of {all} pairs of rows that the stiffness does not, first {first}")
             });

@@ -1,8 +1,10 @@
 //! Checks of matrices whose rows are known as x, y and z of nodes: a translation moves the same mass along each direction, and
 //! meets force at supports alone.
 
-use crate::consistency::{Cases, Report};
+use crate::consistency_report::Cases;
+use crate::consistency_report::Report;
 use crate::nodes::Nodes;
+use crate::nodes::Positions;
 use crate::rotations;
 use crate::rows::Rows;
 
@@ -14,9 +16,6 @@ const MOSTLY: f64 = 0.3;
 
 /// Share of pairs of nodes without an entry of one direction up to which these are exceptions.
 const FEW: f64 = 0.05;
-
-/// Position of a node by its number.
-pub(crate) type Positions<'a> = &'a dyn Fn(i64) -> Option<[f64; 3]>;
 
 pub(crate) fn check(
     nodes: &Nodes,

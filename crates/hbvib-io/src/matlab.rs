@@ -6,7 +6,7 @@ use crate::bytes_read::{Kind, at, whole_file};
 use crate::error::Error;
 use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
 use crate::named_matrices::sorted;
-use crate::number_arrays::NumberArray;
+use crate::number_array::NumberArray;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 use std::path::Path;

@@ -115,3 +115,6 @@ impl Nodes {
         self.full[k].1.map(|i| self.full[l].1.map(|j| a.get(i, j)))
     }
 }
+
+/// Position of a node by its number.
+pub(crate) type Positions<'a> = &'a dyn Fn(i64) -> Option<[f64; 3]>;

@@ -5,21 +5,9 @@ use crate::bytes_read::whole_file;
 use crate::error::Error;
 use crate::matlab;
 use crate::npy::{Npy, array};
+use crate::number_array::NumberArray;
 use crate::zip_archive::members;
 use std::path::Path;
-
-/// An array of numbers with rows next to each other.
-#[derive(Clone, Debug)]
-pub struct NumberArray {
-    /// Name in the archive.
-    pub name: String,
-    /// Length of each dimension.
-    pub shape: Vec<usize>,
-    /// Real parts.
-    pub real: Vec<f64>,
-    /// Imaginary parts; empty for real numbers.
-    pub imaginary: Vec<f64>,
-}
 
 /// Reads the arrays of numbers of an archive, or the vectors of a MATLAB file of version 5 (`save -v7`); all else is left out.
 ///

@@ -1,9 +1,10 @@
 //! Forces of a rotation, where the positions of nodes are known: away from supports they are zero, so that rows, directions and
 //! positions that do not belong together show.
 
-use crate::consistency::{Cases, Report};
-use crate::directions::Positions;
+use crate::consistency_report::Cases;
+use crate::consistency_report::Report;
 use crate::nodes::Nodes;
+use crate::nodes::Positions;
 use crate::rows::Rows;
 
 /// Force relative to the sum of its terms that is rounding of positions.

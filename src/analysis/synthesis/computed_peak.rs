@@ -1,7 +1,7 @@
 //! The computed resonance next to a synthesised one: the forced response with the harmonics of the mode, from the
 //! motion of the mode.
 
-use crate::analysis::phase_direction::phase_direction;
+use crate::analysis::forced::phase_direction::phase_direction;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
 use crate::continuation::corrector::{Corrector, Outcome};
@@ -11,7 +11,7 @@ use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;

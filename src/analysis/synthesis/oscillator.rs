@@ -1,9 +1,9 @@
 //! The mode at one amplitude as an oscillator under a force.
 
 use crate::linalg::inner;
-use crate::linalg::sparse::Csc;
-use crate::model::reduced_wave::MotionRow;
-use crate::results::mode_branch::ModePoint;
+use crate::linalg::sparse_storage::sparse::Csc;
+use crate::model::few_motions::reduced_wave::MotionRow;
+use crate::results::stored::mode_branch::ModePoint;
 use num_complex::Complex64;
 
 /// A synthesised response at one frequency.

@@ -10,11 +10,11 @@ use crate::error::{Result, try_copy, try_vec};
 use crate::harmonics::transfer::transferred;
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
 use crate::problem::{Problem, Residual};
-use crate::results::energy::balance;
-use crate::results::mode_branch::{ModeData, ModePoint};
+use crate::results::motions::energy::balance;
+use crate::results::stored::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 

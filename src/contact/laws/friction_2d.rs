@@ -20,12 +20,15 @@
 //! opens is loaded slowly from s = 0, or from the place where it was left, and dragged along just so far as its bounds need. See Petrov & Ewins,
 //! J. Turbomach. 125 (2003) 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
 
+pub(crate) mod friction_2d_events;
+mod friction_2d_slider;
+
 use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::coupled_search::{Bound, CoupledSearch, find};
 use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
-use crate::contact::laws::friction_2d_events::Slider;
-use crate::contact::laws::friction_2d_slider::{Phase, Play, Walk};
+use crate::contact::laws::friction_2d::friction_2d_events::Slider;
+use crate::contact::laws::friction_2d::friction_2d_slider::{Phase, Play, Walk};
 use crate::contact::laws::unilateral::Unilateral;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_line};

@@ -12,12 +12,16 @@
 //! derivative is that of the discrete force. The place of a slider that sticks through the period is in
 //! friction_3d_stuck.rs. The normal force, which has no memory, has exact harmonics.
 
+mod friction_3d_path;
+mod friction_3d_period;
+mod friction_3d_slip;
+mod friction_3d_stuck;
+
 use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::coupled_search::CoupledSearch;
 use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PlaneFriction, VaryingNormalLoad};
 use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness, under_varying_load};
-use crate::contact::laws::friction_3d_period;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_plane};
 use crate::contact::piece::{CoupledPiece, Piece};

@@ -84,7 +84,7 @@ impl Iwan {
     /// intervals of φ grow geometrically over five decades up to φ_max.
     ///
     /// # Errors
-    /// Those of [`Self::check`]; `Argument` for n out of 2 .. [`MAX_ELEMENTS`]; `OutOfMemory`.
+    /// Those of [`Self::check`]; `Argument` for n out of 2 .. 10,000; `OutOfMemory`.
     pub fn elements(&self, between: &Contact, n: usize) -> Result<Vec<Contact>> {
         self.check()?;
         if !(2..=MAX_ELEMENTS).contains(&n) {

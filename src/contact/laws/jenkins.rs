@@ -12,7 +12,7 @@ use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
 use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
-use crate::contact::laws::friction_2d_events::Slider;
+use crate::contact::laws::friction_2d::friction_2d_events::Slider;
 use crate::contact::laws::saturated::Saturated;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_line};

@@ -1,16 +1,14 @@
-//! The contact laws, one file each. The [`registry`] declares and lists them; declared here are the parts of laws
-//! that have files of their own, and the [`iwan`] joint, which is made of Jenkins contacts.
+//! The contact laws, one file each, and the [`registry`] that lists them; [`iwan`] joints are made of Jenkins contacts.
 
-mod friction_2d_events;
-mod friction_2d_slider;
-mod friction_3d_path;
-mod friction_3d_period;
-mod friction_3d_slip;
-mod friction_3d_stuck;
+pub mod cubic;
+pub mod friction_2d;
+pub mod friction_3d;
 pub mod iwan;
-mod polynomial_terms;
+pub mod jenkins;
+pub mod polynomial;
 pub mod registry;
+pub mod regularised;
 pub mod saturated;
-mod user_states;
-
-pub use registry::*;
+pub mod table;
+pub mod unilateral;
+pub mod user_law;

@@ -6,15 +6,17 @@
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
+mod polynomial_terms;
+
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
-use crate::contact::laws::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
+use crate::contact::laws::polynomial::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
 use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
 use crate::contact::samples::Samples;
 use crate::error::{Result, fail, try_push};
 use std::sync::Arc;
 
-pub use crate::contact::laws::polynomial_terms::{HIGHEST_EXPONENT, Monomial};
+pub use crate::contact::laws::polynomial::polynomial_terms::{HIGHEST_EXPONENT, Monomial};
 
 /// A polynomial law. Copies share the terms.
 #[derive(Clone, Debug)]

@@ -1,26 +1,6 @@
 //! The registry of contact laws: the kinds of contacts, and the only `match` on them.
 //!
-//! A law is one file, declared here so that a new one is its file, its lines in this file, its constants in the
-//! C interface and its test.
-
-#[path = "cubic.rs"]
-pub mod cubic;
-#[path = "friction_2d.rs"]
-pub mod friction_2d;
-#[path = "friction_3d.rs"]
-pub mod friction_3d;
-#[path = "jenkins.rs"]
-pub mod jenkins;
-#[path = "polynomial.rs"]
-pub mod polynomial;
-#[path = "regularised.rs"]
-pub mod regularised;
-#[path = "table.rs"]
-pub mod table;
-#[path = "unilateral.rs"]
-pub mod unilateral;
-#[path = "user_law.rs"]
-pub mod user_law;
+//! A law is one file: a new one is its file, its lines in this file, its constants in the C interface and its test.
 
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::constants::Constants;
@@ -60,13 +40,6 @@ pub enum ContactKind {
     Polynomial(Polynomial),
     /// A law of the caller.
     User(User),
-}
-
-/// The kinds by their names alone, for the constructors of contacts.
-pub(crate) mod kinds {
-    pub(crate) use crate::contact::laws::registry::ContactKind::{
-        Cubic, Friction2d, Friction3d, Jenkins, Regularised, Unilateral,
-    };
 }
 
 impl ContactKind {

@@ -6,7 +6,7 @@
 //! > k x = f + k (ẏ − ḟ/kt),  f = min(max(k x, −fc), fc),
 //!
 //! the resolvent of a maximal monotone operator; see Lacoste & Nacivet, J. Vib. Acoust. 125 (2003),
-//! doi:10.1115/DETC2003/VIB-48397, who use it at the times of a sampled period. [`crate::condense::exchange`] has the
+//! doi:10.1115/DETC2003/VIB-48397, who use it at the times of a sampled period. [`crate::condense::blocks::exchange`] has the
 //! equations of x.
 
 use crate::contact::contact_state::State;

@@ -7,6 +7,8 @@
 //! that are not finite, become errors that keep the code, name the place, and are recoverable where another
 //! motion may succeed.
 
+mod user_states;
+
 use crate::byte_stream::ByteWriter;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::linearisation::Range;

@@ -6,7 +6,7 @@ use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Metric, Point, Settings};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 

@@ -4,7 +4,7 @@ use crate::continuation::Metric;
 use crate::continuation::corrector::{Corrector, SMALLEST_DAMPING, STEP_ERROR, tolerate};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::LinearSystem;
+use crate::linalg::newton::linear_system::LinearSystem;
 use crate::linalg::norm;
 use crate::problem::Problem;
 

@@ -3,13 +3,13 @@
 //! Where the residual after a Newton step is within the tolerance, the matrix K there hardly differs from the factored K₀ of
 //! the iteration before. Its products are enough: the last step takes K₀, whose error is that of the matrix times a residual
 //! within the tolerance, and the tangent is found by x ← x + K₀⁻¹(b − K x). Fast convergence shows that det K has the sign of
-//! det K₀, as in [`crate::linalg::bordered`].
+//! det K₀, as in [`crate::linalg::newton::bordered`].
 
 use crate::continuation::Metric;
 use crate::continuation::corrector::{Corrector, Factors, NEAR, TANGENT_ERROR};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::LinearSystem;
+use crate::linalg::newton::linear_system::LinearSystem;
 use crate::linalg::norm;
 use crate::problem::Problem;
 

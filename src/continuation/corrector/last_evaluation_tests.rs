@@ -5,7 +5,7 @@ use crate::condense::Condensed;
 use crate::condense::test_chains::{chain, structure};
 use crate::contact::Contact;
 use crate::continuation::corrector::{Corrected, Outcome};
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::options::SolverOptions;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::{Homotopy, InitialGuess, Residual};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::condense::flexibility::Table;
+use crate::condense::by_factors::flexibility::Table;
 use crate::error::Result;
 use crate::problem::contact_forces::ContactForces;
 use num_complex::Complex64;

@@ -1,7 +1,7 @@
 //! Frequency and damping ratio of a nonlinear mode as functionals of its unknowns, and the normalisation by the motion
 //! of the structure: the sources of an adjoint solution.
 
-use crate::linalg::linear_system::Jacobian;
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::epmc::{DAMPING_UNIT, EPMC_OMEGA_UNIT, Epmc};
 use num_complex::Complex64;
 

@@ -9,8 +9,9 @@
 
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::linalg::linear_system::{Jacobian, MatrixFree};
-use crate::linalg::{complex_columns, dot};
+use crate::linalg::dense::complex_columns;
+use crate::linalg::dot;
+use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::problem::epmc::Epmc;
 use crate::problem::newton_products::PackedHarmonics;
 use crate::problem::parametric_problem::put;

@@ -3,11 +3,7 @@
 use super::Case;
 use super::one_mass::{answer, at, by_default, in_time};
 use crate::common::{B1, B2, Blisk, D, NDOF, R, SECTORS, harmonics};
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, SolverOptions};
 use std::f64::consts::TAU;
 
 /// Changes of a case: ring mass, engine order, units of mass and length in SI units.

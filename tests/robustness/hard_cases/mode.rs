@@ -3,11 +3,7 @@
 use super::Case;
 use super::blisk::{plain, unforced};
 use crate::common::harmonics;
-use hbvib::analysis::nonlinear_mode;
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ModeOptions, SolverOptions};
-use hbvib::results::mode_branch::ModePoint;
+use hbvib::{Hooks, ModeOptions, ModePoint, SolverOptions, Status, nonlinear_mode};
 use std::f64::consts::TAU;
 
 /// Frequency in Hz and numbers of the mode at the case's amplitude.

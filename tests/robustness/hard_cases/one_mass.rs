@@ -1,14 +1,10 @@
 //! One mass on a spring that rubs on the ground: limits of the friction, loads and scales.
 
 use super::Case;
-use hbvib::analysis::{forced_response, time_response};
-use hbvib::contact::Contact;
-use hbvib::error::{Result, Status};
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions, TimeOptions};
+use hbvib::{
+    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, Status, TimeOptions,
+    forced_response, time_response,
+};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -2,9 +2,7 @@
 
 use super::Case;
 use super::one_mass::{answer, rubbing};
-use hbvib::error::Status;
-use hbvib::interrupt::Interrupt;
-use hbvib::options::SolverOptions;
+use hbvib::{Interrupt, SolverOptions, Status};
 use std::f64::consts::PI;
 
 pub fn beyond_capacity(case: &Case) {

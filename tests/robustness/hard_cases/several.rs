@@ -4,11 +4,7 @@
 use super::Case;
 use super::one_mass::{at, by_default, in_time, rubbing, structure};
 use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Status};
 
 /// Two degrees of freedom from M, C and K, column-major.
 fn two(mass: [f64; 4], damping: [f64; 4], stiffness: [f64; 4], forces: [f64; 2]) -> Model {

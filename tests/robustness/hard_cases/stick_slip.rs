@@ -2,9 +2,7 @@
 
 use super::Case;
 use super::one_mass::{at, by_default, rubbing};
-use hbvib::analysis::forced_response;
-use hbvib::hooks::Hooks;
-use hbvib::options::ForcedOptions;
+use hbvib::{ForcedOptions, Hooks, forced_response};
 
 pub fn nearly_rigid(case: &Case) {
     let model = rubbing(case, case.number("fc"), &[(1, case.number("F"))]);

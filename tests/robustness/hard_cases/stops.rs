@@ -3,11 +3,7 @@
 use super::Case;
 use super::one_mass::{EVERY_H, at, by_default, structure};
 use crate::common::{harmonics, sweep};
-use hbvib::contact::Contact;
-use hbvib::error::Status;
-use hbvib::model::Model;
-use hbvib::options::SolverOptions;
-use hbvib::results::Branch;
+use hbvib::{Branch, Contact, Model, SolverOptions, Status};
 
 /// f = kn·max(x − gap, 0).
 fn stopped(case: &Case) -> Model {

@@ -1,6 +1,6 @@
 //! Laws of the caller for random models: one without memory, one with a state.
 
-use hbvib::contact::laws::user_law::{Call, UserForce};
+use hbvib::{Call, UserForce};
 
 /// A softening spring with a drag that grows with the square of the speed:
 /// f = k·a·asinh(u/a) + c·v·√(1 + (v/v₀)²).

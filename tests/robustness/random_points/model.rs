@@ -3,13 +3,7 @@
 use super::caller::{Dahl, Drag};
 use crate::common::peers::structure;
 use crate::random_problems::random::Random;
-use hbvib::contact::laws::iwan::Iwan;
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::laws::user_law::User;
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
+use hbvib::{Contact, ContactKind, ContactState, Iwan, Model, Polynomial, Table, User};
 use std::sync::Arc;
 
 /// The laws of the contacts.

@@ -1,15 +1,10 @@
 //! Options without sense: every call ends within a number of evaluations that its bounds give.
 
 use crate::common::harmonics;
-use hbvib::analysis::forced_response;
-use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::{Contact, ContactKind};
-use hbvib::error::Result;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::{
+    Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, User,
+    UserForce, forced_response,
+};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

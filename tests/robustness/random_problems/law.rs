@@ -3,9 +3,7 @@
 
 use super::random::Random;
 use crate::common::rest::{Disc, nearest_of_many};
-use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::laws::table::Table;
-use hbvib::contact::{Contact, ContactKind};
+use hbvib::{Contact, ContactKind, Polynomial, Table};
 
 /// A law with its constants.
 #[derive(Clone, Debug)]

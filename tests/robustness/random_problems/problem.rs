@@ -2,9 +2,7 @@
 
 use super::law::{LAWS, Law, Sizes};
 use super::random::Random;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{MatrixKind, MatrixView, Model};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

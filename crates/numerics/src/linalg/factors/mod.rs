@@ -1,0 +1,8 @@
+//! Factors of matrices, dense and sparse, and what they tell.
+
+pub mod cholesky;
+pub mod factor;
+pub mod inertia;
+pub mod lu;
+pub mod shifted_inverse;
+pub mod small_lu;

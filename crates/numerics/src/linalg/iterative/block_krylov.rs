@@ -1,0 +1,483 @@
+//! Block Krylov basis of a large structure about one definite matrix A = K + σM.
+//!
+//! From the columns A⁻¹B on, each block is the part of A⁻¹M V (and A⁻¹C V, where damping C is no combination of K and M)
+//! that the blocks before do not hold. The basis is orthonormal in the inner product of A, which massless degrees of
+//! freedom do not upset. r blocks match 2r moments of Bᴴ(K − ν²M)⁻¹B about ν² = −σ (Su & Craig 1991,
+//! doi:10.2514/3.20636; Bai 2002, doi:10.1016/S0168-9274(02)00116-2).
+//!
+//! With Galerkin coefficients q the residual of A⁻¹Z V q = A⁻¹b lies in the part E of the last images that the basis does
+//! not hold, so that its norm at any frequency follows from the Gram matrix EᴴAE. A block of combinations of E alone leaves the rest
+//! of E, which stays beside the images of that block.
+
+use crate::error::{Error, Result, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::exact_sums::compensated_product::Rows;
+use crate::linalg::factors::cholesky::Cholesky;
+use crate::linalg::iterative::orthonormal_block::{adjoint_product, norms, orthonormalise, orthonormalise_again};
+use crate::linalg::sparse_storage::sparse::Csc;
+use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
+use crate::linalg::sparse_storage::triangle_product::multiply;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the reduced structure";
+
+/// A vector by its entries.
+pub type SparseVector = Vec<(usize, Complex64)>;
+
+/// |xᴴ y|
+fn energy<T: Entry>(x: &[T], y: &[T]) -> f64 {
+    let product = |(x, y): (&T, &T)| x.complex().conj() * y.complex();
+    x.iter().zip(y).map(product).sum::<Complex64>().norm()
+}
+
+/// A growing basis.
+pub struct BlockKrylov<T> {
+    factor: Cholesky<T>,
+    /// K, σ and M of A = K + σM: the sum would round what M has more of than K in the smallest motions.
+    stiffness: Triangle<T>,
+    shift: f64,
+    mass: Triangle<T>,
+    /// C, if its images extend the basis, too.
+    damping: Option<Csc>,
+    n: usize,
+    /// Columns of n numbers.
+    basis: Vec<T>,
+    /// First column whose image the basis may lack.
+    last: usize,
+    /// Vᴴ O V per operator, column after column, of the present order.
+    reduced: Vec<Vec<Complex64>>,
+    /// Parts of the images of the columns from `last` on that the basis does not hold: n numbers per column, operator after operator.
+    rest: Vec<T>,
+    /// Norms of the images.
+    sizes: Vec<f64>,
+    /// Their Gram matrix in the inner product of A.
+    gram: Vec<Complex64>,
+}
+
+impl<T: Entry> BlockKrylov<T> {
+    /// An empty basis about A = K + σM, whose factors are given.
+    #[must_use]
+    pub fn new(
+        factor: Cholesky<T>,
+        (stiffness, shift, mass): (Triangle<T>, f64, Triangle<T>),
+        damping: Option<Csc>,
+    ) -> Self {
+        let n = mass.n;
+        let reduced = (0..=usize::from(damping.is_some())).map(|_| Vec::new()).collect();
+        Self {
+            factor,
+            stiffness,
+            shift,
+            mass,
+            damping,
+            n,
+            basis: Vec::new(),
+            last: 0,
+            reduced,
+            rest: Vec::new(),
+            sizes: Vec::new(),
+            gram: Vec::new(),
+        }
+    }
+
+    /// Number of columns of the basis.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.basis.len() / self.n.max(1)
+    }
+
+    /// First column whose image the basis may lack: that of the last block which took all candidates.
+    #[must_use]
+    pub fn last(&self) -> usize {
+        self.last
+    }
+
+    /// Columns that the next block has at most.
+    #[must_use]
+    pub fn next_columns(&self) -> usize {
+        self.rest.len() / self.n.max(1)
+    }
+
+    /// Vᴴ O V of an operator, mass or damping, column after column.
+    #[must_use]
+    pub fn reduced(&self, operator: usize) -> &[Complex64] {
+        &self.reduced[operator]
+    }
+
+    /// EᴴAE of the images of the columns from [`Self::last`] on, operator after operator.
+    #[must_use]
+    pub fn gram(&self) -> &[Complex64] {
+        &self.gram
+    }
+
+    /// The basis, column after column, which [`Self::give_basis`] returns before more blocks are asked for.
+    pub fn take_basis(&mut self) -> Vec<T> {
+        core::mem::take(&mut self.basis)
+    }
+
+    /// The basis as it was taken.
+    pub fn give_basis(&mut self, basis: Vec<T>) {
+        self.basis = basis;
+    }
+
+    /// Largest part that the basis does not hold, relative and in the norm of A, of the error by rounding of solutions whose
+    /// result would be motions V z, over `probes` of coordinates z, one after the other. Errors within the basis change none
+    /// of its motions.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn rounding_of_solutions(&mut self, probes: &[Complex64], interrupt: &Interrupt<'_>) -> Result<f64> {
+        let mut worst = 0.0_f64;
+        let mut force = try_vec(self.n, T::NONE, CONTEXT)?;
+        for probe in probes.chunks_exact(self.order().max(1)) {
+            let motion = self.motion(probe)?;
+            self.weigh_exactly(&motion, &mut force, interrupt)?;
+            let size = energy(&motion, &force);
+            let mut found = try_copy(&force, CONTEXT)?;
+            self.factor.solve(&mut found, interrupt)?;
+            for (x, v) in found.iter_mut().zip(&motion) {
+                x.add_product(v.scaled(-1.0), T::of(Complex64::ONE));
+            }
+            // Twice: the error within the basis is far larger.
+            for _ in 0..2 {
+                self.weigh_exactly(&found, &mut force, interrupt)?;
+                self.project(&mut found, &force, interrupt)?;
+            }
+            self.weigh(&found, &mut force, interrupt)?;
+            if size > 0.0 {
+                worst = worst.max((energy(&found, &force) / size).sqrt());
+            }
+        }
+        Ok(worst)
+    }
+
+    /// y = A x for columns of n numbers.
+    fn weigh(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        multiply(&[(1.0, &self.stiffness), (self.shift, &self.mass)], x, y, interrupt)
+    }
+
+    /// y = A x for one column, rounded once.
+    fn weigh_exactly(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let mut rows = Rows::new(self.n)?;
+        rows.add(&self.stiffness, x, interrupt)?;
+        let mut shifted = try_copy(x, CONTEXT)?;
+        for x in &mut shifted {
+            *x = x.scaled(self.shift);
+        }
+        rows.add(&self.mass, &shifted, interrupt)?;
+        rows.rounded(y);
+        Ok(())
+    }
+
+    /// y = M x or C x, or with the adjoint, for columns of n numbers.
+    fn image(&self, operator: usize, adjoint: bool, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let a = match &self.damping {
+            Some(damping) if operator > 0 => damping,
+            _ => return multiply(&[(1.0, &self.mass)], x, y, interrupt),
+        };
+        for (x, y) in x.chunks_exact(a.rows).zip(y.chunks_exact_mut(a.rows)) {
+            interrupt.check_before(2 * a.values.len() as u64)?;
+            y.fill(T::NONE);
+            for j in 0..a.cols {
+                for (i, v) in a.column(j) {
+                    if adjoint {
+                        y[j].add_product(T::of(v.conj()), x[i]);
+                    } else {
+                        y[i].add_product(T::of(v), x[j]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Dᴴ V for vectors D, one number after the other for each column of V.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn seen_by(&self, vectors: &[SparseVector]) -> Result<Vec<Complex64>> {
+        let mut seen = Vec::new();
+        for column in self.basis.chunks_exact(self.n.max(1)) {
+            for vector in vectors {
+                let sum = vector.iter().map(|&(p, z)| z.conj() * column[p].complex()).sum();
+                try_push(&mut seen, sum, CONTEXT)?;
+            }
+        }
+        Ok(seen)
+    }
+
+    /// V z
+    fn motion(&self, z: &[Complex64]) -> Result<Vec<T>> {
+        let mut motion = try_vec(self.n, T::NONE, CONTEXT)?;
+        for (column, &z) in self.basis.chunks_exact(self.n.max(1)).zip(z) {
+            for (x, v) in motion.iter_mut().zip(column) {
+                x.add_product(*v, T::of(z));
+            }
+        }
+        Ok(motion)
+    }
+
+    /// Vᴴ A V z for coordinates z, one column after the other, in which products with A are rounded once. The basis is
+    /// orthonormal by plain products, which lose the smallest stiffness in the largest one.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn products(&self, coordinates: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
+        let (n, order) = (self.n.max(1), self.order().max(1));
+        let mut forces = try_vec(coordinates.len() / order * n, T::NONE, CONTEXT)?;
+        for (force, z) in forces.chunks_exact_mut(n).zip(coordinates.chunks_exact(order)) {
+            self.weigh_exactly(&self.motion(z)?, force, interrupt)?;
+        }
+        let mut products = try_vec(coordinates.len(), T::NONE, CONTEXT)?;
+        interrupt.check_before((4 * order * forces.len()) as u64)?;
+        adjoint_product(&self.basis, &forces, n, &mut products);
+        let mut found = try_vec(coordinates.len(), Complex64::ZERO, CONTEXT)?;
+        for (found, product) in found.iter_mut().zip(products) {
+            *found = product.complex();
+        }
+        Ok(found)
+    }
+
+    /// The first block, of A⁻¹ times the given vectors. Address space for a number of `blocks` like it is reserved where that
+    /// is possible: a basis that moves when it grows leaves holes, which remain resident.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn start(&mut self, inputs: &[SparseVector], blocks: usize, interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.n;
+        // Without it every block asks for its own.
+        let _not_needed = self
+            .basis
+            .try_reserve_exact(inputs.len().saturating_mul(n).saturating_mul(blocks));
+        let mut b = try_vec(inputs.len().saturating_mul(n), T::NONE, CONTEXT)?;
+        for (column, input) in b.chunks_exact_mut(n.max(1)).zip(inputs) {
+            for &(p, x) in input {
+                column[p].add_product(T::of(x), T::of(Complex64::ONE));
+            }
+        }
+        let mut block = try_copy(&b, CONTEXT)?;
+        self.factor.solve(&mut block, interrupt)?;
+        let sizes = norms(&block, &b, n);
+        drop(b);
+        self.absorb(block, &sizes, interrupt)
+    }
+
+    /// One more block; `false` where the basis holds all of the images.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn grow(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let before = self.order();
+        let candidates = core::mem::take(&mut self.rest);
+        let sizes = core::mem::take(&mut self.sizes);
+        self.absorb(candidates, &sizes, interrupt)?;
+        Ok(self.order() > before)
+    }
+
+    /// Whether a block may be of some combinations of the candidates: there is one operator.
+    #[must_use]
+    pub fn can_choose(&self) -> bool {
+        self.damping.is_none()
+    }
+
+    /// A block of the combinations E W of the candidates E for the columns of W; `false` where it is nothing new. The candidates that
+    /// are left belong to the next block.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn grow_by(&mut self, choice: &[Complex64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        let n = self.n.max(1);
+        let (first, candidates) = (self.order(), self.next_columns());
+        let columns = choice.len() / candidates.max(1);
+        let mut weights = try_vec(choice.len(), T::NONE, CONTEXT)?;
+        for (to, from) in weights.iter_mut().zip(choice) {
+            *to = T::of(*from);
+        }
+        let mut block = try_vec(n * columns, T::NONE, CONTEXT)?;
+        interrupt.check_before((4 * candidates * block.len()) as u64)?;
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut block, n, columns),
+            Accum::Replace,
+            MatRef::from_column_major_slice(&self.rest, n, candidates),
+            MatRef::from_column_major_slice(&weights, candidates, columns),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
+        let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
+        for _ in 0..2 {
+            self.weigh(&block, &mut weighted, interrupt)?;
+            self.project(&mut block, &weighted, interrupt)?;
+            self.weigh(&block, &mut weighted, interrupt)?;
+            if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
+                return Ok(false);
+            }
+        }
+        self.weigh(&block, &mut weighted, interrupt)?;
+        remove_part(&mut self.rest, (&block, &weighted), n, interrupt)?;
+        self.append(&block)?;
+        drop((block, weighted));
+        self.images(first, interrupt)?;
+        Ok(true)
+    }
+
+    fn append(&mut self, block: &[T]) -> Result<()> {
+        self.basis
+            .try_reserve_exact(block.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.basis.extend_from_slice(block);
+        Ok(())
+    }
+
+    /// Appends what is new in the candidates, which came from images of the given sizes, and computes the images of the
+    /// new block.
+    fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.n;
+        let first = self.order();
+        let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
+        self.weigh(&block, &mut weighted, interrupt)?;
+        let kept = orthonormalise((&mut block, &mut weighted), n, sizes, interrupt)?;
+        block.truncate(kept * n);
+        weighted.truncate(kept * n);
+        // The rest of a small part has lost the digits by which it was small.
+        self.weigh(&block, &mut weighted, interrupt)?;
+        if first > 0 {
+            self.project(&mut block, &weighted, interrupt)?;
+            self.weigh(&block, &mut weighted, interrupt)?;
+        }
+        if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
+            let sizes = try_vec(kept, 1.0, CONTEXT)?;
+            let kept = orthonormalise((&mut block, &mut weighted), n, &sizes, interrupt)?;
+            block.truncate(kept * n);
+        }
+        self.append(&block)?;
+        drop((weighted, block));
+        self.last = first;
+        self.images(first, interrupt)
+    }
+
+    /// Images of the columns from `first` on, beside the rest of those before.
+    fn images(&mut self, first: usize, interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.n;
+        let order = self.order();
+        let new = order - first;
+        let block = &self.basis[first * n..];
+        let count = self.reduced.len();
+        let mut rest = try_vec(block.len() * count, T::NONE, CONTEXT)?;
+        let mut product = try_vec(order * new, T::NONE, CONTEXT)?;
+        let mut coefficients = try_vec(order * new * count, T::NONE, CONTEXT)?;
+        for (o, image) in rest.chunks_exact_mut(block.len().max(1)).enumerate() {
+            let mut reduced = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+            for (to, from) in reduced
+                .chunks_exact_mut(order)
+                .zip(self.reduced[o].chunks_exact(first.max(1)))
+            {
+                to[..first].copy_from_slice(from);
+            }
+            self.image(o, false, block, image, interrupt)?;
+            adjoint_product(&self.basis, image, n, &mut product);
+            for (to, from) in reduced[first * order..].iter_mut().zip(&product) {
+                *to = from.complex();
+            }
+            for (to, from) in coefficients[o * order * new..].iter_mut().zip(&product) {
+                *to = from.scaled(-1.0);
+            }
+            if o > 0 {
+                let mut back = try_vec(block.len(), T::NONE, CONTEXT)?;
+                self.image(o, true, block, &mut back, interrupt)?;
+                adjoint_product(&self.basis, &back, n, &mut product);
+            }
+            for j in 0..first {
+                for i in first..order {
+                    reduced[j * order + i] = product[(i - first) * order + j].complex().conj();
+                }
+            }
+            self.reduced[o] = reduced;
+        }
+        let mut weighted = try_copy(&rest, CONTEXT)?;
+        self.factor.solve(&mut rest, interrupt)?;
+        let mut sizes = core::mem::take(&mut self.sizes);
+        sizes.extend(norms(&rest, &weighted, n));
+        self.sizes = sizes;
+        // VᴴA A⁻¹O V = VᴴO V: the part in the basis needs no other product.
+        interrupt.check_before((4 * order * rest.len()) as u64)?;
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut rest, n, new * count),
+            Accum::Add,
+            MatRef::from_column_major_slice(&self.basis, n, order),
+            MatRef::from_column_major_slice(&coefficients, order, new * count),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
+        let before = self.rest.len();
+        if before > 0 {
+            let mut all = core::mem::take(&mut self.rest);
+            all.try_reserve_exact(rest.len())
+                .map_err(|_| Error::out_of_memory(CONTEXT))?;
+            all.extend_from_slice(&rest);
+            rest = all;
+            // The rest has become small beside the images, whose products with it are rounded by their own size.
+            weighted = try_vec(rest.len(), T::NONE, CONTEXT)?;
+            self.weigh(&rest, &mut weighted, interrupt)?;
+        }
+        let columns = rest.len() / n.max(1);
+        let mut gram = try_vec(columns * columns, T::NONE, CONTEXT)?;
+        // EᴴA V = 0, so that EᴴA E = EᴴA A⁻¹O V.
+        adjoint_product(&rest, &weighted, n, &mut gram);
+        self.gram.clear();
+        self.gram.extend(gram.iter().map(|z| z.complex()));
+        self.rest = rest;
+        Ok(())
+    }
+
+    /// block ← block − V Vᴴ A block
+    fn project(&self, block: &mut [T], weighted: &[T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let (n, order) = (self.n, self.order());
+        let columns = block.len() / n.max(1);
+        if order == 0 || columns == 0 {
+            return Ok(());
+        }
+        let mut c = try_vec(order * columns, T::NONE, CONTEXT)?;
+        interrupt.check_before((4 * order * block.len()) as u64)?;
+        adjoint_product(&self.basis, weighted, n, &mut c);
+        for x in &mut c {
+            *x = x.scaled(-1.0);
+        }
+        interrupt.check()?;
+        matmul(
+            MatMut::from_column_major_slice_mut(block, n, columns),
+            Accum::Add,
+            MatRef::from_column_major_slice(&self.basis, n, order),
+            MatRef::from_column_major_slice(&c, order, columns),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
+        Ok(())
+    }
+}
+
+/// x ← x − U Uᴴ A x for orthonormal columns U, with A U.
+fn remove_part<T: Entry>(
+    x: &mut [T],
+    (unit, weighted): (&[T], &[T]),
+    n: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let (own, columns) = (unit.len() / n.max(1), x.len() / n.max(1));
+    let mut parts = try_vec(own * columns, T::NONE, CONTEXT)?;
+    interrupt.check_before((8 * own * x.len()) as u64)?;
+    adjoint_product(weighted, x, n, &mut parts);
+    for part in &mut parts {
+        *part = part.scaled(-1.0);
+    }
+    matmul(
+        MatMut::from_column_major_slice_mut(x, n, columns),
+        Accum::Add,
+        MatRef::from_column_major_slice(unit, n, own),
+        MatRef::from_column_major_slice(&parts, own, columns),
+        T::of(Complex64::ONE),
+        Par::Seq,
+    );
+    Ok(())
+}

@@ -1,0 +1,367 @@
+//! The iterative backend: products with J, preconditioned by the factors of the block between the unknowns that couple
+//! strongly, then by those of the mean coupling of each pair of numbers by itself, and by the identity beyond.
+//!
+//! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
+//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead.
+
+use crate::error::{Result, Status, boxed, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::iterative::gmres::Gmres;
+use crate::linalg::newton::linear_system::dense::DenseSystem;
+use crate::linalg::newton::linear_system::sector_waves::RingFactors;
+use crate::linalg::newton::linear_system::{Border, Jacobian, LinearSystem, MatrixFree, Ring};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the linear system";
+
+/// Products beyond those with its own factors up to which a solution with the factors of an earlier matrix is quicker
+/// than new factors.
+/// Kind: tuned; measured on: not recorded.
+const SPARED: usize = 12;
+
+/// A bordered system that is solved by iteration.
+pub struct KrylovSystem {
+    block: DenseSystem,
+    lengths: Lengths,
+    pairs: Pairs,
+    /// Factors of the waves of a wheel, instead of block and pairs.
+    ring: Option<Box<RingFactors>>,
+    memory: Gmres,
+    most_products: usize,
+    /// Products of the last solution.
+    products: usize,
+    /// Products for each digit with the factors of the matrix itself.
+    of_own_factors: f64,
+    /// Sign of det K M⁻¹ that the last solution showed.
+    positive: bool,
+    column: Vec<f64>,
+    scales: (f64, f64),
+    row: Vec<f64>,
+    /// Right side of the block, preconditioned vector, and its scaled unknowns.
+    reduced: Vec<f64>,
+    product: Vec<f64>,
+    scaled: Vec<f64>,
+}
+
+/// Lengths within the groups of unknowns.
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths {
+    /// Length of a group.
+    pub group: usize,
+    /// Numbers of each group that are in the block.
+    pub part: usize,
+    /// End of the pairs behind the block whose mean coupling is factored.
+    pub middle: usize,
+    /// Unknowns behind the groups, which are in the block.
+    pub behind: usize,
+}
+
+impl Lengths {
+    /// Those of a wheel, which has neither block nor pairs.
+    pub(super) fn of_ring(group: usize) -> Self {
+        Self {
+            group,
+            part: 0,
+            middle: 0,
+            behind: 0,
+        }
+    }
+
+    /// Positions of these pairs in a group.
+    fn pairs(self) -> impl Iterator<Item = usize> {
+        (self.part..self.middle.saturating_sub(1)).step_by(2)
+    }
+}
+
+/// Factors of the mean coupling of each pair, with memory for one of them.
+struct Pairs {
+    factors: Vec<Lu<Complex64>>,
+    /// Whether the factors of each pair exist; a singular matrix has none, and the identity serves.
+    regular: Vec<bool>,
+    b: Vec<Complex64>,
+}
+
+impl Pairs {
+    fn new(groups: usize, lengths: Lengths) -> Result<Self> {
+        let mut factors = Vec::new();
+        for _ in lengths.pairs() {
+            try_push(&mut factors, Lu::new(groups, 1)?, CONTEXT)?;
+        }
+        Ok(Self {
+            regular: try_vec(factors.len(), false, CONTEXT)?,
+            factors,
+            b: try_vec(groups, Complex64::ZERO, CONTEXT)?,
+        })
+    }
+
+    fn factor(&mut self, lengths: Lengths, operator: &mut dyn MatrixFree, interrupt: &Interrupt<'_>) -> Result<()> {
+        let factors = self.factors.iter_mut().zip(&mut self.regular);
+        for (at, (lu, regular)) in lengths.pairs().zip(factors) {
+            interrupt.check()?;
+            operator.fill_pair(at, lu.matrix());
+            *regular = match lu.factor(interrupt) {
+                Err(e) if e.status == Status::Singular => false,
+                factored => factored.map(|()| true)?,
+            };
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, lengths: Lengths, u: &mut [f64]) {
+        let factors = self.factors.iter().zip(&self.regular);
+        for (at, (lu, _)) in lengths.pairs().zip(factors).filter(|(_, (_, regular))| **regular) {
+            for (b, x) in self.b.iter_mut().zip(u.chunks_exact(lengths.group)) {
+                *b = Complex64::new(x[at], x[at + 1]);
+            }
+            lu.solve(&mut self.b);
+            for (b, x) in self.b.iter().zip(u.chunks_exact_mut(lengths.group)) {
+                (x[at], x[at + 1]) = (b.re, b.im);
+            }
+        }
+    }
+}
+
+impl KrylovSystem {
+    /// Memory for `n` unknowns in groups of equal length and those behind them. A solution that takes more
+    /// products than `most_products` fails.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize, lengths: Lengths, most_products: usize) -> Result<Self> {
+        let groups = (n - lengths.behind) / lengths.group.max(1);
+        let order = groups * lengths.part + lengths.behind;
+        Ok(Self {
+            block: DenseSystem::new(order)?,
+            pairs: Pairs::new(groups, lengths)?,
+            ring: None,
+            lengths,
+            memory: Gmres::default(),
+            most_products,
+            products: 0,
+            of_own_factors: 0.0,
+            positive: true,
+            column: try_vec(n, 0.0, CONTEXT)?,
+            scales: (1.0, 1.0),
+            row: try_vec(n + 1, 0.0, CONTEXT)?,
+            reduced: try_vec(order + 1, 0.0, CONTEXT)?,
+            product: try_vec(n + 1, 0.0, CONTEXT)?,
+            scaled: try_vec(n, 0.0, CONTEXT)?,
+        })
+    }
+
+    /// The same for the sectors of a wheel.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn of_ring(n: usize, (group, ring): (usize, Ring<'_>), most_products: usize) -> Result<Self> {
+        let factors = boxed(|| RingFactors::new(n, group, ring))?;
+        Ok(Self {
+            ring: Some(factors),
+            ..Self::new(n, Lengths::of_ring(group), most_products)?
+        })
+    }
+
+    /// Numbers of the block among those of all groups, with those behind the groups; the last one, of the parameter, included.
+    fn of_block(v: &[f64], lengths: Lengths) -> impl Iterator<Item = f64> {
+        let (u, behind) = v.split_at(v.len() - 1 - lengths.behind);
+        let inner = u
+            .chunks_exact(lengths.group.max(1))
+            .flat_map(move |y| y[..lengths.part].iter().copied());
+        inner.chain(behind.iter().copied())
+    }
+
+    /// v ← M⁻¹ v
+    fn precondition(
+        (block, pairs, ring): (&mut DenseSystem, &mut Pairs, &mut Option<Box<RingFactors>>),
+        lengths: Lengths,
+        reduced: &mut [f64],
+        v: &mut [f64],
+    ) {
+        if let Some(ring) = ring {
+            return ring.solve(v);
+        }
+        for (to, from) in reduced.iter_mut().zip(Self::of_block(v, lengths)) {
+            *to = from;
+        }
+        block.solve_by_factors(reduced);
+        let (unit, part) = (block.unit(), lengths.part);
+        let (groups, behind) = v.split_at_mut(v.len() - 1 - lengths.behind);
+        pairs.solve(lengths, groups);
+        let solved = reduced.chunks_exact(part.max(1));
+        for (to, from) in groups.chunks_exact_mut(lengths.group.max(1)).zip(solved) {
+            to[..part].copy_from_slice(&from[..part]);
+            for weak in &mut to[part..] {
+                *weak /= unit;
+            }
+        }
+        behind.copy_from_slice(&reduced[reduced.len() - behind.len()..]);
+    }
+
+    /// Solves by GMRES with the factors made last, in at most so many products.
+    fn iterate(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        (tolerance, most): (f64, usize),
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        interrupt.check()?;
+        let lengths = self.lengths;
+        self.products = 0;
+        self.positive = true;
+        let is_direct = self.is_direct();
+        let (factors, reduced) = ((&mut self.block, &mut self.pairs, &mut self.ring), &mut self.reduced);
+        if !is_direct {
+            let border = (&self.column[..], self.scales, &self.row[..]);
+            let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
+            let solved = self.memory.solve(b, tolerance, most, |v, out| {
+                interrupt.check()?;
+                preconditioned.copy_from_slice(v);
+                let factors = (&mut *factors.0, &mut *factors.1, &mut *factors.2);
+                Self::precondition(factors, lengths, reduced, preconditioned);
+                product(jacobian, border, scaled, preconditioned, out)
+            })?;
+            let Some(solved) = solved else {
+                self.products = most;
+                return Ok(false);
+            };
+            (self.products, self.positive) = (solved.products, solved.positive);
+        }
+        Self::precondition(factors, lengths, reduced, b);
+        Ok(true)
+    }
+
+    /// Whether the block is the whole matrix.
+    fn is_direct(&self) -> bool {
+        self.lengths.group == self.lengths.part
+    }
+}
+
+/// The products of a Jacobian.
+fn operator(jacobian: &mut dyn Jacobian) -> Result<&mut dyn MatrixFree> {
+    match jacobian.matrix_free() {
+        Some(operator) => Ok(operator),
+        None => fail!(Unsupported, "an iterative solution needs products with the Jacobian"),
+    }
+}
+
+/// out = K x
+fn product(
+    jacobian: &mut dyn Jacobian,
+    (column, scales, row): (&[f64], (f64, f64), &[f64]),
+    scaled: &mut [f64],
+    x: &[f64],
+    out: &mut [f64],
+) -> Result<()> {
+    let n = column.len();
+    for (s, x) in scaled.iter_mut().zip(x) {
+        *s = scales.0 * x;
+    }
+    operator(jacobian)?.multiply(scaled, &mut out[..n])?;
+    let along = scales.1 * x[n];
+    for (out, c) in out.iter_mut().zip(column) {
+        *out += c * along;
+    }
+    out[n] = row.iter().zip(x).map(|(t, x)| t * x).sum();
+    Ok(())
+}
+
+impl LinearSystem for KrylovSystem {
+    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.column.copy_from_slice(border.column);
+        self.row.copy_from_slice(border.row);
+        self.scales = border.scales;
+        interrupt.check()?;
+        if let Some(ring) = &mut self.ring {
+            ring.set_border(border);
+            return operator(jacobian)?.keep();
+        }
+        let is_direct = self.is_direct();
+        let (matrix, active) = self.block.memory();
+        if is_direct {
+            jacobian.fill(matrix, active)?;
+        } else {
+            let operator = operator(jacobian)?;
+            operator.fill_block(self.lengths.part, matrix, active)?;
+            operator.keep()?;
+        }
+        let lengths = self.lengths;
+        let (groups, behind) = border.column.split_at(border.column.len() - lengths.behind);
+        let groups = groups.chunks_exact(lengths.group.max(1));
+        let column = groups.flat_map(|y| y[..lengths.part].iter().copied());
+        let column = column.chain(behind.iter().copied());
+        self.block
+            .set_border(column, border.scales, Self::of_block(border.row, lengths));
+        Ok(())
+    }
+
+    fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
+        if let Some(ring) = &mut self.ring {
+            ring.factor(operator(jacobian)?, interrupt)?;
+            ring.set_border(Border {
+                column: &self.column,
+                scales: self.scales,
+                row: &self.row,
+            });
+            return Ok(());
+        }
+        if !self.is_direct() {
+            self.pairs.factor(self.lengths, operator(jacobian)?, interrupt)?;
+        }
+        self.block.factor_memory(interrupt)
+    }
+
+    fn solve(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let solved = self.iterate(jacobian, (tolerance, self.most_products), b, interrupt)?;
+        self.of_own_factors = self.products as f64 / -tolerance.log10();
+        Ok(solved)
+    }
+
+    fn solve_by_earlier_factors(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        if self.is_direct() {
+            return Ok(false);
+        }
+        // An iteration converges linearly in the products.
+        let digits = -tolerance.log10();
+        let most = (self.of_own_factors * digits) as usize + SPARED;
+        self.iterate(jacobian, (tolerance, most.min(self.most_products)), b, interrupt)
+    }
+
+    fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()> {
+        if self.is_direct() {
+            return self.block.apply(jacobian, x, out);
+        }
+        let border = (&self.column[..], self.scales, &self.row[..]);
+        product(jacobian, border, &mut self.scaled, x, out)
+    }
+
+    fn limit_products(&mut self, most: usize) {
+        self.most_products = most;
+    }
+
+    fn products(&self) -> usize {
+        self.products
+    }
+
+    /// det K = det M · det K M⁻¹, and the determinant of a complex matrix taken as a real one is positive.
+    fn is_positive(&self) -> bool {
+        let factors = match &self.ring {
+            Some(ring) => ring.is_positive(),
+            None => self.block.is_positive(),
+        };
+        factors == self.positive
+    }
+}

@@ -1,0 +1,6 @@
+//! Linear analyses: damped modes and static states.
+
+pub mod damped_modes;
+pub mod linear_contacts;
+pub mod static_history;
+pub(crate) mod static_solution;

@@ -1,0 +1,178 @@
+//! Stability of the points of a forced response while it is followed.
+
+use crate::analysis::perturbed::floquet_on_modes::{KeptModes, floquet_of};
+use crate::analysis::perturbed::perturbed_motion::{FAR, Motion};
+use crate::condense::Resolution;
+use crate::continuation::Point;
+use crate::error::try_push;
+use crate::error::{Result, Status};
+use crate::hooks::Hooks;
+use crate::interrupt::Interrupt;
+use crate::model::Model;
+use crate::model::matrices::speed::Speed;
+use crate::options::{FloquetOptions, Waves};
+use crate::results::{Floquet, MultiplierClass, Recovery, Verdict};
+use crate::time_integration::{State, System};
+use num_complex::Complex64;
+
+/// Stability of the points of one branch.
+pub(crate) struct BranchStability<'a> {
+    model: &'a Model,
+    options: FloquetOptions,
+    /// Whether the motion is integrated on all degrees of freedom.
+    pub on_all_degrees: bool,
+    /// Modes of a large structure.
+    modes: KeptModes,
+    interrupt: &'a Interrupt<'a>,
+    /// Difference of the state in time and that of the harmonics at the point solved last.
+    difference: Option<State>,
+    /// The points of the curve recorded last, the last one at the end.
+    last: [Option<Verdict>; 2],
+    /// Frequency of the last one, where all contacts were linear there.
+    linear: Option<f64>,
+    /// Whether the last two were given to the search for bifurcations.
+    taken: bool,
+}
+
+impl<'a> BranchStability<'a> {
+    /// No point yet. Models that cannot be integrated in time are refused.
+    pub fn new(model: &'a Model, waves: Waves, omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        let options = FloquetOptions {
+            waves,
+            ..FloquetOptions::default()
+        };
+        let mut modes = KeptModes::default();
+        let on_all_degrees = modes.on_all_degrees(model, omega, &options)?;
+        if on_all_degrees {
+            System::new(model, omega, interrupt)?;
+        }
+        Ok(Self {
+            on_all_degrees,
+            model,
+            options,
+            modes,
+            interrupt,
+            difference: None,
+            last: [None, None],
+            linear: None,
+            taken: true,
+        })
+    }
+
+    /// The same for the next point of the curve, at which every contact may be linear.
+    pub fn along(
+        &mut self,
+        resolution: &Resolution,
+        point: &Point,
+        fine: Option<&[Complex64]>,
+        linear: bool,
+    ) -> Result<&Verdict> {
+        let omega = point.parameter();
+        let fixed = !matches!(self.model.speed(), Speed::PerOmega(_));
+        let verdict = match (self.linear, &self.last[1]) {
+            (Some(before), Some(last)) if linear && fixed => with_linear_contacts(last, before / omega)?,
+            _ => self.solve(resolution, point, fine, true)?,
+        };
+        self.linear = (linear && verdict.unstable.is_some()).then_some(omega);
+        self.last.rotate_left(1);
+        self.taken = false;
+        Ok(self.last[1].insert(verdict))
+    }
+
+    /// The last two points, once.
+    pub fn take_last(&mut self) -> Option<(Verdict, Verdict)> {
+        if core::mem::replace(&mut self.taken, true) {
+            return None;
+        }
+        let [before, after] = &self.last;
+        Some((before.clone()?, after.clone()?))
+    }
+
+    /// Stability of the motion of a solved point that need not lie on the curve; `fine`: its motion with more harmonics.
+    pub fn at(&mut self, resolution: &Resolution, point: &Point, fine: Option<&[Complex64]>) -> Result<Verdict> {
+        self.solve(resolution, point, fine, false)
+    }
+
+    /// Stability of the motion of a solved point. The multipliers are those of the motion in time that shooting finds
+    /// near it, to its tolerance or (not `quick`) to round-off; of the path of the point itself where it finds none, as
+    /// near a fold.
+    fn solve(
+        &mut self,
+        resolution: &Resolution,
+        point: &Point,
+        fine: Option<&[Complex64]>,
+        quick: bool,
+    ) -> Result<Verdict> {
+        let highest = resolution.condensed.set().numbers().last().copied().unwrap_or(0);
+        let solution = (point.unknowns(), point.parameter(), 0.0);
+        let harmonics = Recovery::of(resolution, solution, self.interrupt)?.all(highest)?;
+        let near = self.difference.take();
+        let motion = Motion {
+            omega: point.parameter(),
+            harmonics: &harmonics,
+            autonomous: false,
+            compared: false,
+            fine,
+            difference: near.as_ref(),
+            quick,
+        };
+        for refine in [true, false] {
+            let options = FloquetOptions { refine, ..self.options };
+            let found = floquet_of(
+                self.model,
+                &motion,
+                &options,
+                (&mut Hooks::default(), &mut self.modes),
+                self.interrupt,
+            );
+            match found {
+                Ok(found) if found.shift > FAR => {}
+                Ok(found) => {
+                    self.difference = found.difference;
+                    return verdict(&found.stability, refine);
+                }
+                Err(e)
+                    if matches!(
+                        e.status,
+                        Status::NoConvergence | Status::NoBoundedSolution | Status::Singular
+                    ) => {}
+                Err(e) => return Err(e),
+            }
+        }
+        Ok(Verdict::unknown())
+    }
+}
+
+fn verdict(stability: &Floquet, in_time: bool) -> Result<Verdict> {
+    if stability.radius.is_nan() {
+        return Ok(Verdict::unknown());
+    }
+    let mut multipliers = Vec::new();
+    let all = stability.multipliers.iter();
+    for m in all.filter(|m| m.class == MultiplierClass::Ordinary) {
+        try_push(&mut multipliers, m.value, "the stability of a point")?;
+    }
+    Ok(Verdict {
+        multipliers,
+        radius: stability.radius,
+        unstable: Some(stability.unstable),
+        in_time,
+    })
+}
+
+/// Stability at another frequency where the contacts remain in the same linear state: perturbations grow by the same
+/// e^{λt}, over a period that is `periods` times as long.
+fn with_linear_contacts(last: &Verdict, periods: f64) -> Result<Verdict> {
+    let mut multipliers = Vec::new();
+    for m in &last.multipliers {
+        let size = m.norm();
+        let scale = if size > 0.0 { size.powf(periods) / size } else { 0.0 };
+        try_push(&mut multipliers, m * scale, "the stability of a point")?;
+    }
+    Ok(Verdict {
+        multipliers,
+        radius: last.radius.powf(periods),
+        unstable: last.unstable,
+        in_time: last.in_time,
+    })
+}

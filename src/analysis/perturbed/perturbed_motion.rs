@@ -1,0 +1,337 @@
+//! Perturbations of one periodic motion: shooting from a harmonic motion, and the Floquet multipliers of the motion found.
+
+use crate::error::{Error, Result, Status, fail, try_extend, try_vec};
+use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
+use crate::model::Model;
+use crate::model::few_motions::on_modes::OnModes;
+use crate::model::matrices::structure::Structure;
+use crate::options::{FloquetOptions, TimeOptions};
+use crate::results::Floquet;
+use crate::stability::{Blocks, Closure, Known, closures, multipliers_of};
+use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, Steady, System};
+use crate::time_integration::{check_shooting, state_of, state_of_sector};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the motion in time";
+
+/// Distance of the motion in time from its point, relative to it, above which it may be another motion.
+/// Kind: tuned; measured on: not recorded.
+pub(crate) const FAR: f64 = 0.2;
+
+/// Largest difference of opposite sectors, relative to the motion, of a motion that is odd.
+/// Kind: rounding.
+pub(crate) const ODD: f64 = 1e-9;
+
+/// A periodic motion by its harmonics 0 … H in the caller's unit and numbering.
+pub(crate) struct Motion<'a> {
+    pub omega: f64,
+    pub harmonics: &'a [Complex64],
+    /// Whether no force drives it.
+    pub autonomous: bool,
+    /// Whether the motion in time is compared with the harmonics.
+    pub compared: bool,
+    /// The motion with more harmonics, from which shooting begins.
+    pub fine: Option<&'a [Complex64]>,
+    /// Difference of the state in time and that of the harmonics at a neighbouring point, from which it begins else.
+    pub difference: Option<&'a State>,
+    /// Whether shooting ends at its tolerance, and does not go on to round-off.
+    pub quick: bool,
+}
+
+/// Stability of a motion.
+pub(crate) struct Found {
+    pub stability: Floquet,
+    /// Distance of the initial state of the motion in time from that of the harmonics, relative to it.
+    pub shift: f64,
+    /// The difference itself.
+    pub difference: Option<State>,
+}
+
+/// A model whose motion is integrated, on all its degrees of freedom or on modes.
+pub(crate) struct Subject<'a> {
+    pub model: &'a Model,
+    pub on_modes: Option<&'a OnModes>,
+}
+
+impl Subject<'_> {
+    fn structure(&self) -> &Structure {
+        self.on_modes.map_or(self.model, |on_modes| &on_modes.model).structure()
+    }
+
+    /// The equations of motion under the forces of the model, unless no force drives the motion.
+    fn system<'s>(&self, motion: &Motion<'_>, interrupt: &'s Interrupt<'s>) -> Result<System<'s>> {
+        match self.on_modes {
+            None if motion.autonomous => System::unforced(self.model, motion.omega, interrupt),
+            None => System::new(self.model, motion.omega, interrupt),
+            Some(on_modes) => {
+                let mut system = System::unforced(&on_modes.model, motion.omega, interrupt)?;
+                if !motion.autonomous {
+                    for (harmonic, force) in on_modes.forces(&*self.model.at_frequency(motion.omega)?)? {
+                        system.add_forces(on_modes.model.structure(), harmonic, &force)?;
+                    }
+                }
+                Ok(system)
+            }
+        }
+    }
+
+    /// Whether forces and laws allow a motion in which sectors half a wave apart move opposite to each other.
+    fn allows_halves(&self, system: &System<'_>) -> Result<bool> {
+        if !system.sectors.is_multiple_of(2) || system.loads.iter().any(|load| load.harmonic.is_multiple_of(2)) {
+            return Ok(false);
+        }
+        for contact in self.on_modes.map_or(self.model, |on_modes| &on_modes.model).contacts() {
+            if !contact.law(1.0)?.is_odd() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The state at time 0 of the motion, in the space of the modes the state next to it.
+    fn state(&self, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
+        let Some(on_modes) = self.on_modes else {
+            return state_of(self.model, system, harmonics);
+        };
+        let degrees = self.model.structure().degrees();
+        let (given, n) = (degrees.given(), degrees.independent());
+        let mut independent = try_vec(harmonics.len() / given * n, Complex64::ZERO, CONTEXT)?;
+        for (x, all) in independent.chunks_exact_mut(n).zip(harmonics.chunks_exact(given)) {
+            degrees.restrict(all, x);
+        }
+        state_of_sector(&on_modes.model, system, &on_modes.coordinates(n, &independent)?)
+    }
+
+    /// The harmonics of all degrees of freedom.
+    fn harmonics(&self, recorder: HarmonicAnalysis, system: &System<'_>) -> Result<Vec<Complex64>> {
+        let Some(on_modes) = self.on_modes else {
+            return recorder.of_all_degrees(system, self.model);
+        };
+        let structure = self.model.structure();
+        let degrees = structure.degrees();
+        let (given, n) = (degrees.given(), degrees.independent());
+        let independent = on_modes.motion(n, &recorder.of_independent(system)?)?;
+        let mut all = try_vec(independent.len() / n * given, Complex64::ZERO, CONTEXT)?;
+        let rows = all.chunks_exact_mut(given).zip(independent.chunks_exact(n));
+        for (h, (all, x)) in rows.enumerate() {
+            degrees.expand(structure.phase(h, 1), x, all);
+        }
+        Ok(all)
+    }
+}
+
+/// The multipliers of a motion; `StoppedByCaller` is an error.
+pub(crate) fn perturbed(
+    subject: &Subject<'_>,
+    motion: &Motion<'_>,
+    options: &FloquetOptions,
+    hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Found> {
+    if options.refine {
+        // Half the sectors may do.
+        let structure = subject.structure();
+        check_shooting(structure.ndof() * structure.repeating_sectors().div_ceil(2))?;
+    }
+    let mut system = subject.system(motion, interrupt)?;
+    let mut event_loop = EventLoop::new(&system, options.tolerance)?;
+    let mut state = subject.state(&system, motion.harmonics)?;
+    let (mut residual, mut shift, mut difference) = (f64::NAN, 0.0, None);
+    if options.refine {
+        let in_time = TimeOptions {
+            omega: motion.omega,
+            tolerance: options.tolerance,
+            max_periods: options.max_periods,
+            ..TimeOptions::default()
+        };
+        let start = state.try_clone()?;
+        let mut found = None;
+        // From the motion with more harmonics or with the difference found at a neighbouring point first, then from the
+        // harmonics as they are.
+        let near = nearest(subject, &system, motion, &start)?;
+        for begin in near.into_iter().chain([start.try_clone()?]) {
+            let in_system = (&mut system, &mut event_loop);
+            found = shoot(in_system, subject, motion, (&in_time, hooks), begin)?;
+            if found.is_some() {
+                break;
+            }
+        }
+        let Some(steady) = found else {
+            return fail!(
+                NoConvergence,
+                "shooting did not converge from the point: it has too few harmonics; solve it with more, or set refine to false"
+            );
+        };
+        if steady.status == Status::StoppedByCaller {
+            return Err(Error::new(
+                steady.status,
+                format_args!("the caller stopped the shooting"),
+            ));
+        }
+        residual = steady.residual;
+        state = steady.state;
+        shift = start.distance(&state, system.omega);
+        let mut moved = state.try_clone()?;
+        moved.add(-1.0, &start);
+        difference = Some(moved);
+        hooks.log(LogLevel::Info, "the motion whose perturbations are integrated is found");
+    }
+    let odd = is_odd(&system, &state) && has_odd_laws(subject.model)?;
+    let closures = closures(subject.structure(), options.waves, odd)?;
+    let mut recorder = if options.refine && motion.compared {
+        let highest = motion.harmonics.len() / subject.model.ndof() - 1;
+        Some(HarmonicAnalysis::new(&system, highest, 0)?)
+    } else {
+        None
+    };
+    let mut stability = through_a_lapse(
+        subject.structure(),
+        &mut system,
+        &mut event_loop,
+        state,
+        (&closures, motion.autonomous),
+        recorder.as_mut(),
+    )?;
+    stability.omega = system.omega;
+    stability.residual = residual;
+    if let Some(recorder) = recorder {
+        stability.orbit_change = distance(motion.harmonics, &subject.harmonics(recorder, &system)?);
+    }
+    Ok(Found {
+        stability,
+        shift,
+        difference,
+    })
+}
+
+/// A state that is nearer to the motion in time than that of its harmonics; `None` where none is known.
+fn nearest(subject: &Subject<'_>, system: &System<'_>, motion: &Motion<'_>, start: &State) -> Result<Option<State>> {
+    if let Some(fine) = motion.fine {
+        return subject.state(system, fine).map(Some);
+    }
+    let Some(difference) = motion.difference.filter(|near| near.len() == start.len()) else {
+        return Ok(None);
+    };
+    let mut begin = start.try_clone()?;
+    begin.add(1.0, difference);
+    Ok(Some(begin))
+}
+
+/// Shoots from a state: in half the sectors where the others move opposite to them.
+fn shoot(
+    (system, event_loop): (&mut System<'_>, &mut EventLoop),
+    subject: &Subject<'_>,
+    motion: &Motion<'_>,
+    (options, hooks): (&TimeOptions<'_>, &mut Hooks<'_>),
+    mut state: State,
+) -> Result<Option<Steady>> {
+    let halves = !motion.autonomous && subject.allows_halves(system)? && {
+        let mut mirrored = state.try_clone()?;
+        mirrored.unfold(&state.fold(system)?, system);
+        state.distance(&mirrored, system.omega) <= ODD
+    };
+    if halves {
+        let mut half = system.folded()?;
+        let mut in_half = EventLoop::new(&half, options.tolerance)?;
+        let start = state.fold(system)?;
+        let mut search = Search::new(&mut half, &mut in_half, options, hooks, start)?;
+        if motion.quick {
+            search = search.quick();
+        }
+        let found = search.closest()?;
+        return Ok(found.map(|mut steady| {
+            state.unfold(&steady.state, system);
+            steady.state = state;
+            steady
+        }));
+    }
+    let mut search = Search::new(system, event_loop, options, hooks, state)?;
+    if motion.autonomous {
+        search = search.free_frequency();
+    }
+    if motion.quick {
+        search = search.quick();
+    }
+    search.closest()
+}
+
+/// Carries all perturbations through a lapse of the motion.
+fn through_a_lapse(
+    structure: &Structure,
+    system: &mut System<'_>,
+    event_loop: &mut EventLoop,
+    mut state: State,
+    (closures, autonomous): (&[Closure], bool),
+    recorder: Option<&mut HarmonicAnalysis>,
+) -> Result<Floquet> {
+    let mut velocities = Vec::new();
+    try_extend(&mut velocities, &state.v, "the rates of the motion")?;
+    let rates = if autonomous {
+        Some(event_loop.rates(system, &state)?)
+    } else {
+        None
+    };
+    let mut blocks = Blocks::new(structure, system, closures)?;
+    event_loop.clear_moved();
+    let observers = Observers {
+        recorder,
+        variation: Some(&mut blocks),
+        largest: None,
+    };
+    event_loop.run(system, &mut state, observers)?;
+    let moved = |i: usize| {
+        let family = system.elements[i].family;
+        let same = system.elements.iter().zip(&event_loop.moved);
+        same.into_iter().any(|(e, &moved)| moved && e.family == family)
+    };
+    let known = Known {
+        moved: &moved,
+        rates: rates.as_ref().map(|(a, w)| (&velocities[..], &a[..], &w[..])),
+    };
+    let mut all = Vec::new();
+    for block in &blocks.list {
+        try_extend(
+            &mut all,
+            &multipliers_of(structure, system, block, &known)?,
+            "the Floquet multipliers",
+        )?;
+    }
+    let grazing = blocks.grazing.map(|(i, event)| (system.elements[i].family, event));
+    Ok(Floquet::of(all, grazing))
+}
+
+/// Whether sectors half a wave apart move opposite to each other.
+fn is_odd(system: &System<'_>, state: &State) -> bool {
+    if !system.sectors.is_multiple_of(2) {
+        return false;
+    }
+    let half = system.sectors / 2;
+    let opposite = |values: &[f64], block: usize| {
+        let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let group = block * system.sectors;
+        values.chunks_exact(group).all(|ring| {
+            let (first, second) = ring.split_at(half * block);
+            first.iter().zip(second).all(|(a, b)| (a + b).abs() <= ODD * largest)
+        })
+    };
+    opposite(&state.x, system.ndof) && opposite(&state.v, system.ndof) && opposite(&state.e, 1)
+}
+
+/// Whether forces change their sign with the motion: only then perturbations of opposite motions obey one equation. A stop is closed in
+/// one of them and open in the other.
+fn has_odd_laws(model: &Model) -> Result<bool> {
+    for contact in model.contacts() {
+        if !contact.law(1.0)?.is_odd() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Distance of two motions, relative to the first, both by their harmonics.
+fn distance(x: &[Complex64], y: &[Complex64]) -> f64 {
+    let gap: f64 = x.iter().zip(y).map(|(x, y)| (x - y).norm_sqr()).sum();
+    let size: f64 = x.iter().map(Complex64::norm_sqr).sum();
+    if gap == 0.0 { 0.0 } else { (gap / size).sqrt() }
+}

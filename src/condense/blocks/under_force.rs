@@ -1,0 +1,92 @@
+//! A condensed mode under a force in its fundamental: the forced response with the same harmonics and contacts.
+
+use crate::condense::Condensed;
+use crate::condense::blocks::harmonic_block::{Artificial, HarmonicBlock, TiedValues};
+use crate::error::{Result, try_copy, try_push};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the matrices per harmonic";
+
+impl Condensed {
+    /// The structure of a mode under the force `force` in the fundamental, in the caller's unit, without artificial
+    /// damping. To the damping of harmonic h are added `damping(h)` and `by_mass` times the mass matrix.
+    ///
+    /// # Errors
+    /// Those of `damping`; `OutOfMemory`.
+    pub fn under_force(
+        &self,
+        force: &[Complex64],
+        damping: impl Fn(usize) -> Result<Option<Csc>>,
+        by_mass: f64,
+    ) -> Result<Self> {
+        let mut blocks = Vec::new();
+        for block in &self.blocks {
+            let mut forced = block.with_damping(damping(block.number)?.as_ref(), by_mass)?;
+            if block.number == 1 {
+                for (to, f) in forced.force.iter_mut().zip(force) {
+                    *to = f / self.length;
+                }
+            }
+            try_push(&mut blocks, forced, CONTEXT)?;
+        }
+        self.with_blocks(self.set.try_clone()?, blocks)
+    }
+}
+
+impl HarmonicBlock {
+    /// The block with more damping and without the artificial one.
+    fn with_damping(&self, added: Option<&Csc>, by_mass: f64) -> Result<Self> {
+        let n = self.reference.rows;
+        let mut terms = Vec::new();
+        try_push(&mut terms, (Complex64::ONE, &*self.reference, Form::Plain), CONTEXT)?;
+        if let Some(added) = added {
+            // A zero factor adds the pattern alone.
+            try_push(&mut terms, (Complex64::ZERO, added, Form::Plain), CONTEXT)?;
+        }
+        let reference = Csc::sum(n, &terms)?;
+        let aligned = |values: &[Complex64]| -> Result<Vec<Complex64>> {
+            let mut own = self.reference.try_clone()?;
+            own.values.copy_from_slice(values);
+            own.aligned(&reference)
+        };
+        let structural = self.structural.as_ref().map(|values| aligned(values).map(Arc::new));
+        let mass = aligned(&self.mass)?;
+        let mut damping = aligned(&self.damping)?;
+        for (c, m) in damping.iter_mut().zip(&mass) {
+            *c += by_mass * m;
+        }
+        if let Some(added) = added {
+            for (c, more) in damping.iter_mut().zip(added.aligned(&reference)?) {
+                *c += more;
+            }
+        }
+        Ok(Self {
+            number: self.number,
+            next: self.next,
+            stiffness: Arc::new(aligned(&self.stiffness)?),
+            damping: Arc::new(damping),
+            mass: Arc::new(mass),
+            artificial: Artificial::None,
+            source: None,
+            without_source: self.without_source,
+            force: try_copy(&self.force, CONTEXT)?,
+            rows: self.rows.clone(),
+            structural_rows: try_copy(&self.structural_rows, CONTEXT)?,
+            linear_rows: self.linear_rows.clone(),
+            springs: try_copy(&self.springs, CONTEXT)?,
+            structural: structural.transpose()?,
+            unbalance: None,
+            tied: match &self.tied {
+                Some(tied) => Some(TiedValues {
+                    stiffness: aligned(&tied.stiffness)?,
+                    gyroscopic: aligned(&tied.gyroscopic)?,
+                }),
+                None => None,
+            },
+            view: self.view.clone(),
+            reference: Arc::new(reference),
+        })
+    }
+}

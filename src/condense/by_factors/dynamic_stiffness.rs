@@ -1,0 +1,421 @@
+//! The dynamic stiffness Z_κ of one harmonic at a time, factorised.
+//!
+//! Z_κ = K + Wᴴ κ W − h²ω²M + ihωC + iD, with a speed Ω = pω also + ω² p²K₁ + ihω² pG, and in a nonlinear mode of damping ratio D the artificial
+//! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
+//! −2ihDK.
+
+use crate::condense::tuned_wheel::tuned_factors::TunedFactors;
+use crate::condense::tuned_wheel::tuned_plan::TUNED_TERMS;
+use crate::condense::{Artificial, Condensed, HarmonicBlock};
+use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::exact_sums::quadratic::{self, ComplexSum};
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::sparse::Csc;
+use num_complex::Complex64;
+
+/// Variable of a derivative of Z_κ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Variable {
+    Omega,
+    Damping,
+}
+
+/// Memory for the factorisation of Z_κ, one harmonic at a time.
+pub struct DynamicStiffness {
+    /// Factors of all degrees of freedom, made when they are first needed.
+    plain: Option<Plain>,
+    /// Those of a wheel that is tuned but for terms of low rank, and the harmonic, frequency and damping of which they are.
+    tuned: Option<Box<TunedFactors>>,
+    tuned_at: Option<(usize, Complex64, f64)>,
+    columns: usize,
+    /// Largest entry of the matrix that was factorised.
+    largest: f64,
+    /// b − Z x, and memory for its exact sum.
+    remainder: Vec<Complex64>,
+    sums: Vec<ComplexSum>,
+    part: Vec<ComplexSum>,
+}
+
+/// Factors of all degrees of freedom.
+struct Plain {
+    factor: Factor,
+    /// Z_κ on each pattern, and the index of that of each harmonic.
+    z: Vec<Csc>,
+    patterns: Vec<usize>,
+}
+
+impl Plain {
+    fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
+        let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
+        for block in condensed.blocks() {
+            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
+            let known = z.iter().position(of_block);
+            try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
+            if known.is_none() {
+                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+            }
+        }
+        let Some(first) = condensed.blocks().first() else {
+            return fail!(Internal, "no harmonic is carried");
+        };
+        Ok(Self {
+            factor: Factor::new(&first.reference, columns)?,
+            z,
+            patterns,
+        })
+    }
+}
+
+const CONTEXT: &str = "the dynamic stiffness";
+
+/// Relative error of the relative motions above which a residual summed with its rounding errors is worth its cost.
+/// Kind: rounding.
+const NOISE: f64 = 1e-12;
+
+/// Product of the largest stiffness and motion under a load of 1 beyond which a plain solution loses so many digits that Newton's method
+/// sees their noise along a branch: a penalty of 1e6 times the structure.
+/// Kind: tuned; measured on: not recorded.
+const STIFF_FOR_FACTORS: f64 = 1e5;
+
+/// Entries of the matrix, over all columns, up to which residuals with their rounding errors take no longer than the factors.
+/// Kind: tuned; measured on: not recorded.
+const CHEAP_TO_REFINE: usize = 20_000;
+
+/// Largest number of such residuals: each leaves the error of the last times that of a plain solution.
+/// Kind: cap.
+const EXACT: usize = 3;
+
+impl DynamicStiffness {
+    /// Memory for a condensed model, solving up to `columns` right-hand sides at a time.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
+        let n = condensed.ndof();
+        let tuned = condensed.tuned().map(|plan| boxed(|| TunedFactors::new(plan, columns)));
+        let tuned = tuned.transpose()?;
+        Ok(Self {
+            plain: match tuned {
+                None => Some(Plain::new(condensed, columns)?),
+                Some(_) => None,
+            },
+            tuned,
+            tuned_at: None,
+            columns,
+            largest: 0.0,
+            remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            sums: try_vec(n, ComplexSum::default(), CONTEXT)?,
+            part: try_vec(n, ComplexSum::default(), CONTEXT)?,
+        })
+    }
+
+    /// Factors Z_κ of the i-th carried harmonic at a frequency, which may be complex, and a damping
+    /// ratio.
+    ///
+    /// # Errors
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact; `StoppedByCaller`.
+    pub fn factor(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: Complex64,
+        damping: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if self.tuned_at == Some((i, omega, damping)) {
+            return Ok(());
+        }
+        self.tuned_at = None;
+        let block = &condensed.blocks()[i];
+        let sum = Combination::value(block, omega, damping);
+        self.largest = 0.0;
+        if let Some(tuned) = &mut self.tuned {
+            match tuned.factor(i, &sum.factors(), interrupt) {
+                // The tuned wheel may be singular where the wheel is not.
+                Err(e) if e.status == Status::Singular => {}
+                factored => {
+                    self.largest = factored.map_err(|e| at_harmonic(e, block, omega.re))?;
+                    self.tuned_at = Some((i, omega, damping));
+                    return Ok(());
+                }
+            }
+        }
+        let known = match self.plain.take() {
+            Some(known) => known,
+            None => Plain::new(condensed, self.columns)?,
+        };
+        let plain = self.plain.insert(known);
+        let z = &mut plain.z[plain.patterns[i]];
+        for (at, z) in z.values.iter_mut().enumerate() {
+            *z = sum.at(block, at);
+            self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
+        }
+        let factored = plain.factor.factor(z, interrupt);
+        factored.map_err(|e| at_harmonic(e, block, omega.re))
+    }
+
+    /// The factors of a wheel, if the current ones are such.
+    pub(crate) fn tuned(&mut self) -> Option<&mut TunedFactors> {
+        self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
+    }
+
+    /// Solves with the current factors.
+    fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
+        match (&mut self.tuned, &mut self.plain) {
+            (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
+            (_, Some(plain)) => plain.factor.solve(b, transposed, interrupt),
+            _ => fail!(Internal, "a dynamic stiffness was not factored"),
+        }
+    }
+
+    /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
+    #[must_use]
+    pub fn should_refine(&self, condensed: &Condensed, i: usize, columns: &[Complex64]) -> bool {
+        let entries = condensed.blocks()[i].reference.values.len();
+        let count = columns.len() / condensed.ndof();
+        let size = |z: &Complex64| z.re.abs().max(z.im.abs());
+        entries * count <= CHEAP_TO_REFINE && columns.iter().any(|x| self.largest * size(x) > STIFF_FOR_FACTORS)
+    }
+
+    /// Solves Z X = B (or Zᵀ X = B) in place with the current factors, those of the i-th harmonic at `omega`.
+    ///
+    /// # Errors
+    /// As [`Self::factor`].
+    pub fn solve(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        b: &mut [Complex64],
+        transposed: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        self.solve_columns(b, transposed, interrupt)
+            .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
+    }
+
+    /// Refines a solution x of Z x = b with the current factors, those of the i-th harmonic at (ω, D).
+    ///
+    /// Near a resonance of Z_κ the rounding of a plain solution is many times that of the relative motions that
+    /// follow from it, and a mode is always near one. The change of the relative motions in the first step shows
+    /// whether rounding of the residual itself matters.
+    ///
+    /// # Errors
+    /// As [`Self::factor`].
+    pub fn refine(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        at: (f64, f64),
+        b: &[Complex64],
+        x: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let plain = self.refinement((condensed, i), at, b, x, false, interrupt)?;
+        let mut error = plain;
+        for _ in 0..EXACT {
+            if error <= NOISE {
+                break;
+            }
+            error = plain * self.refinement((condensed, i), at, b, x, true, interrupt)?;
+        }
+        Ok(())
+    }
+
+    /// One step x += Z⁻¹(b − Z x); returns the relative change of the relative motions.
+    fn refinement(
+        &mut self,
+        (condensed, i): (&Condensed, usize),
+        at: (f64, f64),
+        b: &[Complex64],
+        x: &mut [Complex64],
+        exact: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<f64> {
+        let block = &condensed.blocks()[i];
+        let sum = Combination::value(block, at.0.into(), at.1);
+        self.remainder.copy_from_slice(b);
+        if exact {
+            sum.exact_product(block, x, &mut self.sums, &mut self.part);
+            for (remainder, sum) in self.remainder.iter_mut().zip(&mut self.sums) {
+                *remainder = sum.subtracted_from(*remainder);
+            }
+        } else {
+            let pattern = &block.reference;
+            for (j, x) in x.iter().enumerate() {
+                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                    self.remainder[pattern.row_idx[at]] -= sum.at(block, at) * x;
+                }
+            }
+        }
+        let mut remainder = core::mem::take(&mut self.remainder);
+        let solved = self.solve_columns(&mut remainder, false, interrupt);
+        self.remainder = remainder;
+        solved.map_err(|e| at_harmonic(e, block, at.0))?;
+        let mut change = (0.0_f64, 0.0_f64);
+        for row in &block.rows {
+            change.0 = change.0.max(row.along(&self.remainder).norm());
+            change.1 = change.1.max(row.along(x).norm());
+        }
+        for (x, d) in x.iter_mut().zip(&self.remainder) {
+            *x += *d;
+        }
+        Ok(if change.0 == 0.0 { 0.0 } else { change.0 / change.1 })
+    }
+}
+
+/// Z_κ or one of its derivatives as a sum of the block's matrices.
+#[derive(Clone, Copy)]
+struct Combination {
+    reference: f64,
+    damping: Complex64,
+    mass: Complex64,
+    /// Factor of the stiffness of the structure itself, for artificial damping of that type.
+    own: Complex64,
+    /// Factors of p²K₁ and pG of a speed that is tied to the frequency.
+    tied: [Complex64; 2],
+}
+
+impl Combination {
+    /// Z_κ
+    fn value(block: &HarmonicBlock, omega: Complex64, damping: f64) -> Self {
+        let hw = block.number as f64 * omega;
+        let artificial = Self::slope(block, omega, damping, Variable::Damping);
+        Self {
+            reference: 1.0,
+            damping: Complex64::I * hw,
+            mass: damping * artificial.mass - hw * hw,
+            own: damping * artificial.own,
+            tied: [omega * omega, Complex64::I * hw * omega],
+        }
+    }
+
+    /// ∂Z/∂ω or ∂Z/∂D
+    fn slope(block: &HarmonicBlock, omega: Complex64, damping: f64, by: Variable) -> Self {
+        let h = block.number as f64;
+        let ih = Complex64::I * h;
+        let zero = Self {
+            reference: 0.0,
+            damping: Complex64::ZERO,
+            mass: Complex64::ZERO,
+            own: Complex64::ZERO,
+            tied: [Complex64::ZERO; 2],
+        };
+        match (by, &block.artificial) {
+            (Variable::Omega, artificial) => Self {
+                damping: ih,
+                mass: match artificial {
+                    Artificial::Mass => -2.0 * (h + 2.0 * Complex64::I * damping) * h * omega,
+                    Artificial::None | Artificial::Stiffness(_) => -2.0 * h * h * omega,
+                },
+                tied: [2.0 * omega, 2.0 * ih * omega],
+                ..zero
+            },
+            (Variable::Damping, Artificial::None) => zero,
+            (Variable::Damping, Artificial::Mass) => Self {
+                mass: -2.0 * ih * omega * omega,
+                ..zero
+            },
+            (Variable::Damping, Artificial::Stiffness(_)) => Self { own: -2.0 * ih, ..zero },
+        }
+    }
+
+    /// sums ← Z x without rounding between its terms: the matrices are multiplied one by one, since their sum is
+    /// rounded again at each frequency.
+    fn exact_product(&self, block: &HarmonicBlock, x: &[Complex64], sums: &mut [ComplexSum], part: &mut [ComplexSum]) {
+        let own = match &block.artificial {
+            Artificial::Stiffness(own) => Some((self.own, own)),
+            Artificial::None | Artificial::Mass => None,
+        };
+        let tied = block.tied.as_ref();
+        let terms = [
+            Some((self.reference.into(), &block.reference.values)),
+            Some((self.damping, &block.damping)),
+            Some((self.mass, &block.mass)),
+            own,
+            tied.map(|tied| (self.tied[0], &tied.stiffness)),
+            tied.map(|tied| (self.tied[1], &tied.gyroscopic)),
+        ];
+        sums.fill(ComplexSum::default());
+        for (factor, values) in terms.into_iter().flatten() {
+            part.fill(ComplexSum::default());
+            quadratic::product(&block.reference, values, x, part);
+            for (sum, part) in sums.iter_mut().zip(part.iter()) {
+                sum.add_multiple(*part, factor);
+            }
+        }
+    }
+
+    /// The factors of the matrices, in the order of a [`crate::condense::tuned_wheel::tuned_plan::TunedPlan`].
+    fn factors(&self) -> [Complex64; TUNED_TERMS] {
+        [
+            self.reference.into(),
+            self.damping,
+            self.mass,
+            self.tied[0],
+            self.tied[1],
+            self.own,
+        ]
+    }
+
+    #[inline]
+    fn at(&self, block: &HarmonicBlock, at: usize) -> Complex64 {
+        let mut z =
+            self.reference * block.reference.values[at] + self.damping * block.damping[at] + self.mass * block.mass[at];
+        if let Some(tied) = &block.tied {
+            z += self.tied[0] * tied.stiffness[at] + self.tied[1] * tied.gyroscopic[at];
+        }
+        match &block.artificial {
+            Artificial::Stiffness(own) => z + self.own * own[at],
+            Artificial::None | Artificial::Mass => z,
+        }
+    }
+}
+
+/// y += ∂Z x or y += ∂Zᵀ x for the i-th carried harmonic.
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn add_slope_product(
+    condensed: &Condensed,
+    i: usize,
+    (omega, damping): (Complex64, f64),
+    by: Variable,
+    transposed: bool,
+    x: &[Complex64],
+    y: &mut [Complex64],
+) {
+    let block = &condensed.blocks()[i];
+    let pattern = &block.reference;
+    let sum = Combination::slope(block, omega, damping, by);
+    for j in 0..x.len() {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            let k = pattern.row_idx[at];
+            let (to, from) = if transposed { (j, k) } else { (k, j) };
+            y[to] += sum.at(block, at) * x[from];
+        }
+    }
+}
+
+/// Fills the entries of ∂Z/∂ω of a harmonic, in the order of its pattern.
+pub(crate) fn fill_slope(block: &HarmonicBlock, (omega, damping): (f64, f64), entries: &mut [Complex64]) {
+    let sum = Combination::slope(block, omega.into(), damping, Variable::Omega);
+    for (at, entry) in entries.iter_mut().enumerate() {
+        *entry = sum.at(block, at);
+    }
+}
+
+/// y ← A x for the entries of a matrix in the order of the pattern of a harmonic.
+pub(crate) fn multiply(block: &HarmonicBlock, entries: &[Complex64], x: &[Complex64], y: &mut [Complex64]) {
+    let pattern = &block.reference;
+    y.fill(Complex64::ZERO);
+    for (x, ends) in x.iter().zip(pattern.col_ptr.windows(2)) {
+        let column = ends[0]..ends[1];
+        for (entry, &row) in entries[column.clone()].iter().zip(&pattern.row_idx[column]) {
+            y[row] += entry * x;
+        }
+    }
+}
+
+fn at_harmonic(e: Error, block: &HarmonicBlock, omega: f64) -> Error {
+    e.at(format_args!("harmonic {} at angular frequency {omega}", block.number))
+}

@@ -1,0 +1,301 @@
+//! Low-rank term of a flexibility table from modes: damping of contacts and springs that the modes leave out.
+//!
+//! With T′ the table of the modes, B the relative motions of contacts and springs,
+//! Z_κ = (1 + c) K_κ − (ν² − iνα) M − Bᴴ e B and e = ck − i Im κ, or e = −iν for the directions of other damping
+//!
+//! > T = T′ + T′_B e X,  X = (1 − G′ e)⁻¹ T′ᴮ,
+//!
+//! where T′_B are the columns and T′ᴮ the rows of B, and G′ is where they cross (Woodbury's identity). X are the rows of B in T
+//! itself, so that the term is added to the row of the response alone. By the frequency
+//!
+//! > ∂T = ∂T′ + ∂T′_B e X + T′_B (∂e X + e ∂X),  ∂X = (1 − G′ e)⁻¹ (∂T′ᴮ + (∂G′ e + G′ ∂e) X).
+
+use crate::condense::Condensed;
+use crate::condense::by_factors::flexibility::Table;
+use crate::condense::by_modes::sum_terms::{Factors, Frequency};
+use crate::error::{Result, boxed, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::complex_products;
+use crate::linalg::factors::lu::Lu;
+use crate::model::few_motions::reduced_wave::MotionRow;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the flexibility from modes";
+
+/// T′ and ∂T′, rows × rows: contacts, response, springs.
+pub struct Plain<'a> {
+    pub value: &'a [Complex64],
+    pub slope: &'a [Complex64],
+    pub rows: usize,
+}
+
+/// Stiffness of B for one harmonic: of the coordinates, then of the springs, and 0 of the directions of other damping; and Im κ.
+pub struct Coefficients {
+    coordinates: usize,
+    stiffness: Vec<f64>,
+    imaginary: Vec<f64>,
+    /// First row of B that is a direction of damping beside αM + βK.
+    first_damper: usize,
+    /// Whether the term is not 0: with damping by stiffness or beside αM + βK, or with imaginary κ.
+    pub counts: bool,
+}
+
+impl Coefficients {
+    /// Those of the i-th carried harmonic with its springs and number of dampers, which stiffness damps or not.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(
+        condensed: &Condensed,
+        i: usize,
+        (springs, dampers): (&[(MotionRow, f64)], usize),
+        damped: bool,
+    ) -> Result<Self> {
+        let coordinates = condensed.coordinates();
+        let first_damper = coordinates + springs.len();
+        let mut stiffness = try_vec(first_damper + dampers, 0.0, CONTEXT)?;
+        let mut imaginary = try_vec(stiffness.len(), 0.0, CONTEXT)?;
+        for (c, (k, im)) in stiffness.iter_mut().zip(&mut imaginary).take(coordinates).enumerate() {
+            let kappa = condensed.kappa(c, i);
+            (*k, *im) = (kappa.re, kappa.im);
+        }
+        for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
+            *k = *spring;
+        }
+        Ok(Self {
+            coordinates,
+            counts: damped || dampers > 0 || imaginary.iter().any(|&im| im != 0.0),
+            stiffness,
+            imaginary,
+            first_damper,
+        })
+    }
+
+    /// Rows of B.
+    pub fn len(&self) -> usize {
+        self.stiffness.len()
+    }
+
+    /// e of row b of B.
+    pub fn entry(&self, b: usize, at: Factors) -> Complex64 {
+        self.d_entry(b, at) - Complex64::I * self.imaginary[b]
+    }
+
+    /// ∂e of row b of B at the derivatives of the factors.
+    pub fn d_entry(&self, b: usize, slope: Factors) -> Complex64 {
+        if b < self.first_damper {
+            slope.c * self.stiffness[b]
+        } else {
+            -slope.i_nu
+        }
+    }
+
+    /// Row of B number b in T′: the response lies between contacts and springs.
+    pub fn row_of(&self, b: usize) -> usize {
+        if b < self.coordinates { b } else { b + 1 }
+    }
+}
+
+/// Work space of the term, for one harmonic after the other.
+pub struct LowRank {
+    coordinates: usize,
+    lu: Lu<Complex64>,
+    /// X and e X, one column for each contact and for the excitation.
+    inner: Vec<Complex64>,
+    force: Vec<Complex64>,
+    /// Made when all slopes are first wanted.
+    slopes: Option<Box<AllSlopes>>,
+}
+
+/// Memory for the slopes of all rows.
+struct AllSlopes {
+    /// ∂X and ∂(e X)
+    inner: Vec<Complex64>,
+    force: Vec<Complex64>,
+    /// e X and ∂e X at all rows of T′, of which that of the response has no force, and products with them.
+    forces: [Vec<Complex64>; 2],
+    products: [Vec<Complex64>; 2],
+}
+
+impl AllSlopes {
+    fn new(order: usize, columns: usize) -> Result<Self> {
+        let narrow = || try_vec(order * columns, Complex64::ZERO, CONTEXT);
+        let wide = || try_vec((order + 1) * columns, Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            inner: narrow()?,
+            force: narrow()?,
+            forces: [wide()?, wide()?],
+            products: [wide()?, wide()?],
+        })
+    }
+}
+
+impl LowRank {
+    /// For terms with so many rows of B.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(coordinates: usize, order: usize) -> Result<Self> {
+        let columns = || try_vec(order * (coordinates + 1), Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            coordinates,
+            lu: Lu::new(order, coordinates + 1)?,
+            inner: columns()?,
+            force: columns()?,
+            slopes: None,
+        })
+    }
+
+    /// Rows of B.
+    pub fn order(&self) -> usize {
+        self.lu.order()
+    }
+
+    /// e X, column after column, after [`Self::add`].
+    pub fn force(&self) -> &[Complex64] {
+        &self.force
+    }
+
+    /// X, column after column, after [`Self::add`].
+    pub fn inner(&self) -> &[Complex64] {
+        &self.inner
+    }
+
+    /// Replaces motions z of the rows of B by (1 − G′ e)⁻¹ z, after [`Self::add`].
+    pub fn solve_rows(&self, z: &mut [Complex64]) {
+        self.lu.solve(z);
+    }
+
+    /// Replaces a row z of B by z (1 − G′ e)⁻¹, after [`Self::add`].
+    pub fn solve_row(&self, z: &mut [Complex64]) {
+        self.lu.solve_transposed(z);
+    }
+
+    /// Adds the term to a table that holds T′, and to its slope if `slopes`.
+    ///
+    /// # Errors
+    /// `Singular` where 1 − G′ e is; `StoppedByCaller`.
+    pub fn add(
+        &mut self,
+        of: &Coefficients,
+        plain: &Plain<'_>,
+        (at, slopes): (Frequency, bool),
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if !of.counts || self.order() == 0 {
+            return Ok(());
+        }
+        self.solve(of, plain, at, interrupt)?;
+        self.copy_rows(&self.inner, &mut table.value);
+        self.add_response(of, (plain.value, plain.rows), &self.force, &mut table.value);
+        if slopes {
+            let mut memory = match self.slopes.take() {
+                Some(made) => made,
+                None => boxed(|| AllSlopes::new(self.order(), self.coordinates + 1))?,
+            };
+            self.differentiate(of, plain, at, &mut memory, interrupt)?;
+            self.copy_rows(&memory.inner, &mut table.slope);
+            // ∂T′_B e X of the response is made with the others.
+            let outputs = self.coordinates + 1;
+            let made = memory.products[0].chunks_exact(plain.rows);
+            for (to, product) in table.slope.chunks_exact_mut(outputs).zip(made) {
+                to[self.coordinates] += product[self.coordinates];
+            }
+            self.add_response(of, (plain.value, plain.rows), &memory.force, &mut table.slope);
+            self.slopes = Some(memory);
+        }
+        Ok(())
+    }
+
+    /// X and e X
+    fn solve(&mut self, of: &Coefficients, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
+        let (order, rows) = (self.order(), plain.rows);
+        for q in 0..order {
+            let (e, from) = (of.entry(q, at.at), of.row_of(q) * rows);
+            for p in 0..order {
+                let entry = -e * plain.value[from + of.row_of(p)];
+                self.lu.matrix()[q * order + p] = if p == q { entry + 1.0 } else { entry };
+            }
+        }
+        self.lu.factor(interrupt)?;
+        for (k, from) in plain.value.chunks_exact(rows).take(self.coordinates + 1).enumerate() {
+            for p in 0..order {
+                self.inner[k * order + p] = from[of.row_of(p)];
+            }
+        }
+        self.lu.solve_columns(&mut self.inner, false, interrupt)?;
+        for k in 0..=self.coordinates {
+            for p in 0..order {
+                self.force[k * order + p] = of.entry(p, at.at) * self.inner[k * order + p];
+            }
+        }
+        Ok(())
+    }
+
+    /// ∂X and ∂(e X), after [`Self::solve`].
+    fn differentiate(
+        &mut self,
+        of: &Coefficients,
+        plain: &Plain<'_>,
+        at: Frequency,
+        memory: &mut AllSlopes,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (order, rows) = (self.order(), plain.rows);
+        let [forces, d_forces] = &mut memory.forces;
+        let columns = self.force.chunks_exact(order).zip(self.inner.chunks_exact(order));
+        let wide = forces.chunks_exact_mut(rows).zip(d_forces.chunks_exact_mut(rows));
+        for ((force, x), (forces, d_forces)) in columns.zip(wide) {
+            for (p, (force, x)) in force.iter().zip(x).enumerate() {
+                forces[of.row_of(p)] = *force;
+                d_forces[of.row_of(p)] = of.d_entry(p, at.slope) * x;
+            }
+        }
+        let [by_slope, by_value] = &mut memory.products;
+        for (table, forces, out) in [(plain.slope, &*forces, by_slope), (plain.value, &*d_forces, by_value)] {
+            interrupt.check_before((2 * rows * forces.len()) as u64)?;
+            complex_products::multiply(table, forces, out, rows);
+        }
+        let [by_slope, by_value] = &memory.products;
+        for (k, sums) in memory.inner.chunks_exact_mut(order).enumerate() {
+            for (p, sum) in sums.iter_mut().enumerate() {
+                let at = k * rows + of.row_of(p);
+                *sum = plain.slope[at] + by_slope[at] + by_value[at];
+            }
+        }
+        self.lu.solve_columns(&mut memory.inner, false, interrupt)?;
+        for k in 0..=self.coordinates {
+            for p in 0..order {
+                let x = self.inner[k * order + p];
+                let d_x = memory.inner[k * order + p];
+                memory.force[k * order + p] = of.entry(p, at.at) * d_x + of.d_entry(p, at.slope) * x;
+            }
+        }
+        Ok(())
+    }
+
+    /// The rows of the contacts: those of X, or of its slope.
+    fn copy_rows(&self, x: &[Complex64], table: &mut [Complex64]) {
+        let (order, outputs) = (self.order(), self.coordinates + 1);
+        for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
+            to[..self.coordinates].copy_from_slice(&x[..self.coordinates]);
+        }
+    }
+
+    /// Adds T′_B x to the row of the response.
+    fn add_response(
+        &self,
+        of: &Coefficients,
+        (plain, rows): (&[Complex64], usize),
+        x: &[Complex64],
+        table: &mut [Complex64],
+    ) {
+        let (order, outputs) = (self.order(), self.coordinates + 1);
+        for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
+            for (q, x) in x.iter().enumerate() {
+                to[self.coordinates] += plain[of.row_of(q) * rows + self.coordinates] * x;
+            }
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! Flexibility table of one harmonic from the modes or poles of its wave.
+//!
+//! With L and R the rows of outputs and inputs in the modes and d the denominators of [`crate::condense::by_modes::modal_rows`], the table is
+//! T′ = L d⁻¹ Rᴴ, the excitation in place of the response among the inputs, and the low-rank term of `condense::low_rank`.
+
+use crate::condense::Condensed;
+use crate::condense::by_factors::flexibility::{Slopes, Table};
+use crate::condense::by_modes::low_rank::{Coefficients, LowRank, Plain};
+use crate::condense::by_modes::modal_rows::{ModalRows, terms_within};
+use crate::condense::by_modes::single_contact::{Denominators, SingleContact};
+use crate::condense::by_modes::sum_terms::{Denominator, Frequency, Source};
+use crate::condense::by_modes::wave_modes::{NEAR_ALONE, NEAR_RESONANCE};
+use crate::error::{Result, boxed, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::complex_columns;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the flexibility from modes";
+
+/// Rows from which a series over the stiff modes with all digits takes less time than their sum.
+/// Kind: tuned; measured on: not recorded.
+const EXACT_SERIES: usize = 8;
+
+/// A harmonic with the modes of its wave.
+pub struct ModalTable {
+    pub(crate) rows: Arc<ModalRows>,
+    number: f64,
+    /// Terms of the series over stiff modes; none where all are summed.
+    terms: usize,
+    pub(crate) coefficients: Coefficients,
+    /// The excitation seen by the adjoint shapes, and the one that grows with ω² over ω²; none where there is none.
+    force: Vec<Complex64>,
+    unbalance: Vec<Complex64>,
+    /// The sums written out: one contact without springs.
+    single: Option<SingleContact>,
+}
+
+/// The numbers of a table of one contact without springs.
+pub struct SinglePart<'a> {
+    pub contact: &'a SingleContact,
+    pub coefficients: &'a Coefficients,
+    pub number: f64,
+    /// α and β
+    pub proportional: (f64, f64),
+    /// η
+    pub loss_factor: f64,
+}
+
+/// Work space of the tables of one structure, for one after the other; made when the first needs it.
+#[derive(Default)]
+pub struct ModalWork(pub(crate) Option<Box<Work>>);
+
+pub(crate) struct Work {
+    /// 1/d, and −∂d/d².
+    pub inverse: Vec<Complex64>,
+    slopes: Vec<Complex64>,
+    /// Rᴴ times one of them.
+    weighted: Vec<Complex64>,
+    /// T′, rows × rows.
+    pub plain: Vec<Complex64>,
+    /// ∂T′, made when all slopes are first wanted.
+    d_plain: Vec<Complex64>,
+    pub low_rank: LowRank,
+    /// Numbers of all modes, of all rows, and of the rows of B.
+    pub of_modes: [Vec<Complex64>; 2],
+    pub of_rows: [Vec<Complex64>; 2],
+    pub of_springs: Vec<Complex64>,
+}
+
+impl ModalWork {
+    fn of(&mut self, table: &ModalTable) -> Result<&mut Work> {
+        let known = match self.0.take() {
+            Some(known) if known.fits(table) => known,
+            _ => boxed(|| Work::new(table))?,
+        };
+        Ok(self.0.insert(known))
+    }
+}
+
+impl Work {
+    fn new(table: &ModalTable) -> Result<Self> {
+        let (rows, n) = (table.rows.count(), table.rows.terms());
+        let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            inverse: zeros(n)?,
+            slopes: zeros(n)?,
+            weighted: zeros(rows * (n + 1) + n)?,
+            plain: zeros(rows * rows)?,
+            d_plain: Vec::new(),
+            low_rank: LowRank::new(table.rows.coordinates(), table.coefficients.len())?,
+            of_modes: [zeros(n)?, zeros(n)?],
+            of_rows: [zeros(rows)?, zeros(rows)?],
+            of_springs: zeros(table.coefficients.len())?,
+        })
+    }
+
+    /// Waves may differ in the number of their terms.
+    fn fits(&self, table: &ModalTable) -> bool {
+        self.inverse.len() == table.rows.terms() && self.low_rank.order() == table.coefficients.len()
+    }
+}
+
+impl ModalTable {
+    /// The table of the i-th carried harmonic from the rows of its wave, within a relative tolerance, 0: as exact as numbers are.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>, tolerance: f64) -> Result<Self> {
+        let block = &condensed.blocks()[i];
+        let force = rows.forced(&block.force)?;
+        let unbalance = rows.forced(block.unbalance.as_deref().unwrap_or(&[]))?;
+        let beside = (rows.springs(), rows.dampers().len());
+        let coefficients = Coefficients::new(condensed, i, beside, rows.source().is_damped_by_stiffness())?;
+        let single = match rows.source() {
+            Source::Modes(modes) if condensed.coordinates() == 1 && rows.count() == 2 && unbalance.is_empty() => {
+                Some(SingleContact::new(&modes.values, rows.left(), &force)?)
+            }
+            _ => None,
+        };
+        Ok(Self {
+            number: block.number as f64,
+            terms: if tolerance > 0.0 || rows.count() < EXACT_SERIES {
+                terms_within(tolerance)
+            } else {
+                terms_within(f64::EPSILON)
+            },
+            coefficients,
+            force,
+            unbalance,
+            single,
+            rows,
+        })
+    }
+
+    /// Its numbers where it is one of a single contact without springs.
+    pub(crate) fn single(&self) -> Option<SinglePart<'_>> {
+        let Source::Modes(modes) = self.rows.source() else {
+            return None;
+        };
+        self.single.as_ref().map(|contact| SinglePart {
+            contact,
+            coefficients: &self.coefficients,
+            number: self.number,
+            proportional: modes.proportional,
+            loss_factor: modes.loss_factor,
+        })
+    }
+
+    /// The rows of its wave.
+    #[must_use]
+    pub fn rows(&self) -> Arc<ModalRows> {
+        Arc::clone(&self.rows)
+    }
+
+    /// Evaluates H at `omega`, and of ∂H/∂ω what `slopes` says; `false` so near a resonance of the structure with stuck contacts that
+    /// digits would be lost.
+    ///
+    /// # Errors
+    /// `Singular` at an undamped resonance; `StoppedByCaller`.
+    pub fn evaluate(
+        &self,
+        (omega, slopes): (f64, Slopes),
+        work: &mut ModalWork,
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let at = self.denominator(omega);
+        let nu = self.number * omega;
+        let near = if self.rows.coordinates() == 0 {
+            NEAR_ALONE
+        } else {
+            NEAR_RESONANCE
+        };
+        let frequency = at.frequency();
+        let is_clear = if let Some(single) = &self.single {
+            let by = Denominators {
+                at: frequency,
+                s: at.b,
+                d_s: at.d_b,
+                nu,
+                least: NEAR_RESONANCE,
+            };
+            let of = &self.coefficients;
+            single.evaluate(by, (of.entry(0, frequency.at), of.d_entry(0, frequency.slope)), table)
+        } else {
+            let work = work.of(self)?;
+            let is_clear = self
+                .rows
+                .source()
+                .invert((at, nu, near), &mut work.inverse, &mut work.slopes);
+            if is_clear {
+                interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
+                self.sum(work, (at, omega), slopes == Slopes::All)?;
+                self.complete(work, (frequency, slopes == Slopes::All), table, interrupt)?;
+                if slopes == Slopes::OfResponse {
+                    self.fill_slopes_of_response(work, (at, omega), table);
+                }
+            }
+            is_clear
+        };
+        if is_clear {
+            check_finite(&table.value, omega)?;
+        }
+        Ok(is_clear)
+    }
+
+    pub(crate) fn denominator(&self, omega: f64) -> Denominator {
+        self.rows.source().denominator(self.number, omega)
+    }
+
+    /// T′, and ∂T′ if `slopes`.
+    fn sum(&self, work: &mut Work, (at, omega): (Denominator, f64), slopes: bool) -> Result<()> {
+        if slopes && work.d_plain.is_empty() {
+            work.d_plain = try_vec(work.plain.len(), Complex64::ZERO, CONTEXT)?;
+        }
+        let slope = slopes.then_some(&mut work.d_plain[..]);
+        let soft = self.rows.add_stiff(at, self.terms, &mut work.plain, slope)?;
+        self.rows.add(soft, &work.inverse, &mut work.weighted, &mut work.plain);
+        if slopes {
+            self.rows.add(soft, &work.slopes, &mut work.weighted, &mut work.d_plain);
+        }
+        self.excite(work, omega, slopes);
+        Ok(())
+    }
+
+    /// The excitation seen by the k-th adjoint shape, and its derivative by ω.
+    pub(crate) fn excitation(&self, k: usize, omega: f64) -> [Complex64; 2] {
+        let part = |of: &[Complex64]| of.get(k).copied().unwrap_or_default();
+        let unbalance = part(&self.unbalance);
+        [part(&self.force) + unbalance * (omega * omega), 2.0 * omega * unbalance]
+    }
+
+    /// The column of the excitation, from all modes.
+    fn excite(&self, work: &mut Work, omega: f64, slopes: bool) {
+        let (rows, from) = (self.rows.count(), self.rows.coordinates() * self.rows.count());
+        let value = &mut work.plain[from..from + rows];
+        value.fill(Complex64::ZERO);
+        if slopes {
+            work.d_plain[from..from + rows].fill(Complex64::ZERO);
+        }
+        if self.force.is_empty() && self.unbalance.is_empty() {
+            return;
+        }
+        let n = self.rows.terms();
+        let (weights, memory) = work.weighted.split_at_mut(n);
+        for (k, (weight, inverse)) in weights.iter_mut().zip(&work.inverse).enumerate() {
+            *weight = self.excitation(k, omega)[0] * inverse;
+        }
+        complex_columns::multiply(self.rows.left(), rows, weights, value, &mut memory[..rows]);
+        if !slopes {
+            return;
+        }
+        let factors = work.inverse.iter().zip(&work.slopes);
+        for (k, (weight, (inverse, d_inverse))) in weights.iter_mut().zip(factors).enumerate() {
+            let [force, rate] = self.excitation(k, omega);
+            *weight = force * d_inverse + rate * inverse;
+        }
+        let slope = &mut work.d_plain[from..from + rows];
+        complex_columns::multiply(self.rows.left(), rows, weights, slope, &mut memory[..rows]);
+    }
+
+    /// The table from T′ with the low-rank term.
+    fn complete(
+        &self,
+        work: &mut Work,
+        (at, slopes): (Frequency, bool),
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (rows, outputs) = (self.rows.count(), self.rows.coordinates() + 1);
+        let of = |plain: &[Complex64], to: &mut [Complex64]| {
+            for (to, from) in to.chunks_exact_mut(outputs).zip(plain.chunks_exact(rows)) {
+                to.copy_from_slice(&from[..outputs]);
+            }
+        };
+        of(&work.plain, &mut table.value);
+        if slopes {
+            of(&work.d_plain, &mut table.slope);
+        } else {
+            table.slope.fill(Complex64::ZERO);
+        }
+        let plain = Plain {
+            value: &work.plain,
+            slope: &work.d_plain,
+            rows,
+        };
+        work.low_rank
+            .add(&self.coefficients, &plain, (at, slopes), table, interrupt)
+    }
+}
+
+fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
+    if values.iter().all(|z| z.is_finite()) {
+        return Ok(());
+    }
+    crate::error::fail!(
+        Singular,
+        "the structure resonates without damping at angular frequency {omega}"
+    )
+}
+
+#[cfg(test)]
+#[path = "modal_table_tests.rs"]
+mod tests;

@@ -1,0 +1,143 @@
+//! Flexibility table from modes of a single relative motion without springs: the inner loop of every response with one
+//! contact. The formulas are those of [`crate::condense::by_modes::modal_table`], written out for two inputs and two outputs.
+
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
+use crate::condense::by_factors::flexibility::Table;
+use crate::condense::by_modes::sum_terms::Frequency;
+use crate::error::{Result, try_room};
+use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
+
+/// Entries of the table: of the contact and the response by the contact, of both by the excitation.
+/// Kind: fixed.
+const SINGLE_CONTACT_ENTRIES: usize = 4;
+
+/// One complex number for each entry, real parts first.
+type Entries = [[f64; SINGLE_CONTACT_ENTRIES]; 2];
+
+/// One mode.
+pub struct Mode {
+    /// μ
+    pub value: f64,
+    /// Output times input of each entry.
+    pub products: Entries,
+}
+
+/// The modes as one contact and the response see them.
+pub struct SingleContact {
+    arch: Arch,
+    modes: Vec<Mode>,
+    /// Whether the excitation moves a mode.
+    is_forced: bool,
+}
+
+/// The numbers of a frequency: c and s of the denominators 1 + c − s μ, their derivatives by ω, and ν.
+#[derive(Clone, Copy)]
+pub struct Denominators {
+    pub at: Frequency,
+    pub s: Complex64,
+    pub d_s: Complex64,
+    pub nu: f64,
+    /// Least modulus of a denominator over 1 + ν² |μ|.
+    pub least: f64,
+}
+
+impl SingleContact {
+    /// From μ, the outputs of each mode, two numbers of contact and response, and the excitation seen by each, if there is one.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(values: &[f64], left: &[Complex64], force: &[Complex64]) -> Result<Self> {
+        let mut modes = try_room(values.len(), "the flexibility from modes")?;
+        for (k, (value, l)) in values.iter().zip(left.chunks_exact(2)).enumerate() {
+            let r = [l[0].conj(), force.get(k).copied().unwrap_or_default()];
+            let products = [l[0] * r[0], l[1] * r[0], l[0] * r[1], l[1] * r[1]];
+            let mode = Mode {
+                value: *value,
+                products: [products.map(|z| z.re), products.map(|z| z.im)],
+            };
+            modes.push(mode);
+        }
+        Ok(Self {
+            arch: Arch::new(),
+            modes,
+            is_forced: force.iter().any(|f| *f != Complex64::ZERO),
+        })
+    }
+
+    /// The modes.
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// Whether the excitation moves one of them.
+    pub fn is_forced(&self) -> bool {
+        self.is_forced
+    }
+
+    /// The table and its slope with the low-rank term whose coefficient is e and its derivative; `false` where a denominator
+    /// is small.
+    pub fn evaluate(&self, by: Denominators, (e, d_e): (Complex64, Complex64), table: &mut Table) -> bool {
+        let Some([t, d_t]) = self.arch.dispatch(Sum(&self.modes, by)) else {
+            return false;
+        };
+        let entry = |of: &Entries, k: usize, r: usize| Complex64::new(of[0][2 * k + r], of[1][2 * k + r]);
+        let [[[own, to], [from, direct]], [[d_own, d_to], [d_from, d_direct]]] =
+            [&t, &d_t].map(|t| [0, 1].map(|k| [0, 1].map(|r| entry(t, k, r))));
+        // p = 1/(1 − own·e) scales all but the direct response, which gains to·e p·from.
+        let p = (1.0 - own * e).inv();
+        let d_p = p * p * (d_own * e + own * d_e);
+        let zero = Complex64::ZERO;
+        if !self.is_forced {
+            table.value.copy_from_slice(&[own * p, to * p, zero, zero]);
+            let slope = [d_own * p + own * d_p, d_to * p + to * d_p, zero, zero];
+            table.slope.copy_from_slice(&slope);
+            return true;
+        }
+        let (force, d_force) = (e * p * from, (d_e * p + e * d_p) * from + e * p * d_from);
+        table
+            .value
+            .copy_from_slice(&[own * p, to * p, from * p, direct + to * force]);
+        table.slope.copy_from_slice(&[
+            d_own * p + own * d_p,
+            d_to * p + to * d_p,
+            d_from * p + from * d_p,
+            d_direct + d_to * force + to * d_force,
+        ]);
+        true
+    }
+}
+
+/// The sums over the modes and their derivatives; `None` where a denominator is small.
+struct Sum<'a>(&'a [Mode], Denominators);
+
+impl WithSimd for Sum<'_> {
+    type Output = Option<[Entries; 2]>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
+        let Self(modes, by) = self;
+        let (c, d_c) = (by.at.at.c, by.at.slope.c);
+        let mut sums = [[[0.0; SINGLE_CONTACT_ENTRIES]; 2]; 2];
+        let mut is_clear = true;
+        for mode in modes {
+            let (re, im) = (1.0 + c.re - by.s.re * mode.value, c.im - by.s.im * mode.value);
+            let squared = re * re + im * im;
+            let size = by.least * (1.0 + by.nu * by.nu * mode.value.abs());
+            is_clear &= squared > size * size;
+            let reciprocal = 1.0 / squared;
+            let inverse = Complex64::new(re * reciprocal, -im * reciprocal);
+            let slope = -(d_c - by.d_s * mode.value) * (inverse * inverse);
+            for (sum, factor) in sums.iter_mut().zip([inverse, slope]) {
+                let [p_re, p_im] = &mode.products;
+                let [re, im] = sum;
+                for i in 0..SINGLE_CONTACT_ENTRIES {
+                    re[i] += p_re[i] * factor.re - p_im[i] * factor.im;
+                    im[i] += p_re[i] * factor.im + p_im[i] * factor.re;
+                }
+            }
+        }
+        is_clear.then_some(sums)
+    }
+}

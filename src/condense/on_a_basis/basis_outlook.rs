@@ -1,0 +1,109 @@
+//! Whether a basis is worth its columns, which its first blocks, that do not suffice, cannot tell: a basis needs about two columns for each
+//! natural frequency up to the highest one that it serves. These are counted by one factorisation, whose size tells what factors at
+//! each frequency would take instead.
+
+use crate::condense::HarmonicBlock;
+use crate::condense::blocks::memory_limit::within;
+use crate::condense::on_a_basis::wave_matrices::{Assembled, WaveMatrices};
+use crate::condense::tuned_wheel::tuned_plan::TunedPlan;
+use crate::error::Result;
+use crate::interrupt::Interrupt;
+use crate::linalg::factors::cholesky::entries_by_degrees;
+use crate::linalg::factors::inertia::eigenvalues_below;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc};
+
+/// Usual columns of a basis per input, and besides.
+/// Kind: tuned; measured on: not recorded.
+pub(crate) const USUAL_COLUMNS: (usize, usize) = (5, 10);
+
+/// Columns of a basis beyond those for each natural frequency up to the highest.
+/// Kind: tuned; measured on: 2.0 to 2.4 on chains of 1,500 and 3,000
+/// masses and grids of 1,444 and 2,916 with 1 to 30 contacts.
+const OF_RESONANCE: usize = 2;
+
+/// Work of a basis over the cube of its columns, and of complex LU factors over the entries of L, in that of n⁻¹ entries².
+/// Kind: tuned; measured on: times of the same models.
+const OF_COLUMNS: f64 = 2.5;
+const OF_ENTRIES: f64 = 6.0;
+
+/// Work of all modes over n³, in the same.
+/// Kind: tuned; measured on: times of grids of 608 to 2,000.
+const WORK_OF_ALL_MODES: f64 = 0.2;
+
+/// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency. Usual sweeps have 30 to 300.
+/// Kind: tuned; measured on: not recorded.
+const ALONG_RANGE: f64 = 600.0;
+const AT_ONE: f64 = 5.0;
+
+/// Whether a basis for `inputs` forces and others `beside` them in the first block, of `most` columns at most, is larger than its
+/// first blocks with gain: its columns suffice, and take
+/// less time than the factors. `true` where the natural frequencies cannot be counted.
+///
+/// # Errors
+/// `OutOfMemory`, `Argument` for the limit of memory; `StoppedByCaller`.
+pub(crate) fn is_worth_its_columns(
+    matrices: &WaveMatrices<'_>,
+    (inputs, beside, most): (usize, usize, usize),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let Some(factors) = matrices.instead_of else {
+        return Ok(true);
+    };
+    let Some(Assembled { stiffness, mass, .. }) = matrices.assembled(interrupt)? else {
+        return Ok(true);
+    };
+    let real = stiffness.is_real() && mass.is_real();
+    let allow = |bytes| within(matrices.memory_limit, bytes + matrices.model.kept().bytes());
+    let sigma = factors.highest * factors.highest;
+    let Some(below) = eigenvalues_below(&stiffness, (sigma, &mass), real, allow, interrupt)? else {
+        return Ok(true);
+    };
+    let (per_input, besides) = USUAL_COLUMNS;
+    let columns = OF_RESONANCE * below.count + per_input * inputs + besides + beside;
+    if columns > most {
+        return Ok(false);
+    }
+    let of_one = of_factors(below.entries, stiffness.columns());
+    let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
+    Ok(OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one)
+}
+
+/// Work of complex LU factors of order n whose triangle has so many entries.
+fn of_factors(entries: usize, n: usize) -> f64 {
+    let entries = entries as f64;
+    OF_ENTRIES * entries + entries * entries / n as f64
+}
+
+/// Whether all modes of a matrix with this pattern take less time than the factors of so many harmonics along a range.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<bool> {
+    let n = pattern.cols;
+    let of_factors = of_factors(entries_by_degrees(pattern)?, n);
+    Ok(WORK_OF_ALL_MODES * (n as f64).powi(3) <= ALONG_RANGE * harmonics as f64 * of_factors)
+}
+
+/// Whether tables of a wheel's flexibility take less time from the waves of the tuned wheel than by factors of all sectors, by their
+/// multiplications.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn is_tuned_quicker(plan: &TunedPlan, blocks: &[HarmonicBlock]) -> Result<bool> {
+    let Some(first) = blocks.first() else { return Ok(false) };
+    let (sectors, n) = (plan.basis.sectors, plan.basis.order);
+    let outputs = first.rows.len() + 1;
+    let of_wave = entries_by_degrees(&plan.ring(0).wave()?)?;
+    let columns = (sectors * (outputs.div_ceil(sectors) + plan.basis.rank)) as f64;
+    let (terms, outputs) = ((sectors * plan.basis.rank) as f64, outputs as f64);
+    let of_tuned = (sectors / 2 + 1) as f64 * of_factors(of_wave, n)
+        + columns * 2.0 * of_wave as f64
+        + terms.powi(3) / 3.0
+        + outputs * terms * (outputs + terms);
+    let of_plain = |entries: usize| of_factors(entries, sectors * n) + 2.0 * entries as f64 * outputs;
+    // The factors have the entries of the matrix at least, which are counted quickly.
+    if of_tuned <= of_plain(first.reference.values.len() / 2) {
+        return Ok(true);
+    }
+    Ok(of_tuned <= of_plain(entries_by_degrees(&first.reference)?))
+}

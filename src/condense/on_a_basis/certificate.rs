@@ -1,0 +1,288 @@
+//! Certificate of a structure on a basis: the estimated relative error of its motion under a unit force at each contact,
+//! at the excitation and at the response, in the energy norm of A = K + σM.
+//!
+//! The residual b − Z V q has the norm ρ in A⁻¹, see [`crate::linalg::iterative::block_krylov`]. Motions that the basis lacks answer it
+//! about statically, which gives ρ/‖q‖. A motion that the basis holds to a share of about ρ/‖q‖ answers it as near its
+//! resonance as it is, which adds ‖Z⁻¹‖ (ρ/‖q‖)² with the inverse on the basis: near a resonance a small residual is an
+//! error that is 1/(2ζ) times larger.
+//!
+//! Rounding enters in two ways, both measured when the basis is made. Solutions with the factor of A leave the basis by a share
+//! ε_s, so that images of the basis are not quite in it: ‖Z q‖, ‖s M V q‖ and so on times ε_s belong to the residual. Products
+//! of soft motions with A lose digits in the stiff ones; what is left of that, ε_p, is an error of the matrix on the basis, and
+//! an error (1 + ‖Z⁻¹‖) ε_p of the motion, which no larger basis makes smaller.
+
+use crate::condense::HarmonicBlock;
+use crate::condense::blocks::sweep::Sweep;
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::hermitian;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::iterative::block_krylov::SparseVector;
+use crate::model::few_motions::reduced_wave::{ReducedView, Remainder, WaveDamping};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the certificate of the flexibility";
+
+/// Largest number of resonances that are checked.
+/// Kind: cap.
+const RESONANCES: usize = 6;
+
+/// Steps of the power iteration for ‖Z⁻¹‖, whose size alone matters.
+/// Kind: tuned; measured on: not recorded.
+const STEPS: usize = 4;
+
+/// Largest estimated errors over a sweep.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Certificate {
+    /// By motions that the basis lacks.
+    pub basis: f64,
+    /// The same with rounding.
+    pub total: f64,
+}
+
+impl Certificate {
+    /// The larger errors of two; one that is not a number is larger than all.
+    pub fn max(self, other: Self) -> Self {
+        let larger = |a: f64, b: f64| {
+            if a.is_nan() || b.is_nan() {
+                f64::INFINITY
+            } else {
+                a.max(b)
+            }
+        };
+        Self {
+            basis: larger(self.basis, other.basis),
+            total: larger(self.total, other.total),
+        }
+    }
+
+    /// Nothing is known.
+    const UNKNOWN: Self = Self {
+        basis: f64::INFINITY,
+        total: f64::INFINITY,
+    };
+}
+
+/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it; that up to the first
+/// frequency alone at which it exceeds `enough`. The residuals at that one are appended to `residuals`, see [`residual`].
+///
+/// # Errors
+/// `OutOfMemory`; `StoppedByCaller`.
+pub(crate) fn certificate(
+    (block, view): (&HarmonicBlock, &ReducedView),
+    loss_factor: f64,
+    inputs: &[SparseVector],
+    (sweep, enough): (Sweep, f64),
+    residuals: &mut Vec<Complex64>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Certificate> {
+    let order = view.pencil().order();
+    let n = block.reference.rows;
+    if order == 0 {
+        return Ok(Certificate::UNKNOWN);
+    }
+    let mut forces = try_vec(inputs.len() * n, Complex64::ZERO, CONTEXT)?;
+    for (to, input) in forces.chunks_exact_mut(n).zip(inputs) {
+        let mut dense = view.coordinates(input)?;
+        to[..order].swap_with_slice(&mut dense[..order]);
+    }
+    let mut frequencies = Vec::new();
+    for frequency in sweep.of_harmonic(block.number).into_iter().rev() {
+        if !frequencies.contains(&frequency) {
+            try_push(&mut frequencies, frequency, CONTEXT)?;
+        }
+    }
+    let mut lacks_resonances = sweep.is_range() && block.number > 0;
+    let mut lu = Lu::new(n, inputs.len().max(1))?;
+    let mut worst = Certificate::default();
+    let remainder = &view.pencil().remainder;
+    let (solutions, products) = (remainder.solutions, remainder.products);
+    let mut q = try_copy(&forces, CONTEXT)?;
+    let mut next = 0;
+    while let Some(&nu) = frequencies.get(next) {
+        next += 1;
+        let i_nu = Complex64::new(0.0, nu);
+        let matrix = lu.matrix();
+        for (at, z) in matrix.iter_mut().enumerate() {
+            *z = block.reference.values[at] + i_nu * block.damping[at] - nu * nu * block.mass[at];
+        }
+        match lu.factor(interrupt) {
+            Ok(()) => {}
+            Err(e) if e.status == Status::Singular => return Ok(Certificate::UNKNOWN),
+            Err(e) => return Err(e),
+        }
+        q.copy_from_slice(&forces);
+        lu.solve_columns(&mut q, false, interrupt)?;
+        let inverse = inverse_norm(&mut lu, n, interrupt)?;
+        residuals.clear();
+        for q in q.chunks_exact(n) {
+            let size = q[..order].iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+            if size == 0.0 {
+                continue;
+            }
+            let residual = residual(view, (nu, loss_factor), &q[..order])?;
+            let share = norm(&residual, remainder) / size;
+            if enough.is_finite() {
+                for z in residual {
+                    try_push(residuals, z / size, CONTEXT)?;
+                }
+            }
+            let basis = share + inverse * share * share;
+            let whole = share + solutions * images(view, (nu, loss_factor), &q[..order])? / size;
+            let total = whole + inverse * whole * whole + (1.0 + inverse) * products;
+            worst = worst.max(Certificate { basis, total });
+        }
+        if worst.basis > enough {
+            return Ok(worst);
+        }
+        if core::mem::take(&mut lacks_resonances) {
+            resonances(block, view, sweep, &mut frequencies, interrupt)?;
+        }
+    }
+    residuals.clear();
+    Ok(worst)
+}
+
+/// The residual of a motion of the coordinates at ν = hω: its coefficients over the images that the basis lacks.
+fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<Vec<Complex64>> {
+    let pencil = view.pencil();
+    let (order, last) = (pencil.order(), pencil.remainder.last);
+    let new = order - last;
+    let turned = |z: Complex64| if view.conjugated { z.conj() } else { z };
+    let mut end = try_vec(new, Complex64::ZERO, CONTEXT)?;
+    for (column, &z) in pencil.rotation.chunks_exact(order).zip(q) {
+        let z = turned(z);
+        for (to, r) in end.iter_mut().zip(&column[last..]) {
+            *to += r * z;
+        }
+    }
+    // Z = (1 + iνβ + iη) A − s M + …, s = ν² − iνα + (1 + iνβ + iη) σ
+    let i_eta = Complex64::new(0.0, loss_factor);
+    let (mass, damping) = match pencil.damping {
+        WaveDamping::Proportional(alpha, beta) | WaveDamping::General(_, Some((alpha, beta))) => {
+            let i_nu = Complex64::new(0.0, nu);
+            (
+                nu * nu - i_nu * alpha + (1.0 + i_nu * beta + i_eta) * pencil.shift,
+                None,
+            )
+        }
+        WaveDamping::General(_, None) => (
+            nu * nu + (1.0 + i_eta) * pencil.shift,
+            Some(turned(Complex64::new(0.0, -nu))),
+        ),
+    };
+    let mut v = Vec::new();
+    for factor in [Some(turned(mass)), damping].into_iter().flatten() {
+        for z in &end {
+            try_push(&mut v, factor * z, CONTEXT)?;
+        }
+    }
+    Ok(v)
+}
+
+/// ρ
+fn norm(residual: &[Complex64], remainder: &Remainder) -> f64 {
+    let mut sum = Complex64::ZERO;
+    for (column, z) in remainder.gram.chunks_exact(residual.len().max(1)).zip(residual) {
+        for (g, w) in column.iter().zip(residual) {
+            sum += w.conj() * g * z;
+        }
+    }
+    sum.re.max(0.0).sqrt()
+}
+
+/// Sum of the norms of the forces Z q and of the images of the basis in them, by which the rounding of solutions counts.
+fn images(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<f64> {
+    let pencil = view.pencil();
+    let size = |x: &[Complex64]| x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+    let mut moved = Vec::new();
+    for (z, value) in q.iter().zip(&pencil.values) {
+        try_push(&mut moved, z * value, CONTEXT)?;
+    }
+    let i_nu = Complex64::new(0.0, nu);
+    let i_eta = Complex64::new(0.0, loss_factor);
+    let (stiffness, mass, damping) = match pencil.damping {
+        WaveDamping::Proportional(alpha, beta) => {
+            let damped = 1.0 + i_nu * beta + i_eta;
+            (
+                damped.norm(),
+                (nu * nu - i_nu * alpha + damped * pencil.shift).norm(),
+                0.0,
+            )
+        }
+        WaveDamping::General(..) => {
+            let mut damped = try_vec(q.len(), Complex64::ZERO, CONTEXT)?;
+            for (i, to) in damped.iter_mut().enumerate() {
+                *to = q.iter().enumerate().map(|(j, z)| view.damping(i, j) * z).sum();
+            }
+            let lost = 1.0 + i_eta;
+            (lost.norm(), (nu * nu + lost * pencil.shift).norm(), nu * size(&damped))
+        }
+    };
+    // The forces are the difference of all of them.
+    Ok(stiffness * size(q) + 2.0 * (mass * size(&moved) + damping))
+}
+
+/// ‖Z⁻¹‖ by power iteration on Z⁻¹Z⁻ᴴ.
+fn inverse_norm(lu: &mut Lu<Complex64>, n: usize, interrupt: &Interrupt<'_>) -> Result<f64> {
+    let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = Complex64::cis(1.7 * k as f64);
+    }
+    let mut norm = 0.0;
+    for _ in 0..STEPS {
+        let size = x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        for x in &mut x {
+            *x = (*x / size).conj();
+        }
+        // conj(Z⁻ᵀ conj(x)) = Z⁻ᴴ x
+        lu.solve_columns(&mut x, true, interrupt)?;
+        for x in &mut x {
+            *x = x.conj();
+        }
+        norm = x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        lu.solve_columns(&mut x, false, interrupt)?;
+    }
+    Ok(norm)
+}
+
+/// Appends natural frequencies, with the real part of the reference stiffness, within a sweep.
+fn resonances(
+    block: &HarmonicBlock,
+    view: &ReducedView,
+    sweep: Sweep,
+    frequencies: &mut Vec<f64>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let n = block.reference.rows;
+    let shift = view.pencil().shift;
+    // L Lᴴ = (K_κ + K_κᴴ)/2 + σM, and L⁻¹ M L⁻ᴴ has the eigenvalues 1/(λ + σ).
+    let values = &block.reference.values;
+    let mut l = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    for j in 0..n {
+        for i in 0..n {
+            l[j * n + i] = 0.5 * (values[j * n + i] + values[i * n + j].conj()) + shift * block.mass[j * n + i];
+        }
+    }
+    if !hermitian::cholesky(&mut l, n, interrupt)? {
+        return Ok(());
+    }
+    let mut a = try_copy(&block.mass, CONTEXT)?;
+    hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
+    hermitian::adjoint_in_place(&mut a, n);
+    hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
+    let [low, _, high] = sweep.of_harmonic(block.number);
+    let (found, _) = hermitian::eigen(&mut a, n, interrupt)?;
+    let mut within = Vec::new();
+    for mu in found.into_iter().filter(|&mu| mu > 0.0) {
+        let omega = (1.0 / mu - shift).max(0.0).sqrt();
+        if low < omega && omega < high {
+            try_push(&mut within, omega, CONTEXT)?;
+        }
+    }
+    let step = within.len().div_ceil(RESONANCES).max(1);
+    for &omega in within.iter().step_by(step) {
+        try_push(frequencies, omega, CONTEXT)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,108 @@
+//! The matrices of a wave that is reduced, checked, and the form of its damping.
+
+use crate::condense::by_modes::few_directions::{FewDirections, few_directions};
+use crate::condense::by_modes::wave_modes::proportional;
+use crate::error::Result;
+use crate::interrupt::Interrupt;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry, aligned, worst_pair};
+use crate::model::Model;
+use crate::model::few_motions::reduced_wave::WaveKey;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave_matrix::WaveMatrix;
+use num_complex::Complex64;
+
+/// Relative deviation from a Hermitian matrix that is rounding.
+/// Kind: rounding.
+const WAVE_MATRICES_HERMITIAN: f64 = 1e-10;
+
+/// The matrices of a wave and the reason for which they are reduced.
+pub(crate) struct WaveMatrices<'a> {
+    pub model: &'a Model,
+    pub number: usize,
+    pub conjugated: bool,
+    pub key: WaveKey,
+    pub frequency: f64,
+    /// The factors that a basis is an alternative to; `None` where it is tried in any case.
+    pub instead_of: Option<Factors>,
+    pub memory_limit: usize,
+}
+
+/// The factors that a basis is an alternative to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Factors {
+    /// Highest angular frequency at which the wave is needed.
+    pub highest: f64,
+    /// Number of harmonics that belong to it.
+    pub harmonics: usize,
+    /// Whether they are needed along a range.
+    pub along_range: bool,
+}
+
+/// K, M and the damping of a wave.
+pub(crate) struct Assembled<'a> {
+    pub stiffness: WaveMatrix<'a>,
+    pub mass: WaveMatrix<'a>,
+    pub damping: Damping,
+}
+
+/// Damping as αM + βK, alone or beside few directions, or as a matrix.
+pub(crate) enum Damping {
+    Proportional(f64, f64),
+    /// αM + βK and few directions.
+    Few(FewDirections),
+    General(Csc),
+}
+
+impl WaveMatrices<'_> {
+    fn matrix(&self, kind: MatrixKind) -> Result<WaveMatrix<'_>> {
+        self.model
+            .structure()
+            .matrix_of_wave(kind, self.number, self.conjugated)
+    }
+
+    /// `None` where stiffness or mass is not Hermitian.
+    pub fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled<'_>>> {
+        let structure = self.model.structure();
+        let stiffness = match self.matrix(MatrixKind::Stiffness)? {
+            // The loss of a complex stiffness is one factor, which the blocks know.
+            WaveMatrix::Made(made) => WaveMatrix::Made(structure.elastic(made)?),
+            kept @ WaveMatrix::Kept(_) => kept,
+        };
+        interrupt.check()?;
+        let mass = self.matrix(MatrixKind::Mass)?;
+        for a in [&stiffness, &mass] {
+            interrupt.check()?;
+            if worst_pair(a, Symmetry::Hermitian).2 > WAVE_MATRICES_HERMITIAN * a.max_abs() {
+                return Ok(None);
+            }
+        }
+        let damping = if structure.has(MatrixKind::Damping) || structure.has_modal_damping() {
+            let c = self.matrix(MatrixKind::Damping)?;
+            let (none, n) = (Complex64::ZERO, c.columns());
+            let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
+            let pattern = Csc::sum(n, &terms)?;
+            let aligned = [
+                aligned(&mass, &pattern)?,
+                aligned(&stiffness, &pattern)?,
+                aligned(&c, &pattern)?,
+            ];
+            let aligned = [&aligned[0][..], &aligned[1], &aligned[2]];
+            if let Some((alpha, beta)) = proportional(aligned) {
+                Damping::Proportional(alpha, beta)
+            } else {
+                match few_directions(&pattern, aligned, structure.rayleigh, interrupt)? {
+                    Some(few) => Damping::Few(few),
+                    None => Damping::General(c.into_csc()?),
+                }
+            }
+        } else {
+            let (alpha, beta) = structure.rayleigh;
+            Damping::Proportional(alpha, beta)
+        };
+        Ok(Some(Assembled {
+            stiffness,
+            mass,
+            damping,
+        }))
+    }
+}

@@ -1,0 +1,244 @@
+//! Complex symmetric stiffness K(1 + iη), as finite-element programs write structural damping: its Hermitian part is the
+//! stiffness of natural modes, the rest is the structural damping iD.
+
+use crate::error::{Result, fail, try_push};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry};
+use crate::model::Model;
+use crate::model::matrices::blocks::Blocks;
+use crate::model::matrices::structure::{MatrixKind, Structure};
+use num_complex::Complex64;
+use std::borrow::Cow;
+
+/// Deviation from a symmetry, relative to the largest entry, that is rounding.
+/// Kind: rounding.
+const COMPLEX_STIFFNESS_ROUNDING: f64 = 1e-10;
+
+/// The same of the loss of a stiffness from one loss factor.
+/// Kind: rounding.
+const PROPORTIONAL_LOSS: f64 = 1e-12;
+
+/// Factors c of (A + Bᴴ)/2 and (A − Bᴴ)/2i as cA + (cB)ᴴ.
+const HERMITIAN_PART: Complex64 = Complex64::new(0.5, 0.0);
+const LOSS: Complex64 = Complex64::new(0.0, -0.5);
+
+impl Structure {
+    /// Whether the stiffness is complex and not Hermitian, but symmetric, so that what is not Hermitian in it dissipates. A
+    /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror, and where that of −d was given,
+    /// which is then the transpose; of real sectors without symmetry it is the conjugate.
+    #[must_use]
+    pub fn has_complex_stiffness(&self) -> bool {
+        let blocks = &self.blocks[MatrixKind::Stiffness as usize];
+        if self.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
+            return false;
+        }
+        let has = |a: &KeptMatrix, symmetry| a.worst_pair(symmetry).2 <= COMPLEX_STIFFNESS_ROUNDING * a.max_abs();
+        if !blocks.diameters.is_empty() {
+            let given = blocks.diameters.iter().enumerate();
+            let mut lossy = given
+                .filter_map(|(d, a)| a.as_ref().map(|a| (d, a)))
+                .filter(|(_, a)| !has(a, Symmetry::Hermitian))
+                .peekable();
+            let own_mirror = |d: usize| (2 * d).is_multiple_of(self.sectors());
+            let is_transposed = |d: usize, a: &KeptMatrix| {
+                let other = blocks.diameters.get((self.sectors() - d) % self.sectors());
+                other.and_then(Option::as_ref).is_none_or(|b| are_transposed(a, b))
+            };
+            return lossy.peek().is_some()
+                && lossy
+                    .all(|(d, a)| !a.is_real() && (!own_mirror(d) || has(a, Symmetry::Plain)) && is_transposed(d, a));
+        }
+        let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
+            (Some(next), Some(previous)) => {
+                let limit = COMPLEX_STIFFNESS_ROUNDING * next.max_abs().max(previous.max_abs());
+                let near = |a: &KeptMatrix, b: &KeptMatrix| {
+                    let entries = (0..a.order()).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
+                    entries
+                        .into_iter()
+                        .all(|(i, j, v)| (v - symmetry.mirror(b.get(j, i))).norm() <= limit)
+                };
+                near(next, previous) && near(previous, next)
+            }
+            // The coupling to the previous sector is the transpose.
+            (Some(next), None) => symmetry == Symmetry::Plain || next.is_real(),
+            (None, previous) => previous.is_none(),
+        };
+        let ring = |symmetry| blocks.own.as_ref().is_none_or(|own| has(own, symmetry)) && coupled(symmetry);
+        ring(Symmetry::Plain) && !ring(Symmetry::Hermitian)
+    }
+
+    /// Loss factor of the whole stiffness: the one that was given, and η of a complex stiffness H(1 + iη) with a Hermitian H. `None`
+    /// where a complex stiffness dissipates in another form.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn whole_loss_factor(&self) -> Result<Option<f64>> {
+        if !self.has_complex_stiffness() {
+            return Ok(Some(self.loss_factor()));
+        }
+        let blocks = &self.blocks[MatrixKind::Stiffness as usize];
+        let (elastic, loss) = (of_blocks(blocks, HERMITIAN_PART)?, of_blocks(blocks, LOSS)?);
+        let pairs = || elastic.parts().zip(loss.parts());
+        let (mut product, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
+        for (h, l) in pairs() {
+            largest = largest.max(l.max_abs());
+            for j in 0..h.order() {
+                for (i, v) in h.column(j) {
+                    product += (v.conj() * l.get(i, j)).re;
+                    square += v.norm_sqr();
+                }
+            }
+        }
+        if square == 0.0 {
+            return Ok(None);
+        }
+        let eta = product / square;
+        let limit = PROPORTIONAL_LOSS * largest;
+        let is_share = pairs().all(|(h, l)| {
+            (0..h.order()).all(|j| {
+                h.column(j).all(|(i, v)| (l.get(i, j) - eta * v).norm() <= limit)
+                    && l.column(j).all(|(i, v)| (v - eta * h.get(i, j)).norm() <= limit)
+            })
+        });
+        Ok(is_share.then_some(self.loss_factor() + eta))
+    }
+
+    /// The stiffness of a wave without the structural damping in a complex one.
+    pub(crate) fn elastic(&self, stiffness: Csc) -> Result<Csc> {
+        if stiffness.is_real() || !self.has_complex_stiffness() {
+            return Ok(stiffness);
+        }
+        combined(&stiffness, &stiffness, HERMITIAN_PART)
+    }
+
+    /// Replaces a complex symmetric stiffness by its Hermitian part and adds the rest to the structural matrix.
+    fn separate_complex_stiffness(&mut self) -> Result<()> {
+        let stiffness = self.blocks[MatrixKind::Stiffness as usize].try_clone()?;
+        let structural = self.blocks[MatrixKind::Structural as usize].try_clone()?;
+        let is_given = self.parts(MatrixKind::Structural).next().is_some();
+        if is_given && stiffness.diameters.is_empty() != structural.diameters.is_empty() {
+            return fail!(
+                Unsupported,
+                "modes need a complex symmetric stiffness and the structural damping in one form, both as blocks of sectors or both \
+                 per nodal diameter; give all of the loss as structural damping"
+            );
+        }
+        *self.blocks_mut(MatrixKind::Stiffness)? = of_blocks(&stiffness, HERMITIAN_PART)?;
+        let loss = of_blocks(&stiffness, LOSS)?;
+        *self.blocks_mut(MatrixKind::Structural)? = added(self.ndof(), &loss, &structural)?;
+        self.loss_of_stiffness = true;
+        Ok(())
+    }
+}
+
+impl Model {
+    /// The model whose stiffness has natural modes: a complex symmetric stiffness as its Hermitian part and structural
+    /// damping. Its equations are the same.
+    ///
+    /// # Errors
+    /// `Unsupported` where the structural matrix has another form; `OutOfMemory`.
+    #[doc(hidden)]
+    pub fn with_separate_loss(&self) -> Result<Cow<'_, Self>> {
+        if !self.structure().has_complex_stiffness() {
+            return Ok(Cow::Borrowed(self));
+        }
+        let mut model = self.try_clone()?;
+        model.structure_mut().separate_complex_stiffness()?;
+        Ok(Cow::Owned(model))
+    }
+}
+
+/// Applies a split to the blocks; that of the coupling to the next sector has its mirror in that to the previous one.
+fn of_blocks(given: &Blocks, factor: Complex64) -> Result<Blocks> {
+    let split = |a: &KeptMatrix, mirror: &KeptMatrix| KeptMatrix::new(combined(a, mirror, factor)?);
+    let own = given.own.as_ref().map(|own| split(own, own)).transpose()?;
+    let (mut next, mut previous) = (None, None);
+    if let Some(after) = &given.next {
+        let before = match &given.previous {
+            Some(before) => before.try_clone()?,
+            None => transposed(after)?,
+        };
+        next = Some(split(after, &before)?);
+        if given.previous.is_some() {
+            previous = Some(split(&before, after)?);
+        }
+    }
+    let mut diameters = Vec::new();
+    for a in &given.diameters {
+        let a = a.as_ref().map(|a| split(a, a)).transpose()?;
+        try_push(&mut diameters, a, "the matrices per diameter")?;
+    }
+    Ok(Blocks {
+        own,
+        next,
+        previous,
+        diameters,
+    })
+}
+
+/// cA + (cB)ᴴ with the mirror block B of A, which is A itself on the diagonal.
+fn combined<A: Columns>(a: &A, mirror: &A, factor: Complex64) -> Result<Csc> {
+    let n = a.columns();
+    let mirrored = Csc::sum(n, &[(Complex64::ONE, mirror, Form::Transposed)])?;
+    let scaled = Csc::sum(n, &[(factor, a, Form::Plain)])?;
+    Csc::sum(
+        n,
+        &[
+            (Complex64::ONE, &scaled, Form::Plain),
+            (factor.conj(), &mirrored, Form::Conjugated),
+        ],
+    )
+}
+
+/// Whether two matrices are the transposes of each other.
+fn are_transposed(a: &KeptMatrix, b: &KeptMatrix) -> bool {
+    let limit = COMPLEX_STIFFNESS_ROUNDING * a.max_abs().max(b.max_abs());
+    let is_mirror = |a: &KeptMatrix, b: &KeptMatrix| {
+        let mut columns = 0..a.order();
+        columns.all(|j| a.column(j).all(|(i, v)| (v - b.get(j, i)).norm() <= limit))
+    };
+    is_mirror(a, b) && is_mirror(b, a)
+}
+
+fn transposed(a: &KeptMatrix) -> Result<KeptMatrix> {
+    KeptMatrix::new(Csc::sum(a.order(), &[(Complex64::ONE, a, Form::Transposed)])?)
+}
+
+fn added(n: usize, loss: &Blocks, given: &Blocks) -> Result<Blocks> {
+    let sum = |a: &Option<KeptMatrix>, b: &Option<KeptMatrix>| -> Result<Option<KeptMatrix>> {
+        match (a, b) {
+            (None, None) => Ok(None),
+            (Some(a), None) | (None, Some(a)) => a.try_clone().map(Some),
+            (Some(a), Some(b)) => {
+                let terms = [a, b].map(|a| (Complex64::ONE, a, Form::Plain));
+                KeptMatrix::new(Csc::sum(n, &terms)?).map(Some)
+            }
+        }
+    };
+    // Without a matrix of its own, the coupling to the previous sector is the transpose of that to the next.
+    let previous = if loss.previous.is_some() || given.previous.is_some() {
+        sum(&before(loss)?, &before(given)?)?
+    } else {
+        None
+    };
+    let mut diameters = Vec::new();
+    for (d, a) in loss.diameters.iter().enumerate() {
+        let b = given.diameters.get(d).unwrap_or(&None);
+        try_push(&mut diameters, sum(a, b)?, "the matrices per diameter")?;
+    }
+    Ok(Blocks {
+        own: sum(&loss.own, &given.own)?,
+        next: sum(&loss.next, &given.next)?,
+        previous,
+        diameters,
+    })
+}
+
+/// The coupling to the previous sector.
+fn before(blocks: &Blocks) -> Result<Option<KeptMatrix>> {
+    match (&blocks.previous, &blocks.next) {
+        (Some(previous), _) => previous.try_clone().map(Some),
+        (None, Some(next)) => transposed(next).map(Some),
+        (None, None) => Ok(None),
+    }
+}

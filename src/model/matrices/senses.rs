@@ -1,0 +1,111 @@
+//! The two senses of a nodal diameter: in the wave d sector s + 1 lags by 2πd/N, in the wave −d it leads. Their matrices are
+//! conjugate where all blocks between sectors are real, and their modes differ where something distinguishes the senses.
+
+use crate::error::{Result, fail};
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use crate::model::matrices::blocks::Blocks;
+use crate::model::matrices::influence::AeroInfluence;
+use crate::model::matrices::structure::{MatrixKind, Structure};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Difference of conjugate matrices of a diameter, relative to their largest entry, that is rounding.
+/// Kind: rounding.
+const CONJUGATE: f64 = 1e-13;
+
+impl Structure {
+    /// The signed nodal diameter −N/2 < d ≤ N/2 of a wave of `waves` waves per turn, in which sector s + 1 lags by 2πd/N.
+    #[must_use]
+    pub fn signed_diameter(&self, waves: i64) -> i64 {
+        let (diameter, backward) = self.fold(waves);
+        if backward { -(diameter as i64) } else { diameter as i64 }
+    }
+
+    /// The signed nodal diameters −N/2 < d ≤ N/2 of all waves, rising.
+    pub fn all_diameters(&self) -> impl Iterator<Item = i64> + use<> {
+        let n = self.sectors() as i64;
+        (1 - n) / 2..=n / 2
+    }
+
+    /// Refuses nodal diameters other than 0 of a plain structure; a wheel has those of any number of waves, modulo N.
+    ///
+    /// # Errors
+    /// `Argument`.
+    pub(crate) fn check_diameter(&self, diameter: i64) -> Result<()> {
+        if self.sectors() == 1 && diameter != 0 {
+            return fail!(
+                Argument,
+                "diameter = {diameter}, needs 0 .. 0: a plain structure has no nodal diameters"
+            );
+        }
+        Ok(())
+    }
+
+    /// The nodal diameter 0 ..= N/2 of a wave of `waves` waves per turn; `true` if it travels against the sense in
+    /// which sector s + 1 lags.
+    #[must_use]
+    pub fn fold(&self, waves: i64) -> (usize, bool) {
+        let n = self.sectors();
+        let residue = i128::from(waves).rem_euclid(n as i128) as usize;
+        if 2 * residue <= n {
+            (residue, false)
+        } else {
+            (n - residue, true)
+        }
+    }
+
+    /// Whether the matrices of the wave −d are the conjugates of those of d: all blocks are real, and no matrix was given
+    /// for a negative diameter.
+    pub(crate) fn has_conjugate_waves(&self) -> bool {
+        let aero = self.aero().iter().flatten();
+        let given = |b: &Blocks| {
+            let mut all = [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten();
+            all.all(KeptMatrix::is_real) && b.diameters.len() <= self.sectors / 2 + 1
+        };
+        self.blocks.iter().all(given) && aero.map(Arc::as_ref).all(AeroInfluence::is_real)
+    }
+
+    /// Whether the matrices of a nodal diameter, by its residue, can be made of what was given.
+    pub(crate) fn has_diameter(&self, residue: usize) -> bool {
+        let other = (self.sectors - residue) % self.sectors;
+        let has = |b: &Blocks, d: usize| b.diameters.get(d).is_some_and(Option::is_some);
+        let given = |b: &Blocks| b.diameters.is_empty() || has(b, residue) || has(b, other);
+        self.blocks.iter().all(given)
+    }
+
+    /// Whether the modes of a wave −d, by its residue, do not follow from those of d: M or K has complex blocks between
+    /// sectors, or matrices of its own for −d.
+    pub(crate) fn has_own_sense(&self, residue: usize) -> bool {
+        [MatrixKind::Mass, MatrixKind::Stiffness].into_iter().any(|kind| {
+            let b = &self.blocks[kind as usize];
+            let own = b.diameters.get(residue).is_some_and(Option::is_some);
+            own || (b.diameters.is_empty() && !self.parts(kind).all(KeptMatrix::is_real))
+        })
+    }
+
+    /// Refuses matrices of d and −d that are not conjugate: no real structure has them.
+    ///
+    /// # Errors
+    /// `Unsupported`.
+    pub(crate) fn check_senses(&self) -> Result<()> {
+        let sectors = self.sectors();
+        for blocks in self.blocks.iter() {
+            for residue in sectors / 2 + 1..blocks.diameters.len() {
+                let (Some(a), Some(b)) = (&blocks.diameters[residue], &blocks.diameters[sectors - residue]) else {
+                    continue;
+                };
+                let terms = [(Complex64::ONE, a, Form::Plain), ((-1.0).into(), b, Form::Conjugated)];
+                if Csc::sum(a.order(), &terms)?.max_abs() > CONJUGATE * a.max_abs() {
+                    return fail!(
+                        Unsupported,
+                        "the matrices of the nodal diameters {} and {} are not conjugate: complex matrices between sectors mean nothing in time",
+                        sectors - residue,
+                        self.signed_diameter(residue as i64)
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,117 @@
+//! Stiffness of a wave with springs and stuck contacts.
+
+use crate::contact::Contact;
+use crate::error::{Result, try_push};
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::matrices::spring::Row;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
+use num_complex::Complex64;
+
+/// A tie over the stiffness of the structure: natural frequencies are below those of tied sides by 10⁻⁸ or so, the rounding of K as large. Kind:
+/// rounding.
+const TIE: f64 = 1e8;
+
+impl Model {
+    /// Rows of force and motion, and stiffness, of the springs of the model and of the `stuck` contacts in a wave.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    #[doc(hidden)]
+    pub fn spring_rows<'c>(
+        &self,
+        wave: Wave,
+        stuck: impl Iterator<Item = &'c Contact>,
+    ) -> Result<Vec<(Row, Row, f64)>> {
+        let mut rows = Vec::new();
+        self.each_spring(
+            wave,
+            stuck.map(|c| (c, c)),
+            Contact::stiffness_at_small_motion,
+            |force, motion, stiffness| try_push(&mut rows, (*force, *motion, stiffness), "the springs"),
+        )?;
+        Ok(rows)
+    }
+
+    /// Calls `take` with each of them, with the stiffness of contacts between the motions of their directions k and l as
+    /// given, for whatever names a contact.
+    fn each_spring<'c, T: Copy>(
+        &self,
+        wave: Wave,
+        contacts: impl Iterator<Item = (T, &'c Contact)>,
+        stiffness: impl Fn(T, usize, usize) -> f64,
+        mut take: impl FnMut(&Row, &Row, f64) -> Result<()>,
+    ) -> Result<()> {
+        let structure = self.structure();
+        let mut add = |force: &Row, motion: &Row, stiffness: f64| match stiffness {
+            0.0 => Ok(()),
+            f64::INFINITY => take(force, motion, self.tie(motion)),
+            stiffness => take(force, motion, stiffness),
+        };
+        for s in self.springs() {
+            let row = structure.row(&structure.spring_motion(s), wave);
+            add(&row, &row, s.stiffness)?;
+        }
+        for (name, c) in contacts {
+            let row = |k| structure.row(&structure.contact_motion(c, k), wave);
+            for k in 0..c.directions() {
+                for l in 0..c.directions() {
+                    add(&row(k), &row(l), stiffness(name, k, l))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Stiffness in place of an infinite one, as of a rigid slider that sticks: [`TIE`] times that of the structure at its sides.
+    fn tie(&self, motion: &Row) -> f64 {
+        let own = |p| self.structure().wave_diagonal(MatrixKind::Stiffness, 0, p).norm();
+        TIE * motion.iter().flatten().map(|(p, _)| own(*p)).fold(0.0, f64::max)
+    }
+
+    /// K of a wave, at a fixed speed with Ω²K₁, with aerodynamic forces per displacement, the springs of the model and
+    /// those of the `stuck` contacts.
+    ///
+    /// # Errors
+    /// Those of [`Structure::wave_matrix`](crate::model::matrices::structure::Structure::wave_matrix).
+    #[doc(hidden)]
+    pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
+        self.stiffness_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
+    }
+
+    /// The same with the stiffness of contacts as in [`Self::each_spring`].
+    ///
+    /// # Errors
+    /// As [`Self::sprung_stiffness`].
+    pub(crate) fn stiffness_with<'c, T: Copy>(
+        &self,
+        wave: Wave,
+        contacts: impl Iterator<Item = (T, &'c Contact)>,
+        stiffness: impl Fn(T, usize, usize) -> f64,
+    ) -> Result<Csc> {
+        let structure = self.structure();
+        let n = structure.ndof();
+        let own = structure.acting_stiffness(wave)?;
+        let mut entries = Vec::new();
+        self.each_spring(wave, contacts, stiffness, |force, motion, stiffness| {
+            for (p, x) in force.iter().flatten() {
+                for (q, y) in motion.iter().flatten() {
+                    try_push(&mut entries, (*p, *q, x.conj() * y * stiffness), "the springs")?;
+                }
+            }
+            Ok(())
+        })?;
+        if entries.is_empty() {
+            return Ok(own);
+        }
+        let springs = Csc::from_triplets(n, n, entries)?;
+        Csc::sum(
+            n,
+            &[
+                (Complex64::ONE, &own, Form::Plain),
+                (Complex64::ONE, &springs, Form::Plain),
+            ],
+        )
+    }
+}

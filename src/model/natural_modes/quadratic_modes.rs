@@ -1,0 +1,245 @@
+//! Eigenvalues λ in the upper half plane of (λ²M + λC + K) x = 0, with damping and gyroscopic forces in C and structural
+//! damping in K.
+//!
+//! A small structure is projected on all modes of M and the Hermitian part of K, and solved as λ (x, λx) = (λx, −Kx − λCx) by Schur's
+//! form (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). The modes of a large one are found by the search of
+//! [`quadratic_search`](crate::model::natural_modes::quadratic_search). Each eigenvalue is then corrected by inverse iteration with the whole matrices
+//! (Neumaier 1985, doi:10.1137/0722055), which may not lead to another one.
+
+use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::eigen;
+use crate::linalg::exact_sums::quadratic::quadratic;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::held_rows::MovingRows;
+use crate::linalg::sparse_storage::sparse::Csc;
+use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
+use crate::model::natural_modes::quadratic_search::lowest_by_search;
+use nalgebra::{DMatrix, Schur};
+use num_complex::Complex64;
+
+/// Degrees of freedom up to which all modes are found by dense algebra: 0.1 s for a mode or for all; the search takes less above.
+/// Kind: tuned; measured on: not recorded.
+const QUADRATIC_MODES_DENSE_UP_TO: usize = 100;
+
+/// Degrees of freedom for each mode that is requested, below which dense algebra is used as well.
+/// Kind: tuned; measured on: not recorded.
+const FEW_FOR_EACH: usize = 4;
+
+/// Iterations of Schur's form for each eigenvalue.
+/// Kind: cap.
+const QUADRATIC_MODES_ITERATIONS: usize = 200;
+
+/// Relative distance of the shift from an eigenvalue in its correction.
+/// Kind: tuned; measured on: not recorded.
+const QUADRATIC_MODES_OFFSET: f64 = 1e-7;
+
+/// Largest number of corrections of an eigenvalue.
+/// Kind: cap.
+const QUADRATIC_MODES_CORRECTIONS: usize = 20;
+
+/// Change of an eigenvalue by its correction, relative to it and to the distance of the next one, beyond which it has become another.
+/// Kind: tuned; measured on: not recorded.
+const BECOMES_OTHER: (f64, f64) = (1e-7, 0.1);
+
+/// Square matrices of the order 2r that Schur's form holds at a time.
+/// Kind: fixed.
+const QUADRATIC_MODES_COPIES: usize = 6;
+
+const CONTEXT: &str = "the damped modes";
+
+impl Quadratic<'_> {
+    /// The `count` eigenvalues of lowest imaginary part, fewer if there are not so many. Motions that do not oscillate, rigid or
+    /// damped beyond vibration, are not counted, unless they grow: these have a real eigenvalue above zero, and come first.
+    ///
+    /// # Errors
+    /// Those of the eigensolvers; `NoConvergence`, `OutOfMemory`, `StoppedByCaller`.
+    pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
+        let hermitian = self.hermitian_stiffness()?;
+        if let Some(moving) = MovingRows::of(&hermitian)? {
+            let parts = [self.mass, self.damping, self.stiffness].map(|a| moving.reduced(a));
+            let [mass, damping, stiffness] = parts;
+            let reduced = Quadratic {
+                mass: &mass?,
+                damping: &damping?,
+                stiffness: &stiffness?,
+            };
+            let mut pairs = reduced.lowest(count, interrupt)?;
+            for pair in &mut pairs {
+                pair.1 = moving.expanded(&pair.1)?;
+            }
+            return Ok(pairs);
+        }
+        let n = self.mass.rows;
+        let is_small = n <= QUADRATIC_MODES_DENSE_UP_TO;
+        let searched = if is_small || count > n / FEW_FOR_EACH {
+            None
+        } else {
+            lowest_by_search(self, &hermitian, count, interrupt)?
+        };
+        let mut pairs = match searched {
+            Some(pairs) => pairs,
+            None => self.projected(&self.basis(&hermitian, interrupt)?, interrupt)?,
+        };
+        pairs.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
+        let mut found: Vec<Pair> = Vec::new();
+        for (k, pair) in pairs.iter().enumerate() {
+            if found.len() >= count {
+                break;
+            }
+            interrupt.check()?;
+            let better = if is_small {
+                (pair.0, try_copy(&pair.1, CONTEXT)?)
+            } else {
+                self.improved(&pairs, k, &found, interrupt)?
+            };
+            let Some(eigenvalue) = self.as_mode(better.0, &better.1) else {
+                continue;
+            };
+            let mut shape = better.1;
+            let norm = quadratic(self.mass, &shape).sqrt();
+            for x in &mut shape {
+                *x /= norm;
+            }
+            try_push(&mut found, (eigenvalue, shape), CONTEXT)?;
+        }
+        found.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
+        Ok(found)
+    }
+
+    /// The k-th pair after its correction, or as it was found where that leads to another one.
+    fn improved(&self, pairs: &[Pair], k: usize, found: &[Pair], interrupt: &Interrupt<'_>) -> Result<Pair> {
+        let pair = &pairs[k];
+        let others = pairs.iter().enumerate().filter(|(l, _)| *l != k);
+        let gap = others.fold(f64::INFINITY, |least, (_, other)| least.min((other.0 - pair.0).norm()));
+        let most = (BECOMES_OTHER.0 * pair.0.norm()).max(BECOMES_OTHER.1 * gap);
+        match self.corrected(pair, interrupt) {
+            Err(e) if !matches!(e.status, Status::NoConvergence | Status::Singular) => Err(e),
+            Ok(better) if (better.0 - pair.0).norm() <= most && !found.iter().any(|other| is_one(other, &better)) => {
+                Ok(better)
+            }
+            _ => Ok((pair.0, try_copy(&pair.1, CONTEXT)?)),
+        }
+    }
+
+    /// The undamped modes, column by column.
+    fn basis(&self, hermitian: &Csc, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
+        let n = self.mass.rows;
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * QUADRATIC_MODES_COPIES), CONTEXT)?;
+        Ok(eigen::generalised(&dense(hermitian), &dense(self.mass), interrupt)?.vectors)
+    }
+
+    /// Eigenvalues and shapes of the projection on the columns of `basis`, which are orthonormal in M.
+    fn projected(&self, basis: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
+        let (n, r) = (basis.nrows(), basis.ncols());
+        check_memory::<Complex64>((4 * r * r).saturating_mul(QUADRATIC_MODES_COPIES), CONTEXT)?;
+        let project = |a: &Csc| -> Result<DMatrix<Complex64>> {
+            let mut moved = DMatrix::zeros(n, r);
+            for (from, mut to) in basis.column_iter().zip(moved.column_iter_mut()) {
+                interrupt.check()?;
+                a.multiply_add(Complex64::ONE, from.as_slice(), to.as_mut_slice());
+            }
+            Ok(basis.adjoint() * moved)
+        };
+        let (k, c) = (project(self.stiffness)?, project(self.damping)?);
+        // The unit of frequencies makes both halves of the state alike in size.
+        let unit = (k.norm() / (r.max(1) as f64).sqrt()).sqrt();
+        if unit == 0.0 || !unit.is_finite() {
+            return Ok(Vec::new());
+        }
+        let mut companion = DMatrix::<Complex64>::zeros(2 * r, 2 * r);
+        companion.view_mut((0, r), (r, r)).fill_with_identity();
+        companion
+            .view_mut((r, 0), (r, r))
+            .copy_from(&(k * Complex64::from(-1.0 / (unit * unit))));
+        companion
+            .view_mut((r, r), (r, r))
+            .copy_from(&(c * Complex64::from(-1.0 / unit)));
+        let Some(schur) = Schur::try_new(companion, f64::EPSILON, QUADRATIC_MODES_ITERATIONS * 2 * r) else {
+            return fail!(NoConvergence, "the eigenvalues of the damped structure were not found");
+        };
+        let (q, t) = schur.unpack();
+        let size = t.norm();
+        let mut pairs = Vec::new();
+        for j in 0..2 * r {
+            let value = t[(j, j)];
+            let oscillates = value.im
+                > QUADRATIC_PROBLEM_REAL * value.norm().max(f64::EPSILON.sqrt() * QUADRATIC_PROBLEM_REAL * size);
+            let may_grow = value.re > 0.0 && value.im.abs() <= QUADRATIC_PROBLEM_REAL * value.norm();
+            if !(oscillates || may_grow) {
+                continue;
+            }
+            interrupt.check()?;
+            // (T − t_jj) y = 0 by back substitution; equal eigenvalues keep independent vectors.
+            let mut y = try_vec(2 * r, Complex64::ZERO, CONTEXT)?;
+            y[j] = Complex64::ONE;
+            for i in (0..j).rev() {
+                let sum: Complex64 = (i + 1..=j).map(|l| t[(i, l)] * y[l]).sum();
+                let mut gap = t[(i, i)] - value;
+                if gap.norm() < f64::EPSILON * size {
+                    gap = (f64::EPSILON * size).into();
+                }
+                y[i] = -sum / gap;
+            }
+            let mut shape = try_vec(n, Complex64::ZERO, CONTEXT)?;
+            for mode in 0..r {
+                let part: Complex64 = (0..=j).map(|l| q[(mode, l)] * y[l]).sum();
+                for (x, phi) in shape.iter_mut().zip(basis.column(mode).iter()) {
+                    *x += part * phi;
+                }
+            }
+            if let Some(eigenvalue) = self.as_mode(value * unit, &shape) {
+                try_push(&mut pairs, (eigenvalue, shape), CONTEXT)?;
+            }
+        }
+        Ok(pairs)
+    }
+
+    /// Newton's method on A(λ) x = 0, vᴴ x = 1 with v = M x₀, with the factors at a shift nearby.
+    fn corrected(&self, (start, shape): &Pair, interrupt: &Interrupt<'_>) -> Result<Pair> {
+        let n = self.mass.rows;
+        let (mut eigenvalue, mut x) = (*start, try_copy(shape, CONTEXT)?);
+        let v = self.mass.times(shape, CONTEXT)?;
+        let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
+        let mut factor = Factor::new(&self.matrix(eigenvalue)?, 2)?;
+        let mut last = f64::INFINITY;
+        for _ in 0..QUADRATIC_MODES_CORRECTIONS {
+            interrupt.check()?;
+            factor.factor(&self.matrix(eigenvalue * (1.0 + QUADRATIC_MODES_OFFSET))?, interrupt)?;
+            let mut columns = try_vec(n, Complex64::ZERO, CONTEXT)?;
+            self.matrix(eigenvalue)?.multiply_add(Complex64::ONE, &x, &mut columns);
+            try_extend(&mut columns, &self.slope_times(eigenvalue, &x)?, CONTEXT)?;
+            factor.solve(&mut columns, false, interrupt)?;
+            let (residual, slope) = columns.split_at(n);
+            let step = -project(residual) / project(slope);
+            let (mut change, mut size) = (0.0_f64, 0.0_f64);
+            for ((x, r), s) in x.iter_mut().zip(residual).zip(slope) {
+                let dx = r + step * s;
+                *x -= dx;
+                change = change.max(dx.norm());
+                size = size.max(x.norm());
+            }
+            eigenvalue += step;
+            if !(eigenvalue.is_finite() && size.is_finite() && (eigenvalue - start).norm() <= 0.5 * start.norm()) {
+                return fail!(
+                    NoConvergence,
+                    "the damped mode near {} + {}i was not reached",
+                    start.re,
+                    start.im
+                );
+            }
+            let change = change / size + step.norm() / eigenvalue.norm();
+            if change <= 1e-14 || (change < 1e-9 && change > 0.5 * last) {
+                break;
+            }
+            last = change;
+        }
+        Ok((eigenvalue, x))
+    }
+}
+
+fn dense(a: &Csc) -> DMatrix<Complex64> {
+    let mut d = DMatrix::zeros(a.rows, a.cols);
+    a.add_to_dense(Complex64::ONE, d.as_mut_slice());
+    d
+}

@@ -1,0 +1,112 @@
+//! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
+
+use crate::error::Result;
+use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
+use crate::linalg::inner;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use num_complex::Complex64;
+
+/// Imaginary part over the modulus below which an eigenvalue is no vibration.
+/// Kind: rounding.
+pub const QUADRATIC_PROBLEM_REAL: f64 = 1e-9;
+
+/// Relative distance of eigenvalues, and the square of the sine between their vectors, below which two are one.
+/// Kind: rounding.
+pub const ONE_VALUE: f64 = 1e-7;
+const ONE_VECTOR: f64 = 1e-4;
+
+const CONTEXT: &str = "the damped modes";
+
+/// M, C and K.
+pub struct Quadratic<'a> {
+    /// M
+    pub mass: &'a Csc,
+    /// C, with gyroscopic forces
+    pub damping: &'a Csc,
+    /// K, with structural damping
+    pub stiffness: &'a Csc,
+}
+
+/// An eigenvalue with its shape, xᴴ M x = 1.
+pub type Pair = (Complex64, Vec<Complex64>);
+
+impl Quadratic<'_> {
+    /// The Hermitian part of K.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn hermitian_stiffness(&self) -> Result<Csc> {
+        let n = self.mass.rows;
+        let half = Complex64::new(0.5, 0.0);
+        let transposed = Csc::sum(n, &[(Complex64::ONE, self.stiffness, Form::Transposed)])?;
+        Csc::sum(
+            n,
+            &[
+                (half, self.stiffness, Form::Plain),
+                (half, &transposed, Form::Conjugated),
+            ],
+        )
+    }
+
+    /// The eigenvalue of a mode: one that oscillates, or one that grows, which is then real; `None` for a motion that is rigid or damped
+    /// beyond vibration.
+    #[must_use]
+    pub fn as_mode(&self, mut eigenvalue: Complex64, shape: &[Complex64]) -> Option<Complex64> {
+        if eigenvalue.im > QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
+            return (!self.is_rigid(eigenvalue, shape)).then_some(eigenvalue);
+        }
+        if eigenvalue.re <= 0.0 || eigenvalue.im < -QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
+            return None;
+        }
+        eigenvalue.im = 0.0;
+        self.grows(eigenvalue.re, shape).then_some(eigenvalue)
+    }
+
+    /// Whether a motion of a real eigenvalue λ > 0 is no rigid one up to rounding: xᴴ(K + λC)x, which is −λ² xᴴMx.
+    fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
+        let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
+        force < -QUADRATIC_ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
+    }
+
+    /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below that of the forces. The two eigenvalues zero of a motion
+    /// that nothing holds lie apart by the root of rounding, in any direction.
+    fn is_rigid(&self, eigenvalue: Complex64, x: &[Complex64]) -> bool {
+        let forces = terms(self.stiffness, x) + eigenvalue.norm() * terms(self.damping, x);
+        eigenvalue.norm_sqr() * quadratic(self.mass, x) <= QUADRATIC_ROUNDING * forces
+    }
+
+    /// λ²M + λC + K
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
+        Csc::sum(
+            self.mass.rows,
+            &[
+                (Complex64::ONE, self.stiffness, Form::Plain),
+                (eigenvalue, self.damping, Form::Plain),
+                (eigenvalue * eigenvalue, self.mass, Form::Plain),
+            ],
+        )
+    }
+
+    /// (2λM + C) x
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
+        let mut y = self.damping.times(x, CONTEXT)?;
+        self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
+        Ok(y)
+    }
+}
+
+/// Whether two pairs are one mode.
+#[must_use]
+pub fn is_one(a: &Pair, b: &Pair) -> bool {
+    if (a.0 - b.0).norm() > ONE_VALUE * a.0.norm() {
+        return false;
+    }
+    let (aa, bb) = (inner(&a.1, &a.1).re, inner(&b.1, &b.1).re);
+    inner(&a.1, &b.1).norm_sqr() >= (1.0 - ONE_VECTOR) * aa * bb
+}

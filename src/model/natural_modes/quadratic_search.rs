@@ -1,0 +1,270 @@
+//! Search for the damped modes of lowest frequency of a large structure, none missing and none twice.
+//!
+//! Eigenvalues next to a shift are found with the radius of a disc in which none is missing. Wanted are those with 0 < Im λ ≤ w. A
+//! first disc about a shift near iw/2 covers them up to a share of w on both sides of the imaginary axis; rectangles further out, in which
+//! strong dampers put few eigenvalues, are covered by discs of their own.
+
+use crate::error::{Result, Status, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::iterative::lanczos;
+use crate::linalg::iterative::near_shift::{Goal, Near, NearShift};
+use crate::linalg::sparse_storage::definite::resists_all_motion;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use crate::model::natural_modes::quadratic_problem::{ONE_VALUE, Pair, Quadratic, is_one};
+use num_complex::Complex64;
+
+/// The first shift over the estimated w: beside the axis, where undamped modes lie.
+const QUADRATIC_SEARCH_SHIFT: Complex64 = Complex64::new(0.05, 0.5);
+
+/// Share of w on both sides of the imaginary axis that the first disc covers.
+/// Kind: tuned; measured on: not recorded.
+const BESIDE_AXIS: f64 = 0.5;
+
+/// Growth of the half width of the strip from rectangle to rectangle, and its end over w: beyond are modes with a damping ratio above 0.99.
+/// Kind: tuned; measured on: not recorded.
+const WIDER: f64 = 2.5;
+const FARTHEST: f64 = 8.0;
+
+/// Most eigenvalues in a rectangle beyond the number that is requested: more are overdamped motions next to each other.
+/// Kind: cap.
+const MOST_ASIDE: usize = 60;
+
+/// Degrees of freedom up to which dense algebra, 7 s for all modes, takes over where eigenvalues are too many or too close to be
+/// told apart.
+/// Kind: tuned; measured on: not recorded.
+const DENSE_IF_HARD: usize = 400;
+
+/// w over the imaginary part of the shift, between which the shift suits.
+/// Kind: tuned; measured on: not recorded.
+const SUITS: (f64, f64) = (1.2, 3.5);
+
+/// Most shifts for the first disc, and most growths of the number that is searched.
+/// Kind: cap.
+const SHIFTS: usize = 8;
+const GROWTHS: usize = 12;
+
+/// Relative distance of a second shift where the first hit an eigenvalue.
+/// Kind: tuned; measured on: not recorded.
+const QUADRATIC_SEARCH_ASIDE: f64 = 0.03;
+
+const CONTEXT: &str = "the damped modes";
+
+/// The modes of lowest frequency by a search, at least `count`, of which the first `count` are the lowest; `None` where so many were not
+/// found in a share of all eigenvalues, so that all should be solved for.
+///
+/// # Errors
+/// Those of the eigensolvers.
+pub fn lowest_by_search(
+    problem: &Quadratic<'_>,
+    hermitian: &Csc,
+    count: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Pair>>> {
+    let mut first = match first_disc(problem, hermitian, count, interrupt) {
+        Ok(Some(first)) => first,
+        Ok(None) => return Ok(None),
+        Err(e) if e.status == Status::NoConvergence && problem.mass.rows <= DENSE_IF_HARD => return Ok(None),
+        Err(e) => return Err(e),
+    };
+    let covered = first.covered();
+    for side in [-1.0, 1.0] {
+        if is_bounded(problem, hermitian, (side, covered), interrupt)? {
+            continue;
+        }
+        let mut inside = covered;
+        while inside < FARTHEST * first.height {
+            let outside = WIDER * inside;
+            let Some(found) = aside(problem, &first, (side, inside, outside), interrupt)? else {
+                if problem.mass.rows <= DENSE_IF_HARD {
+                    return Ok(None);
+                }
+                break;
+            };
+            for pair in found {
+                if !first.pairs.iter().any(|known| is_one(known, &pair)) {
+                    try_push(&mut first.pairs, pair, CONTEXT)?;
+                }
+            }
+            inside = outside;
+        }
+    }
+    first.pairs.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
+    Ok(Some(first.pairs))
+}
+
+/// The modes in a disc that has the lowest but for those that are far from the imaginary axis.
+struct Disc {
+    pairs: Vec<Pair>,
+    shift: Complex64,
+    radius: f64,
+    /// Frequency w of the last that is wanted.
+    height: f64,
+    count: usize,
+}
+
+impl Disc {
+    /// Radius of a disc about the shift that covers the strip up to w.
+    fn needed(shift: Complex64, height: f64) -> f64 {
+        let along = shift.im.max(height - shift.im);
+        (BESIDE_AXIS * height + shift.re.abs()).hypot(along)
+    }
+
+    /// Half width of the strip that is covered.
+    fn covered(&self) -> f64 {
+        let along = self.shift.im.max(self.height - self.shift.im);
+        let width = (self.radius.powi(2) - along.powi(2)).max(0.0).sqrt() - self.shift.re.abs();
+        width.clamp(BESIDE_AXIS * self.height, FARTHEST * self.height)
+    }
+}
+
+fn first_disc(
+    problem: &Quadratic<'_>,
+    hermitian: &Csc,
+    count: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Disc>> {
+    let n = problem.mass.rows;
+    let mut height = estimate(problem, hermitian, count, interrupt)?;
+    let mut number = count + count / 2 + 10;
+    for at in 0..SHIFTS {
+        let shift = QUADRATIC_SEARCH_SHIFT * height;
+        let mut search = operator(problem, shift, interrupt)?;
+        for _ in 0..GROWTHS {
+            if number > n {
+                return Ok(None);
+            }
+            let Near { pairs, radius } = search.search(Goal::Nearest(number))?;
+            let is_whole = radius == f64::INFINITY;
+            let mut modes = Vec::new();
+            for (value, shape) in pairs {
+                if (value - shift).norm() > radius {
+                    continue;
+                }
+                if let Some(value) = problem.as_mode(value, &shape) {
+                    try_push(&mut modes, (value, shape), CONTEXT)?;
+                }
+            }
+            modes.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
+            let Some(last) = modes.get(count - 1).map(|(value, _)| value.im).filter(|im| *im > 0.0) else {
+                if is_whole {
+                    return Ok(None);
+                }
+                number *= 2;
+                continue;
+            };
+            let ratio = last / shift.im;
+            let suits = (SUITS.0..=SUITS.1).contains(&ratio);
+            let needed = Disc::needed(shift, last);
+            if radius >= needed {
+                return Ok(Some(Disc {
+                    pairs: modes,
+                    shift,
+                    radius,
+                    height: last,
+                    count,
+                }));
+            }
+            if !suits && at + 1 < SHIFTS {
+                height = last;
+                break;
+            }
+            let more = (number as f64 * (needed / radius).min(2.0)) as usize;
+            number = more.max(number + 8);
+        }
+    }
+    Ok(None)
+}
+
+/// Frequency of the mode of the number `count` without damping and gyroscopic forces, or that of a typical one where that cannot be had.
+fn estimate(problem: &Quadratic<'_>, hermitian: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<f64> {
+    let n = problem.mass.rows;
+    match lanczos::lowest(hermitian, problem.mass, count, interrupt) {
+        Ok(pairs) => {
+            let highest = pairs.values.iter().fold(0.0_f64, |m, x| m.max(*x));
+            if highest > 0.0 {
+                return Ok(highest.sqrt());
+            }
+        }
+        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+        Err(_) => {}
+    }
+    let sum = |a: &Csc| -> f64 { (0..n).map(|i| a.get(i, i).re.abs()).sum() };
+    Ok((sum(hermitian) / sum(problem.mass)).sqrt())
+}
+
+/// The operator at a shift, or beside it where it hits an eigenvalue.
+fn operator<'a>(problem: &Quadratic<'a>, shift: Complex64, interrupt: &'a Interrupt<'a>) -> Result<NearShift<'a>> {
+    let matrices = [problem.mass, problem.damping, problem.stiffness];
+    match NearShift::new(matrices, shift, interrupt) {
+        Err(e) if e.status == Status::Singular => {
+            NearShift::new(matrices, shift * (1.0 + QUADRATIC_SEARCH_ASIDE), interrupt)
+        }
+        found => found,
+    }
+}
+
+/// Modes of a rectangle beside the first disc; `None` if there are too many to be told apart.
+fn aside(
+    problem: &Quadratic<'_>,
+    first: &Disc,
+    (side, inside, outside): (f64, f64, f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Pair>>> {
+    let shift = Complex64::new(side * 0.5 * (inside + outside), 0.5 * first.height);
+    let radius = (0.5 * (outside - inside)).hypot(0.5 * first.height) * (1.0 + QUADRATIC_SEARCH_ASIDE);
+    let mut search = operator(problem, shift, interrupt)?;
+    let goal = Goal::Within(radius, first.count + MOST_ASIDE);
+    let near = match search.search(goal) {
+        Err(e) if e.status == Status::NoConvergence => return Ok(None),
+        near => near?,
+    };
+    if near.radius < radius * (1.0 - QUADRATIC_SEARCH_ASIDE) {
+        return Ok(None);
+    }
+    let mut modes = Vec::new();
+    for (value, shape) in near.pairs {
+        let is_here = value.im <= first.height && (value - first.shift).norm() > first.radius * (1.0 - ONE_VALUE);
+        if let Some(value) = is_here.then(|| problem.as_mode(value, &shape)).flatten() {
+            try_push(&mut modes, (value, shape), CONTEXT)?;
+        }
+    }
+    Ok(Some(modes))
+}
+
+/// Whether no mode lies further from the imaginary axis than `covered`, on the left or on the right.
+///
+/// A mode x with m = xᴴMx, c = xᴴCx of the Hermitian part and k = xᴴKx > 0 has −c/m ≤ Re λ ≤ 0 if c ≥ 0, and Re λ ≤ −c/m if not; one of
+/// negative k grows by √(−k/m) or less.
+fn is_bounded(
+    problem: &Quadratic<'_>,
+    hermitian: &Csc,
+    (side, covered): (f64, f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let n = problem.mass.rows;
+    let sum =
+        |a: (f64, &Csc), b: (f64, &Csc)| Csc::sum(n, &[(a.0.into(), a.1, Form::Plain), (b.0.into(), b.1, Form::Plain)]);
+    // Forces of the skew part of K are those of structural damping or circulatory.
+    let skew = sum((1.0, problem.stiffness), (-1.0, hermitian))?;
+    if skew.max_abs() > f64::EPSILON * hermitian.max_abs() {
+        return Ok(false);
+    }
+    let transposed = Csc::sum(n, &[(Complex64::ONE, problem.damping, Form::Transposed)])?;
+    let half = Complex64::new(0.5, 0.0);
+    let damping = Csc::sum(
+        n,
+        &[
+            (half, problem.damping, Form::Plain),
+            (half, &transposed, Form::Conjugated),
+        ],
+    )?;
+    // The bounds hold for k ≥ −covered² m.
+    let stiffer = sum((1.0, hermitian), (covered * covered, problem.mass))?;
+    if !resists_all_motion(&stiffer, interrupt)? {
+        return Ok(false);
+    }
+    if damping.max_abs() <= f64::EPSILON * problem.damping.max_abs() {
+        return Ok(true);
+    }
+    resists_all_motion(&sum((side, &damping), (covered, problem.mass))?, interrupt)
+}

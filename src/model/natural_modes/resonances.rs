@@ -1,0 +1,390 @@
+//! Resonances of the structure with its contacts in their linear state: frequencies and half widths, where the response
+//! of a harmonic has its poles.
+
+use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::eigen;
+use crate::linalg::exact_sums::quadratic::about_quadratic;
+use crate::linalg::iterative::lanczos;
+use crate::linalg::sparse_storage::held_rows::MovingRows;
+use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::linear_modes::ContactState;
+use crate::model::natural_modes::quadratic_problem::Quadratic;
+use nalgebra::{DMatrix, Schur};
+use num_complex::Complex64;
+
+/// A pole p = ω + iσ of the response.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resonance {
+    /// Angular frequency.
+    pub omega: f64,
+    /// Half width: the response is 1/√2 of its peak at ω ± σ. Zero without damping.
+    pub half_width: f64,
+}
+
+/// Half width relative to the frequency below which a resonance is undamped up to rounding.
+/// Kind: rounding.
+const RESONANCES_UNDAMPED: f64 = 1e-13;
+
+impl Resonance {
+    /// Whether nothing but rounding damps it.
+    #[must_use]
+    pub fn is_undamped(&self) -> bool {
+        self.half_width <= RESONANCES_UNDAMPED * self.omega
+    }
+}
+
+/// Degrees of freedom up to which all modes are found by dense algebra.
+/// Kind: tuned; measured on: not recorded.
+const RESONANCES_DENSE_UP_TO: usize = 100;
+
+/// The same where a range has too many modes for a search.
+/// Kind: tuned; measured on: not recorded.
+const DENSE_IF_MANY: usize = 600;
+
+/// Number of the lowest modes of a large structure that are found before those of the range.
+/// Kind: tuned; measured on: not recorded.
+const FIRST_MODES: usize = 24;
+
+/// ω² relative to that of the upper end by which a search reaches beyond both ends.
+/// Kind: rounding.
+const AT_END: f64 = 1e-9;
+
+/// Largest number of modes of a search in the range.
+/// Kind: cap.
+const RESONANCES_MOST_MODES: usize = 500;
+
+/// The same with gyroscopic forces, counted from zero.
+/// Kind: cap; the work of the search grows with the square of the number.
+const RESONANCES_MOST_GYROSCOPIC: usize = 90;
+
+/// Largest number of square matrices that the dense eigensolver holds at a time.
+/// Kind: fixed.
+const RESONANCES_EIGEN_COPIES: usize = 8;
+
+/// Coupling of two modes by damping, relative to the distance of their frequencies, up to which each has its own
+/// half width.
+/// Kind: tuned; measured on: not recorded.
+const COUPLED: f64 = 0.1;
+
+/// Most iterations of the eigenvalues of coupled modes.
+/// Kind: cap.
+const RESONANCES_MAX_ITERATIONS: usize = 10_000;
+
+const CONTEXT: &str = "the resonances";
+
+impl Model {
+    /// The resonances of all harmonics in which forces vibrate, see [`Self::resonances`].
+    ///
+    /// # Errors
+    /// As [`Self::resonances`].
+    #[doc(hidden)]
+    pub fn forced_resonances(
+        &self,
+        range: (f64, f64),
+        contacts: ContactState<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<Resonance>>> {
+        let mut found = Vec::new();
+        let mut forced = Vec::new();
+        for force in self.excitation().forces() {
+            let h = force.harmonic;
+            if h == 0 || force.value == Complex64::ZERO || forced.contains(&h) {
+                continue;
+            }
+            try_push(&mut forced, h, CONTEXT)?;
+            let Some(own) = self.resonances(h, range, contacts, interrupt)? else {
+                return Ok(None);
+            };
+            try_extend(&mut found, &own, CONTEXT)?;
+        }
+        found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        Ok(Some(found))
+    }
+
+    /// The resonances of harmonic `h` between two excitation frequencies, ascending: natural frequencies over h, with
+    /// the contacts in `contacts` and half widths from the damping. `None` where they cannot be had, as when there are
+    /// too many of them.
+    ///
+    /// Modes are those of the Hermitian part of K; its skew part adds to the damping. With mass-normalised shapes Φ,
+    /// poles are the eigenvalues of diag(ω) + ½i Φᴴ(C + Im K/ω)Φ, exact to first order in the damping.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, `StoppedByCaller`.
+    #[doc(hidden)]
+    pub fn resonances(
+        &self,
+        h: usize,
+        (low, high): (f64, f64),
+        contacts: ContactState<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<Resonance>>> {
+        match self.damped_frequencies(h, (low, high), contacts, interrupt) {
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
+            found => Ok(found.ok().flatten()),
+        }
+    }
+
+    fn damped_frequencies(
+        &self,
+        h: usize,
+        (low, high): (f64, f64),
+        contacts: ContactState<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<Resonance>>> {
+        let structure = self.structure();
+        let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
+        let mass = structure.inertia(Wave::Harmonic(h))?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
+        let terms = [
+            (Complex64::ONE, &stiffness, Form::Plain),
+            (Complex64::I, &structural, Form::Plain),
+        ];
+        let stiffness = Csc::sum(mass.rows, &terms)?;
+        if self.structure().has_gyroscopic_modes(h)? {
+            let problem = Quadratic {
+                mass: &mass,
+                damping: &structure.wave_matrix(MatrixKind::Damping, h)?,
+                stiffness: &stiffness,
+            };
+            return gyroscopic_frequencies(h, (low, high), &problem, interrupt);
+        }
+        damped_frequencies(
+            h,
+            (low, high),
+            (&stiffness, &mass),
+            || structure.wave_matrix(MatrixKind::Damping, h),
+            interrupt,
+        )
+    }
+}
+
+/// The resonances of harmonic `h` where gyroscopic forces act at a fixed speed, which are no small damping: eigenvalues of the
+/// quadratic problem. `None` if there are too many below the range, or if one of them was not reached: a response goes on without them.
+///
+/// # Errors
+/// Those of the eigensolvers.
+pub fn gyroscopic_frequencies(
+    h: usize,
+    (low, high): (f64, f64),
+    problem: &Quadratic<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    let n = problem.mass.rows;
+    let number = h as f64;
+    let mut count = if n > RESONANCES_DENSE_UP_TO { FIRST_MODES } else { n };
+    loop {
+        let modes = match problem.lowest(count, interrupt) {
+            Err(e) if e.status == Status::NoConvergence => return Ok(None),
+            modes => modes?,
+        };
+        let is_whole = modes.len() < count || count >= n;
+        if !is_whole && modes.last().is_some_and(|(value, _)| value.im <= high * number) {
+            if count >= RESONANCES_MOST_GYROSCOPIC {
+                return Ok(None);
+            }
+            count = (2 * count).min(RESONANCES_MOST_GYROSCOPIC).min(n);
+            continue;
+        }
+        let mut found = Vec::new();
+        for (value, _) in &modes {
+            let resonance = Resonance {
+                omega: value.im / number,
+                half_width: (-value.re).max(0.0) / number,
+            };
+            if resonance.omega > 0.0 && resonance.omega >= low && resonance.omega <= high {
+                try_push(&mut found, resonance, CONTEXT)?;
+            }
+        }
+        return Ok(Some(found));
+    }
+}
+
+/// The resonances of harmonic `h` for given matrices, see [`Model::resonances`].
+///
+/// # Errors
+/// Those of the eigensolvers.
+pub fn damped_frequencies(
+    h: usize,
+    (low, high): (f64, f64),
+    (stiffness, mass): (&Csc, &Csc),
+    damping: impl FnOnce() -> Result<Csc>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    let (hermitian, skew) = parts(stiffness)?;
+    let number = h as f64;
+    let Some(modes) = modes_within(&hermitian, mass, (low * number, high * number), interrupt)? else {
+        return Ok(None);
+    };
+    let mut frequencies = Vec::new();
+    let mut shapes = Vec::new();
+    for (value, shape) in modes.values.iter().zip(modes.vectors.column_iter()) {
+        let omega = value.max(0.0).sqrt();
+        if omega >= low * number && omega <= high * number && omega > 0.0 {
+            try_push(&mut frequencies, omega, CONTEXT)?;
+            try_push(&mut shapes, try_copy(shape.as_slice(), CONTEXT)?, CONTEXT)?;
+        }
+    }
+    let damping = damping()?;
+    let widths = Widths { damping, skew };
+    let mut found = Vec::new();
+    let mut first = 0;
+    while first < frequencies.len() {
+        let mut next = first + 1;
+        while next < frequencies.len() && widths.couple(&frequencies, &shapes, next)? {
+            next += 1;
+        }
+        let group = first..next;
+        widths.poles(&frequencies[group.clone()], &shapes[group], number, &mut found)?;
+        first = next;
+    }
+    found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+    Ok(Some(found))
+}
+
+/// The Hermitian part of K, and −i times the skew one.
+fn parts(k: &Csc) -> Result<(Csc, Csc)> {
+    let half = Complex64::new(0.5, 0.0);
+    let turned = Complex64::new(0.0, -0.5);
+    // Aᴴ as the conjugate of the transpose.
+    let transposed = Csc::sum(k.rows, &[(Complex64::ONE, k, Form::Transposed)])?;
+    let combine =
+        |a: Complex64, b: Complex64| Csc::sum(k.rows, &[(a, k, Form::Plain), (b, &transposed, Form::Conjugated)]);
+    Ok((combine(half, half)?, combine(turned, -turned)?))
+}
+
+/// All modes within a range of frequencies, and some others; `None` if there are too many of them.
+fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
+    if let Some(moving) = MovingRows::of(k)? {
+        let pairs = modes_within(&moving.reduced(k)?, &moving.reduced(m)?, (low, high), interrupt)?;
+        return pairs.map(|pairs| moving.expanded_pairs(pairs)).transpose();
+    }
+    let n = k.rows;
+    if n > RESONANCES_DENSE_UP_TO {
+        let pairs = lanczos::lowest(k, m, FIRST_MODES, interrupt)?;
+        if pairs.values.len() < FIRST_MODES || pairs.values.last().is_some_and(|&x| x > high * high) {
+            return Ok(Some(pairs));
+        }
+        // Rounding at an end loses no mode there.
+        let interval = (low * low - AT_END * high * high, (1.0 + AT_END) * high * high);
+        if let Some(pairs) = lanczos::within((k, m), interval, RESONANCES_MOST_MODES.min(n / 4), interrupt)? {
+            return Ok(Some(pairs));
+        }
+        if n > DENSE_IF_MANY {
+            return Ok(None);
+        }
+    }
+    // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
+    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(RESONANCES_EIGEN_COPIES), CONTEXT)?;
+    let dense = |a: &Csc| {
+        let mut d = DMatrix::<Complex64>::zeros(n, n);
+        a.add_to_dense(Complex64::ONE, d.as_mut_slice());
+        d
+    };
+    eigen::generalised(&dense(k), &dense(m), interrupt).map(Some)
+}
+
+/// The damping from which half widths follow.
+struct Widths {
+    damping: Csc,
+    skew: Csc,
+}
+
+impl Widths {
+    /// φᴴ(C + Im K/ω)φ between two shapes.
+    fn between(&self, a: &[Complex64], b: &[Complex64], omega: f64) -> Result<Complex64> {
+        let mut sum = Complex64::ZERO;
+        for (matrix, factor) in [(&self.damping, 1.0), (&self.skew, omega.recip())] {
+            if matrix.max_abs() > 0.0 {
+                let product = matrix.times(b, CONTEXT)?;
+                let inner: Complex64 = a.iter().zip(&product).map(|(a, p)| a.conj() * p).sum();
+                sum += inner * factor;
+            }
+        }
+        Ok(sum)
+    }
+
+    /// Whether damping couples a mode to the one before.
+    fn couple(&self, frequencies: &[f64], shapes: &[Vec<Complex64>], mode: usize) -> Result<bool> {
+        let coupling = self.between(&shapes[mode - 1], &shapes[mode], frequencies[mode])?;
+        Ok(coupling.norm() > COUPLED * (frequencies[mode] - frequencies[mode - 1]))
+    }
+
+    /// The poles of a group of coupled modes.
+    fn poles(
+        &self,
+        frequencies: &[f64],
+        shapes: &[Vec<Complex64>],
+        number: f64,
+        found: &mut Vec<Resonance>,
+    ) -> Result<()> {
+        let count = frequencies.len();
+        let half_i = Complex64::new(0.0, 0.5);
+        let mut add = |pole: Complex64| {
+            let resonance = Resonance {
+                omega: pole.re / number,
+                half_width: pole.im.max(0.0) / number,
+            };
+            try_push(found, resonance, CONTEXT)
+        };
+        if let ([omega], [shape]) = (frequencies, shapes) {
+            let own = about_quadratic(&self.damping, shape) + about_quadratic(&self.skew, shape) / omega;
+            // A mode beyond critical damping has no resonance; the undamped frequency stands for it.
+            let sigma = 0.5 * own;
+            let damped = (omega * omega - sigma * sigma).max(0.0).sqrt();
+            let at = if damped > 0.0 { damped } else { *omega };
+            return add(Complex64::new(at, sigma));
+        }
+        check_memory::<Complex64>(
+            count.saturating_mul(count).saturating_mul(RESONANCES_EIGEN_COPIES),
+            CONTEXT,
+        )?;
+        let mut matrix = DMatrix::<Complex64>::zeros(count, count);
+        for i in 0..count {
+            for j in 0..count {
+                matrix[(i, j)] = half_i * self.between(&shapes[i], &shapes[j], frequencies[i])?;
+            }
+            matrix[(i, i)] += frequencies[i];
+        }
+        let Some(schur) = Schur::try_new(matrix, f64::EPSILON, RESONANCES_MAX_ITERATIONS) else {
+            return Err(Error::new(Status::NoConvergence, format_args!("coupled resonances")));
+        };
+        let (_, triangular) = schur.unpack();
+        (0..count).try_for_each(|i| add(triangular[(i, i)]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
+
+    #[test]
+    fn damping_that_couples_two_close_modes_moves_their_half_widths() {
+        // A damper on the difference of two equal masses: the common motion is undamped.
+        let mut model = Model::new(2).unwrap();
+        for (kind, values) in [
+            (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
+            (MatrixKind::Damping, [1e-3, -1e-3, -1e-3, 1e-3]),
+            (MatrixKind::Stiffness, [1.0, 0.0, 0.0, 1.0 + 1e-6]),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
+        }
+        let found = model
+            .resonances(1, (0.5, 2.0), ContactState::Stuck, &Interrupt::none())
+            .unwrap()
+            .unwrap();
+        let mut widths: Vec<f64> = found.iter().map(|r| r.half_width).collect();
+        widths.sort_by(f64::total_cmp);
+        assert!(widths[0] < 1e-9 && (widths[1] - 1e-3).abs() < 1e-9, "{found:?}");
+        // In the second harmonic at half the frequency.
+        let second = model
+            .resonances(2, (0.4, 0.6), ContactState::Stuck, &Interrupt::none())
+            .unwrap()
+            .unwrap();
+        assert!(second.len() == 2 && (second[0].omega - 0.5).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,219 @@
+//! The wheel as one structure in time: the sectors of one repetition of a travelling wave.
+//!
+//! With g = gcd(EO, N) the sectors s and s + N/g move alike in every harmonic, so that n = N/g sectors closed to a
+//! ring represent the whole wave. In time the wave is a shift: sector s + 1 repeats the motion of sector s with a
+//! delay of EO/N periods, whatever the harmonics, x_{s+1}(t) = x_s(t − T·EO/N); see Thomas 1979,
+//! doi:10.1002/nme.1620140107.
+
+use crate::error::{Result, fail, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form};
+use crate::model::matrices::influence::AeroForm;
+use crate::model::matrices::speed::Speed;
+use crate::model::matrices::structure::{MatrixKind, Structure};
+
+/// Entries of a transform over nodal diameters below this share of the largest are rounding.
+/// Kind: rounding.
+const FULL_WHEEL_ROUNDING: f64 = 1e-14;
+
+/// Operations, about, that an entry takes until it is placed and sorted.
+/// Kind: block.
+const FULL_WHEEL_OF_ONE_ENTRY: u64 = 20;
+
+impl Structure {
+    /// Number of sectors after which the wave repeats, in space: N / gcd(EO, N). 1 for a plain
+    /// structure.
+    #[must_use]
+    pub fn repeating_sectors(&self) -> usize {
+        self.in_step()
+    }
+
+    /// The number j of sectors, below [`Self::repeating_sectors`] n, after which the motion is delayed by the n-th
+    /// part of the period: x_{s+j}(t + T/n) = x_s(t). It solves j·EO/g = 1 modulo n.
+    #[must_use]
+    pub fn sectors_per_part(&self) -> usize {
+        let n = self.repeating_sectors();
+        let divisor = (self.sectors() / n) as i128;
+        let waves = (i128::from(self.engine_order()).rem_euclid(self.sectors() as i128) / divisor) as usize;
+        (0..n).find(|j| (j * waves) % n == 1 % n).unwrap_or(0)
+    }
+
+    /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping includes
+    /// Rayleigh and modal damping and ΩG, the stiffness Ω²K₁; aerodynamic forces are in both.
+    ///
+    /// # Errors
+    /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
+    /// given; `OutOfMemory`, `StoppedByCaller`.
+    pub fn unrolled(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+        let (alpha, beta) = self.rayleigh;
+        let mut parts = Vec::new();
+        let mut add = |factor: f64, which: MatrixKind| -> Result<()> {
+            if factor == 0.0 {
+                return Ok(());
+            }
+            try_push(
+                &mut parts,
+                (factor, self.given_around(which, interrupt)?),
+                "the matrices of the wheel",
+            )
+        };
+        add(1.0, which)?;
+        let speed = match self.speed {
+            Speed::Fixed(speed) => speed,
+            Speed::PerOmega(_) => return fail!(Internal, "the speed of rotation depends on the frequency"),
+        };
+        match which {
+            MatrixKind::Damping => {
+                add(alpha, MatrixKind::Mass)?;
+                add(beta, MatrixKind::Stiffness)?;
+                add(speed, MatrixKind::Gyroscopic)?;
+            }
+            MatrixKind::Stiffness => add(speed * speed, MatrixKind::StiffnessSpeed2)?,
+            _ => {}
+        }
+        if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
+            let modal = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
+            try_push(&mut parts, (1.0, modal), "the matrices of the wheel")?;
+        }
+        let aero = match which {
+            MatrixKind::Damping => self.aero_around(AeroForm::Velocity, interrupt)?,
+            MatrixKind::Stiffness => self.aero_around(AeroForm::Displacement, interrupt)?,
+            _ => None,
+        };
+        if let Some(aero) = aero {
+            try_push(&mut parts, (1.0, aero), "the matrices of the wheel")?;
+        }
+        let mut terms = Vec::new();
+        for (factor, a) in &parts {
+            try_push(
+                &mut terms,
+                ((*factor).into(), a, Form::Plain),
+                "the matrices of the wheel",
+            )?;
+        }
+        interrupt.check()?;
+        let own = Csc::sum(self.ndof() * self.repeating_sectors(), &terms)?;
+        interrupt.check()?;
+        for j in 0..own.cols {
+            if let Some((i, v)) = own.column(j).find(|(_, v)| v.im != 0.0) {
+                return fail!(
+                    Unsupported,
+                    "{}[{i},{j}] has the imaginary part {}: complex matrices mean nothing in time; use real ones",
+                    which.name(),
+                    v.im
+                );
+            }
+        }
+        Ok(own)
+    }
+
+    /// One matrix as it was given.
+    pub(crate) fn given_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+        if self.blocks[which as usize].diameters.is_empty() {
+            self.sectors_around(which, interrupt)
+        } else {
+            self.blocks_of_waves(|structure, d| structure.given_of_diameter(which, d), interrupt)
+        }
+    }
+
+    /// Places the blocks of a sector around the ring.
+    fn sectors_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+        let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
+        let blocks = &self.blocks[which as usize];
+        let mut entries = Vec::new();
+        let mut place = |a: &KeptMatrix, offset: usize, transposed: bool| -> Result<()> {
+            for s in 0..sectors {
+                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.stored() as u64)?;
+                let (row, column) = (s * ndof, (s + offset) % sectors * ndof);
+                for j in 0..a.order() {
+                    for (i, v) in a.column(j) {
+                        let (i, j) = if transposed { (j, i) } else { (i, j) };
+                        try_push(&mut entries, (row + i, column + j, v), "the matrices of the wheel")?;
+                    }
+                }
+            }
+            Ok(())
+        };
+        if let Some(own) = &blocks.own {
+            place(own, 0, false)?;
+        }
+        if let Some(next) = &blocks.next {
+            place(next, 1, false)?;
+        }
+        match (&blocks.previous, &blocks.next) {
+            (Some(previous), _) => place(previous, sectors - 1, false)?,
+            (None, Some(next)) => place(next, sectors - 1, true)?,
+            (None, None) => {}
+        }
+        Csc::from_triplets(ndof * sectors, ndof * sectors, entries)
+    }
+
+    /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
+    /// couples a sector to the j-th after it is Bⱼ = 1/n Σ_d A(2πd/n) e^{+2πijd/n}.
+    pub(crate) fn blocks_of_waves(
+        &self,
+        wave: impl Fn(&Self, usize) -> Result<Csc>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Csc> {
+        let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
+        let divisor = self.sectors() / sectors;
+        let share = 1.0 / sectors as f64;
+        let mut waves = Vec::new();
+        for d in 0..sectors {
+            interrupt.check()?;
+            try_push(&mut waves, wave(self, d * divisor)?, "the matrices of the wheel")?;
+        }
+        let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
+        let mut entries = Vec::new();
+        for offset in 0..sectors {
+            let mut terms = Vec::new();
+            for (d, a) in waves.iter().enumerate() {
+                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.values.len() as u64)?;
+                let turn = self.wave_phase((d * divisor) as i64, -(offset as i64));
+                try_push(&mut terms, (share * turn, a, Form::Plain), "the matrices of the wheel")?;
+            }
+            let block = Csc::sum(ndof, &terms)?;
+            for j in 0..ndof {
+                for (i, mut v) in block.column(j) {
+                    if v.im.abs() <= FULL_WHEEL_ROUNDING * largest {
+                        v.im = 0.0;
+                    }
+                    if v.norm() <= FULL_WHEEL_ROUNDING * largest {
+                        continue;
+                    }
+                    interrupt.check_before(sectors as u64)?;
+                    for s in 0..sectors {
+                        let entry = (s * ndof + i, (s + offset) % sectors * ndof + j, v);
+                        try_push(&mut entries, entry, "the matrices of the wheel")?;
+                    }
+                }
+            }
+        }
+        Csc::from_triplets(ndof * sectors, ndof * sectors, entries)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::Model;
+
+    #[test]
+    fn the_sector_that_follows_after_a_part_of_the_period_is_found() {
+        let mut model = Model::cyclic(1, 24).unwrap();
+        for (engine_order, sectors, follower) in [
+            (0, 1, 0),
+            (24, 1, 0),
+            (2, 12, 1),
+            (-2, 12, 11),
+            (5, 24, 5),
+            (10, 12, 5),
+            (12, 2, 1),
+        ] {
+            model.set_wave(engine_order);
+            let structure = model.structure();
+            let found = (structure.repeating_sectors(), structure.sectors_per_part());
+            assert_eq!(found, (sectors, follower), "EO {engine_order}");
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! Mistuning of a wheel: patterns of blades, contacts and forces over the sectors.
+//!
+//! A blade is a set of degrees of freedom b; r are those to which its stiffness couples it. Its motion relative to the one
+//! that r carries along is y = x_b + K_bb⁻¹ K_br x_r, and its stiffness is the share ½ yᵀ K_bb y of the strain energy: none in
+//! a rigid motion of a free blade, and all of it with r held. Hence a pattern of blade frequencies moves the frequencies of
+//! the clamped blade by exactly its factors (component mode mistuning: Lim, Bladh, Castanier & Pierre, AIAA Journal 45, 2007,
+//! 2285 to 2298).
+
+use crate::error::{Result, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part};
+use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
+use crate::model::Model;
+use crate::model::matrices::sector_matrices::{Entries, of_both_sectors};
+use crate::model::matrices::structure::{MatrixKind, Structure};
+use crate::model::wheels::wheel::symmetrised;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the mistuning";
+
+/// Numbers of the matrix K_bb⁻¹ K_br that are affordable.
+/// Kind: cap.
+const LARGEST_ATTACHMENT: usize = 4_000_000;
+
+/// Difference of mirrored entries of a stiffness, relative to the largest, that is rounding.
+/// Kind: rounding.
+const MIRROR_ROUNDING: f64 = 1e-10;
+
+/// A property of the blades.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BladeProperty {
+    /// Stiffness times 1 + δ.
+    Stiffness,
+    /// Frequencies of the blade, clamped where it is attached, times 1 + δ: stiffness times (1 + δ)².
+    Frequency,
+    /// Mass of the degrees of freedom of the blade times 1 + δ, without coupling to others.
+    Mass,
+    /// Damping of the motion relative to the attachment times 1 + δ: damping matrix and Rayleigh damping.
+    Damping,
+}
+
+/// One of the quantities that differ between sectors.
+#[derive(Clone, Copy, Debug)]
+pub enum Mistuning<'a> {
+    /// A property of the blade with these degrees of freedom of a sector.
+    Blade(BladeProperty, &'a [usize]),
+    /// δ times a matrix of a sector is added to that of the sector.
+    Matrix(MatrixKind, &'a MatrixView<'a>),
+    /// Normal load of a contact of each sector, or of all that have one, times 1 + δ.
+    Preload(Option<usize>),
+    /// Forces on each sector times 1 + δ.
+    Force,
+}
+
+impl Model {
+    /// Mistunes a wheel: δ_s of each sector s of the cyclic model of which [`Model::wheel`] made it. Changes of matrices
+    /// refer to the cyclic model, and several calls add up; loads and forces are multiplied.
+    ///
+    /// # Errors
+    /// `Dimension` for another number of sectors, or another model; `NotFinite`; `Index`; `Argument` or `Unsupported`,
+    /// naming what is out of range. The wheel is then unchanged.
+    pub fn mistune(&mut self, sector: &Self, what: &Mistuning<'_>, delta: &[f64]) -> Result<()> {
+        let sectors = sector.structure().sectors();
+        if delta.len() != sectors {
+            return fail!(
+                Dimension,
+                "{} numbers delta, needs one for each of {sectors} sectors",
+                delta.len()
+            );
+        }
+        if let Some(s) = delta.iter().position(|d| !d.is_finite()) {
+            return fail!(NotFinite, "delta[{s}] = {}, needs a finite number", delta[s]);
+        }
+        let contacts = sector.contacts().len();
+        let fits = sectors > 1 && self.structure().sectors() == 1 && self.ndof() == sectors * sector.ndof();
+        if !fits || self.structure().ndof() != sectors * sector.structure().ndof() {
+            return fail!(
+                Dimension,
+                "the wheel has {} degrees of freedom, which are not {sectors} sectors with {}",
+                self.ndof(),
+                sector.ndof()
+            );
+        }
+        let mut changed = self.try_clone()?;
+        match *what {
+            Mistuning::Blade(property, dofs) => {
+                // A stiffness, mass or damping below zero has no sense.
+                if let Some(s) = delta.iter().position(|&d| d < -1.0) {
+                    return fail!(
+                        Argument,
+                        "delta[{s}] = {}, needs at least -1: a share, not a per cent",
+                        delta[s]
+                    );
+                }
+                let (kind, entries) = sector.structure().of_blade(property, dofs)?;
+                let share = |d: f64| {
+                    if property == BladeProperty::Frequency {
+                        d * (2.0 + d)
+                    } else {
+                        d
+                    }
+                };
+                changed.add_to_sectors(kind, &entries, sector, |s| share(delta[s]))?;
+            }
+            Mistuning::Matrix(kind, direction) => {
+                let entries = sector.structure().of_direction(kind, direction)?;
+                changed.add_to_sectors(kind, &entries, sector, |s| delta[s])?;
+            }
+            Mistuning::Preload(id) => {
+                if let Some(id) = id.filter(|&id| id >= contacts) {
+                    return fail!(Index, "contact id = {id}, but a sector has {contacts} contacts");
+                }
+                if self.contacts().len() != contacts * sectors {
+                    return fail!(Dimension, "the wheel has other contacts than {sectors} sectors");
+                }
+                for c in 0..contacts {
+                    let without = sector.contacts().get(c).is_some_and(|c| c.without_load().is_some());
+                    if id.map_or(without, |id| id != c) {
+                        continue;
+                    }
+                    for (s, d) in delta.iter().enumerate() {
+                        let at = s * contacts + c;
+                        if let Some((preload, per_speed2, _)) = self.given_load(at) {
+                            changed.set_preload_at_speed(at, preload * (1.0 + d), per_speed2 * (1.0 + d))?;
+                        }
+                    }
+                }
+            }
+            Mistuning::Force => {
+                let n = sector.ndof();
+                changed.excitation.scale_each(|dof| 1.0 + delta[dof / n]);
+            }
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Adds a multiple of entries of sector 0, over the independent degrees of freedom of the wheel, for each sector.
+    fn add_to_sectors(
+        &mut self,
+        kind: MatrixKind,
+        entries: &Entries,
+        sector: &Self,
+        factor: impl Fn(usize) -> f64,
+    ) -> Result<()> {
+        let (n, sectors) = (sector.structure().ndof(), sector.structure().sectors());
+        let all = n * sectors;
+        let mut placed = Vec::new();
+        for s in 0..sectors {
+            let factor = factor(s);
+            if factor == 0.0 {
+                continue;
+            }
+            for &(i, j, v) in entries {
+                let entry = ((i + s * n) % all, (j + s * n) % all, factor * v);
+                try_push(&mut placed, entry, CONTEXT)?;
+            }
+        }
+        if placed.is_empty() {
+            return Ok(());
+        }
+        let added = Csc::from_triplets(all, all, placed)?;
+        // Overlapping shares of neighbours are summed in an order that rounding may tell.
+        let added = symmetrised(added, MIRROR_ROUNDING)?;
+        let blocks = self.changed_structure().blocks_mut(kind)?;
+        let added = KeptMatrix::new(added)?;
+        let one = Complex64::ONE;
+        blocks.own = Some(match &blocks.own {
+            Some(own) => KeptMatrix::new(Csc::sum(all, &[(one, own, Form::Plain), (one, &added, Form::Plain)])?)?,
+            None => added,
+        });
+        Ok(())
+    }
+}
+
+impl Structure {
+    /// Entries of a matrix of a sector that a caller gives.
+    pub(crate) fn of_direction(&self, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
+        if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
+            return fail!(
+                Unsupported,
+                "mistuning of the {} matrix; needs mass, damping, stiffness or structural damping",
+                kind.name()
+            );
+        }
+        if kind == MatrixKind::Mass && direction.part == Part::General {
+            return fail!(Argument, "a mass is symmetric, but its direction was passed as GENERAL");
+        }
+        of_both_sectors(self.degrees(), &direction.copy_in("direction", self.degrees().given())?)
+    }
+
+    /// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
+    pub(crate) fn of_blade(&self, property: BladeProperty, dofs: &[usize]) -> Result<(MatrixKind, Entries)> {
+        let n = self.ndof();
+        // Place of an independent degree of freedom in the blade.
+        let mut place = try_vec(n, None, CONTEXT)?;
+        let mut blade = Vec::new();
+        for (k, &dof) in dofs.iter().enumerate() {
+            if dof >= self.degrees().given() {
+                return fail!(Index, "dofs[{k}] = {dof}, needs 0 .. {}", self.degrees().given() - 1);
+            }
+            if self.degrees().image(dof).0 != 0 {
+                return fail!(
+                    Argument,
+                    "dofs[{k}] = {dof} is on the right face, which the next sector moves; give that of the left face there"
+                );
+            }
+            let Some(number) = self.degrees().number(dof) else {
+                continue;
+            };
+            if place[number].is_some() {
+                return fail!(Argument, "dofs[{k}] = {dof} is there twice");
+            }
+            place[number] = Some(blade.len());
+            try_push(&mut blade, number, CONTEXT)?;
+        }
+        if blade.is_empty() {
+            return fail!(Argument, "a blade has no degree of freedom that moves");
+        }
+        let interrupt = Interrupt::none();
+        let ring = self.around_ring()?;
+        let within = |a: &Csc| -> Result<Entries> {
+            let mut entries = Vec::new();
+            for (j, &column) in blade.iter().enumerate() {
+                for (i, v) in a.column(column) {
+                    if let Some(i) = place.get(i).copied().flatten() {
+                        try_push(&mut entries, (i, j, v), CONTEXT)?;
+                    }
+                }
+            }
+            Ok(entries)
+        };
+        if property == BladeProperty::Mass {
+            let mut entries = within(&ring.given_around(MatrixKind::Mass, &interrupt)?)?;
+            for (i, j, _) in &mut entries {
+                (*i, *j) = (blade[*i], blade[*j]);
+            }
+            return Ok((MatrixKind::Mass, entries));
+        }
+        let stiffness = ring.given_around(MatrixKind::Stiffness, &interrupt)?;
+        let (_, _, gap) = stiffness.worst_pair(Symmetry::Plain);
+        if gap > MIRROR_ROUNDING * stiffness.max_abs() {
+            return fail!(
+                Unsupported,
+                "the stiffness is not symmetric: the share of a blade is unknown; give a direction"
+            );
+        }
+        let nb = blade.len();
+        let mut root = Vec::new();
+        for &column in &blade {
+            for (i, _) in stiffness.column(column) {
+                if place.get(i).copied().flatten().is_none() {
+                    try_push(&mut root, i, CONTEXT)?;
+                }
+            }
+        }
+        root.sort_unstable();
+        root.dedup();
+        let nr = root.len();
+        if nb.saturating_mul(nr) > LARGEST_ATTACHMENT {
+            return fail!(
+                Unsupported,
+                "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {LARGEST_ATTACHMENT}; give \
+                 a direction"
+            );
+        }
+        // X = K_bb⁻¹ K_br: y = x_b + X x_r.
+        let own = Csc::from_triplets(nb, nb, within(&stiffness)?)?;
+        let mut x = try_vec(nb * nr, Complex64::ZERO, CONTEXT)?;
+        for (b, &column) in blade.iter().enumerate() {
+            for (i, v) in stiffness.column(column) {
+                if let Ok(r) = root.binary_search(&i) {
+                    x[r * nb + b] = v;
+                }
+            }
+        }
+        if nr > 0 {
+            let mut factor = Factor::new(&own, nr)?;
+            factor.factor(&own, &interrupt)?;
+            factor.solve(&mut x, false, &interrupt)?;
+        }
+        let (kind, form) = if property == BladeProperty::Damping {
+            let (alpha, beta) = self.rayleigh;
+            let mut terms = Vec::new();
+            let given = ring.given_around(MatrixKind::Damping, &interrupt)?;
+            let mass = ring.given_around(MatrixKind::Mass, &interrupt)?;
+            for (factor, a) in [(1.0, &given), (alpha, &mass), (beta, &stiffness)] {
+                try_push(&mut terms, (Complex64::from(factor), a, Form::Plain), CONTEXT)?;
+            }
+            let damping = Csc::sum(n * self.sectors(), &terms)?;
+            (MatrixKind::Damping, Csc::from_triplets(nb, nb, within(&damping)?)?)
+        } else {
+            (MatrixKind::Stiffness, own)
+        };
+        Ok((kind, relative(&form, &x, &blade, &root)?))
+    }
+}
+
+/// Entries of Tᵀ A T with y = T x = x_b + X x_r.
+fn relative(form: &Csc, x: &[Complex64], blade: &[usize], root: &[usize]) -> Result<Entries> {
+    let nb = blade.len();
+    let mut entries = Vec::new();
+    for (j, &column) in blade.iter().enumerate() {
+        for (i, v) in form.column(j) {
+            try_push(&mut entries, (blade[i], column, v), CONTEXT)?;
+        }
+    }
+    for (r, &at) in root.iter().enumerate() {
+        let column = form.times(&x[r * nb..(r + 1) * nb], CONTEXT)?;
+        for (&row, &v) in blade.iter().zip(&column) {
+            if v != Complex64::ZERO {
+                try_push(&mut entries, (row, at, v), CONTEXT)?;
+                try_push(&mut entries, (at, row, v), CONTEXT)?;
+            }
+        }
+        for (q, &row) in root.iter().enumerate().take(r + 1) {
+            let v: Complex64 = x[q * nb..(q + 1) * nb].iter().zip(&column).map(|(a, b)| a * b).sum();
+            try_push(&mut entries, (row, at, v), CONTEXT)?;
+            if q != r {
+                try_push(&mut entries, (at, row, v), CONTEXT)?;
+            }
+        }
+    }
+    Ok(entries)
+}

@@ -1,0 +1,241 @@
+//! The wheel as a plain model: all of its sectors with their contacts, springs and forces.
+//!
+//! Degree of freedom i of sector s (from 0) is s·n + i, contact c of it is s·m + c, with n degrees of freedom and m contacts
+//! a sector. The right face of a sector with faces is moved by the left one of the next, and both are in the frame of their own
+//! sector. Forces lag with the engine order, so that the wheel without mistuning moves as the wave of the sector
+//! (Castanier & Pierre 2006, doi:10.2514/1.16345).
+
+use crate::contact::Contact;
+use crate::error::{Result, fail, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
+use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
+use crate::model::Model;
+use crate::model::copy;
+use crate::model::excitation::Force;
+use crate::model::matrices::aero::AeroForm;
+use crate::model::matrices::degree_map::DegreeMap;
+use crate::model::matrices::speed::SpeedLoad;
+use crate::model::matrices::spring::Spring;
+use crate::model::matrices::structure::{MAX_DOF, MatrixKind, Structure};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the wheel";
+
+/// Difference of mirrored entries, relative to the largest, that a transform over diameters leaves.
+/// Kind: rounding.
+const TRANSFORM_ROUNDING: f64 = 1e-12;
+
+const KINDS: [MatrixKind; 6] = [
+    MatrixKind::Mass,
+    MatrixKind::Damping,
+    MatrixKind::Stiffness,
+    MatrixKind::Structural,
+    MatrixKind::Gyroscopic,
+    MatrixKind::StiffnessSpeed2,
+];
+
+impl Model {
+    /// The whole wheel of a cyclic model as a plain one, a model for every analysis: degree of freedom i of sector s is
+    /// s·n + i, contact c is s·m + c. The engine order is in the phases of the forces. Forces of engine order e that belong
+    /// to one speed are those in harmonic e under engine order 1.
+    ///
+    /// # Errors
+    /// `Unsupported` for a plain model, complex aerodynamic coefficients, and contacts and springs with another sector whose axes
+    /// are turned; `Argument` when a nodal diameter was not given; `Dimension` for a wheel that is too large; `OutOfMemory`.
+    pub fn wheel(&self) -> Result<Self> {
+        let interrupt = Interrupt::none();
+        self.check_axes()?;
+        let (n, sectors) = (self.ndof(), self.structure().sectors());
+        let mut wheel = Self::new(1)?;
+        wheel.structure = self.structure().whole(&interrupt)?;
+        for s in 0..sectors {
+            for contact in self.contacts() {
+                try_push(&mut wheel.contacts, placed(contact, s, n, sectors)?, CONTEXT)?;
+            }
+            for spring in self.springs() {
+                let next = neighbour(s, spring.sector_offset, sectors);
+                let spring = Spring {
+                    dof_a: spring.dof_a.map(|dof| s * n + dof),
+                    dof_b: spring.dof_b.map(|dof| next * n + dof),
+                    sector_offset: 0,
+                    ..*spring
+                };
+                try_push(&mut wheel.springs, spring, CONTEXT)?;
+            }
+            for load in self.speed_loads() {
+                let load = SpeedLoad {
+                    contact: s * self.contacts().len() + load.contact,
+                    ..*load
+                };
+                try_push(&mut wheel.speed_loads, load, CONTEXT)?;
+            }
+            for force in self.excitation().forces() {
+                let force = Force {
+                    dof: s * n + force.dof,
+                    value: force.value * self.structure().phase(force.harmonic, s as i64),
+                    ..*force
+                };
+                wheel.excitation.restore(n * sectors, force)?;
+            }
+        }
+        Ok(wheel)
+    }
+}
+
+impl Model {
+    /// Refuses relative motions with a sector whose Cartesian axes are turned: the side there would need a direction of its own.
+    fn check_axes(&self) -> Result<()> {
+        let Some(faces) = self.structure().degrees().faces() else {
+            return Ok(());
+        };
+        let contacts = self.contacts().iter().enumerate();
+        let contacts = contacts
+            .filter(|(_, contact)| contact.dof_b.iter().any(Option::is_some))
+            .map(|(i, contact)| ("contact", i, contact.sector_offset));
+        let springs = self.springs().iter().enumerate();
+        let springs = springs
+            .filter(|(_, spring)| spring.dof_b.is_some())
+            .map(|(i, spring)| ("spring", i, spring.sector_offset));
+        for (what, i, offset) in contacts.chain(springs) {
+            if faces.turn_of(offset).is_some() {
+                return fail!(
+                    Unsupported,
+                    "the wheel of a sector whose {what} {i} has sector_offset = {offset} in a Cartesian frame, whose axes are \
+                     turned there; use a cylindrical frame"
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Structure {
+    /// The matrices of all sectors.
+    fn whole(&self, interrupt: &Interrupt<'_>) -> Result<Self> {
+        let sectors = self.sectors();
+        if sectors == 1 {
+            return fail!(
+                Unsupported,
+                "a plain structure has no sectors to make a wheel of; use a cyclic model"
+            );
+        }
+        let given = self.degrees().given();
+        let Some(ndof) = given.checked_mul(sectors).filter(|&all| all <= MAX_DOF) else {
+            return fail!(
+                Dimension,
+                "a wheel of {sectors} sectors with {given} degrees of freedom, needs at most {MAX_DOF} in all"
+            );
+        };
+        let mut wheel = Self::new(ndof, 1)?;
+        if let Some(fixed) = self.degrees().fixed() {
+            let mut all = Vec::new();
+            for _ in 0..sectors {
+                for &fixed in fixed {
+                    try_push(&mut all, fixed, CONTEXT)?;
+                }
+            }
+            wheel.degrees = match self.degrees().faces() {
+                None => DegreeMap::new(all, None)?,
+                Some(faces) => DegreeMap::of_wheel(all, faces.try_clone()?, given)?,
+            };
+        }
+        let aero_stiffness = self.has_aero_stiffness();
+        if aero_stiffness && (self.rayleigh.1 != 0.0 || self.loss_factor != 0.0) {
+            return fail!(
+                Unsupported,
+                "the wheel of a sector with aerodynamic forces per displacement and damping by its stiffness; give the \
+                 damping matrix"
+            );
+        }
+        let ring = self.around_ring()?;
+        for kind in KINDS {
+            if let Some(a) = ring.all_around(kind, interrupt)? {
+                wheel.blocks_mut(kind)?.own = Some(KeptMatrix::new(a)?);
+            }
+        }
+        wheel.wheel = Some((sectors, self.engine_order));
+        wheel.rayleigh = self.rayleigh;
+        wheel.loss_factor = self.loss_factor;
+        wheel.loss_of_stiffness = self.loss_of_stiffness;
+        wheel.speed = self.speed;
+        Ok(wheel)
+    }
+
+    /// A copy whose wave repeats after all sectors.
+    pub(crate) fn around_ring(&self) -> Result<Self> {
+        let mut ring = self.try_clone()?;
+        ring.engine_order = 1;
+        Ok(ring)
+    }
+
+    /// A matrix of all sectors of [`Self::around_ring`] with its aerodynamic and modal parts; `None` where it is zero.
+    fn all_around(&self, kind: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
+        let n = self.ndof() * self.sectors();
+        let mut parts = Vec::new();
+        if self.has(kind) {
+            let a = self.given_around(kind, interrupt)?;
+            let per_diameter = !self.blocks[kind as usize].diameters.is_empty();
+            let a = if per_diameter {
+                symmetrised(a, TRANSFORM_ROUNDING)?
+            } else {
+                a
+            };
+            try_push(&mut parts, a, CONTEXT)?;
+        }
+        let form = match kind {
+            MatrixKind::Damping => Some(AeroForm::Velocity),
+            MatrixKind::Stiffness => Some(AeroForm::Displacement),
+            _ => None,
+        };
+        if let Some(form) = form
+            && let Some(a) = self.aero_around(form, interrupt)?
+        {
+            try_push(&mut parts, a, CONTEXT)?;
+        }
+        if kind == MatrixKind::Damping && self.has_modal_damping() {
+            let a = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
+            try_push(&mut parts, symmetrised(a, TRANSFORM_ROUNDING)?, CONTEXT)?;
+        }
+        let mut terms = Vec::new();
+        for a in &parts {
+            try_push(&mut terms, (Complex64::ONE, a, Form::Plain), CONTEXT)?;
+        }
+        Ok(match parts.len() {
+            0 => None,
+            _ => Some(Csc::sum(n, &terms)?),
+        })
+    }
+}
+
+/// The symmetric matrix where only `rounding`, relative to the largest entry, separates it from that.
+pub(crate) fn symmetrised(a: Csc, rounding: f64) -> Result<Csc> {
+    let (_, _, gap) = a.worst_pair(Symmetry::Plain);
+    if gap > rounding * a.max_abs() {
+        return Ok(a);
+    }
+    let half = Complex64::new(0.5, 0.0);
+    Csc::sum(a.cols, &[(half, &a, Form::Plain), (half, &a, Form::Transposed)])
+}
+
+/// The sector at a distance.
+fn neighbour(s: usize, offset: i64, sectors: usize) -> usize {
+    (s as i128 + i128::from(offset)).rem_euclid(sectors as i128) as usize
+}
+
+/// A contact in sector s of the wheel.
+fn placed(contact: &Contact, s: usize, n: usize, sectors: usize) -> Result<Contact> {
+    let next = neighbour(s, contact.sector_offset, sectors);
+    let mut placed = copy(contact)?;
+    placed.dof_a = contact.dof_a.map(|dof| dof.map(|dof| s * n + dof));
+    placed.dof_b = contact.dof_b.map(|dof| dof.map(|dof| next * n + dof));
+    placed.sector_offset = 0;
+    for dof in &mut placed.dofs {
+        *dof += s * n;
+    }
+    let rotations = placed.rigid.iter_mut().flat_map(|rigid| &mut rigid.rotations);
+    for dof in rotations.flatten() {
+        *dof += s * n;
+    }
+    Ok(placed)
+}

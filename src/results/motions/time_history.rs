@@ -1,0 +1,352 @@
+//! Motion against time at a stored point, and motion, force and state of its contacts.
+
+use crate::contact::Contact;
+use crate::contact::contact_state::State;
+use crate::error::{Result, fail, try_extend, try_room, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::fourier::jet;
+use crate::interrupt::{Interrupt, Phase};
+use crate::results::motions::contact_loops::Orbit;
+use crate::results::motions::signal_check::check_time;
+use crate::results::{Branch, Recovery};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Largest number of times of a loop or a history.
+/// Kind: cap.
+pub const MOST_TIMES: usize = 1 << 24;
+
+const LOOP: &str = "the loop of a contact";
+
+/// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactLoop {
+    /// Relative motions d of the contact.
+    pub directions: usize,
+    /// Relative motions, side a minus side b, n × d, time after time.
+    pub motion: Vec<f64>,
+    /// Forces f, n × d, which act on the rows of side a as +f and on those of side b as −f. They are the whole
+    /// forces of the law, not their carried harmonics; along a normal f = −N.
+    pub force: Vec<f64>,
+    /// State of the contact, n. A contact that is linear at any motion or without force is reported as stuck, and
+    /// so are laws without states.
+    pub state: Vec<State>,
+}
+
+/// Number of directions in a summary; laws of more directions have the others in [`ContactLoop`] only.
+/// Kind: fixed.
+pub const SUMMARISED: usize = 3;
+
+/// Numbers of one contact over one period, in the caller's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactSummary {
+    /// Relative motions d of the contact.
+    pub directions: usize,
+    /// Work per cycle that the contact dissipates in all its directions; exactly 0 for friction that does not slip
+    /// and for laws of one motion that do not depend on velocity.
+    pub work: f64,
+    /// Share of the period in the slip state; the open state does not count.
+    pub slip_share: f64,
+    /// Share of the period in the open state.
+    pub open_share: f64,
+    /// Half the range of each relative motion, (max − min)/2; 0 beyond d.
+    pub half_range: [f64; SUMMARISED],
+    /// Smallest relative motions, side a minus side b.
+    pub motion_min: [f64; SUMMARISED],
+    /// Largest relative motions.
+    pub motion_max: [f64; SUMMARISED],
+    /// Smallest normal load. Friction under a constant load has the given one; springs that cannot open, and laws
+    /// of the caller, have none: 0.
+    pub load_min: f64,
+    /// Largest normal load.
+    pub load_max: f64,
+}
+
+impl Branch {
+    /// Motion of a degree of freedom at a stored point, at ωt = 2πj/n for j = 0 .. n, in the
+    /// caller's unit.
+    ///
+    /// # Errors
+    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..= 2²⁴,
+    /// `OutOfMemory`; `Singular` at an undamped resonance that moves no contact.
+    pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
+        self.time_history_with(point, dof, n, &Interrupt::none())
+    }
+
+    /// The same as [`Self::time_history`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::time_history`]; `StoppedByCaller`.
+    pub fn time_history_with(&self, point: usize, dof: usize, n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
+        self.check_point(point)?;
+        if dof >= self.ndof() {
+            return fail!(Index, "dof = {dof}, needs 0 .. {}", self.ndof());
+        }
+        check_times(n)?;
+        let condensed = self.condensed_at(point);
+        let motion = |i, _, x: &[Complex64]| Ok(condensed.motion_row(i, dof)?.along(x));
+        let (set, packed) = self.recover(point, 1, motion, interrupt)?;
+        let mut history = try_vec(n, 0.0, "a time history")?;
+        for (j, x) in history.iter_mut().enumerate() {
+            check_time(interrupt, j, &set)?;
+            *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
+        }
+        Ok(history)
+    }
+
+    /// Relative motions, forces and state of a contact at a stored point, at ωt = 2πj/n for j = 0 .. n.
+    ///
+    /// The force is that of this contact alone, at the motion of the point. Friction in one direction and
+    /// unilateral, tabulated and cubic springs are exact, even if the branch was computed by samples. A law of the
+    /// caller is called with the n times, up to 16,384 at once; one with states is marched over them, which is refused where it
+    /// would take more than 500 MB. Friction in a plane is evaluated step by step over a multiple of n
+    /// samples, at least as many as in the solution. In a cyclic model the contact is that of sector 0. Contacts
+    /// that are linear at any motion have no coordinate of their own, and the whole structure is recovered for
+    /// them.
+    ///
+    /// # Errors
+    /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the caller that
+    /// fails, `NoConvergence` where friction in a plane does not become periodic.
+    pub fn contact_loop(&self, point: usize, contact: usize, n: usize) -> Result<ContactLoop> {
+        self.contact_loop_with(point, contact, n, &Interrupt::none())
+    }
+
+    /// The same as [`Self::contact_loop`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::contact_loop`]; `StoppedByCaller`.
+    pub fn contact_loop_with(
+        &self,
+        point: usize,
+        contact: usize,
+        n: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<ContactLoop> {
+        self.check_contact(point, contact)?;
+        check_times(n)?;
+        self.with_orbit(point, contact, interrupt, |orbit, length| {
+            let directions = orbit.directions();
+            let mut found = ContactLoop {
+                directions,
+                motion: try_room(n.saturating_mul(directions), LOOP)?,
+                force: try_room(n.saturating_mul(directions), LOOP)?,
+                state: try_room(n, LOOP)?,
+            };
+            orbit.follow(n, interrupt)?.each(interrupt, |slice| {
+                found.motion.extend(slice.motion.iter().map(|x| x * length));
+                found.force.extend(slice.force.iter().map(|f| f * length));
+                found.state.extend(&slice.state);
+            })?;
+            Ok(found)
+        })
+    }
+
+    /// One direction of [`Self::contact_loop`], of which it holds no more than is `wanted`: motions, forces, states. The rest is
+    /// empty.
+    ///
+    /// # Errors
+    /// As [`Self::contact_loop`], with `Index` for an unknown direction; `StoppedByCaller`.
+    pub fn contact_loop_along(
+        &self,
+        (point, contact, direction): (usize, usize, usize),
+        n: usize,
+        wanted: [bool; 3],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<ContactLoop> {
+        self.check_contact(point, contact)?;
+        check_times(n)?;
+        self.with_orbit(point, contact, interrupt, |orbit, length| {
+            let directions = orbit.directions();
+            if direction >= directions {
+                return fail!(Index, "direction = {direction}, needs 0 .. {directions}");
+            }
+            let [motion, force, state] = wanted.map(|wanted| if wanted { n } else { 0 });
+            let mut found = ContactLoop {
+                directions: 1,
+                motion: try_room(motion, LOOP)?,
+                force: try_room(force, LOOP)?,
+                state: try_room(state, LOOP)?,
+            };
+            orbit.follow(n, interrupt)?.each(interrupt, |slice| {
+                let along = |values: &[f64], to: &mut Vec<f64>| {
+                    to.extend(values.iter().skip(direction).step_by(directions).map(|x| x * length));
+                };
+                if wanted[0] {
+                    along(&slice.motion, &mut found.motion);
+                }
+                if wanted[1] {
+                    along(&slice.force, &mut found.force);
+                }
+                if wanted[2] {
+                    found.state.extend(&slice.state);
+                }
+            })?;
+            Ok(found)
+        })
+    }
+
+    /// Work, shares of the period and ranges of a contact at a stored point; see [`Self::contact_loop`].
+    ///
+    /// Ranges are exact for the motion of the point, and so are work and shares of friction in one direction and of
+    /// springs. Those of friction in a plane, and the work of laws of velocities or of several motions, are as
+    /// accurate as the samples of the branch, like the branch itself. The work of all contacts sums to
+    /// [`Energy::friction_loss`](crate::results::Energy::friction_loss), up to the error of sampling if laws that
+    /// are exact here were sampled there, or if a law of the caller has a potential.
+    ///
+    /// # Errors
+    /// As [`Self::contact_loop`].
+    pub fn contact_summary(&self, point: usize, contact: usize) -> Result<ContactSummary> {
+        self.contact_summary_with(point, contact, &Interrupt::none())
+    }
+
+    /// The same as [`Self::contact_summary`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::contact_summary`]; `StoppedByCaller`.
+    pub fn contact_summary_with(
+        &self,
+        point: usize,
+        contact: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<ContactSummary> {
+        let kept = self.check_contact(point, contact)?;
+        self.with_orbit(point, contact, interrupt, |orbit, length| {
+            let account = orbit.account(interrupt)?;
+            let ranges = orbit.ranges(interrupt)?;
+            let mut summary = ContactSummary {
+                directions: orbit.directions(),
+                work: account.work * length * length,
+                slip_share: account.slip,
+                open_share: account.open,
+                ..ContactSummary::default()
+            };
+            for (k, (low, high)) in ranges.iter().take(SUMMARISED).enumerate() {
+                (summary.motion_min[k], summary.motion_max[k]) = (low * length, high * length);
+                summary.half_range[k] = 0.5 * (high - low) * length;
+            }
+            // The load is largest where the motion of side a against side b is smallest.
+            let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
+            let at_speed = self.contact_at_speed(point, contact);
+            let kept = at_speed.as_ref().unwrap_or(kept);
+            summary.load_min = kept.normal_load(high * length);
+            summary.load_max = kept.normal_load(low * length);
+            Ok(summary)
+        })
+    }
+
+    /// A contact under the load at the frequency of a point; `None` where its load does not depend on that.
+    fn contact_at_speed(&self, point: usize, contact: usize) -> Option<Contact> {
+        let laws = self.condensed_at(point).laws();
+        let found = laws
+            .binary_search_by_key(&contact, |assembled| assembled.contact)
+            .ok()?;
+        let load = laws[found].load.as_ref()?;
+        Some(load.contact_at(self.omega[point]))
+    }
+
+    /// Number of relative motions of a contact in [`Self::contact_loop`].
+    #[must_use]
+    pub fn contact_directions(&self, contact: usize) -> Option<usize> {
+        let kept = self.resolutions[0]
+            .condensed
+            .contact_classes()
+            .contacts()
+            .get(contact)?;
+        Some(kept.directions())
+    }
+
+    fn check_point(&self, point: usize) -> Result<()> {
+        self.carried_of(point).map(|_| ())
+    }
+
+    fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
+        self.check_point(point)?;
+        match self.resolutions[0].condensed.contact_classes().contacts().get(contact) {
+            Some(kept) => Ok(kept),
+            None => fail!(Index, "contact = {contact}, needs 0 .. {}", self.contacts()),
+        }
+    }
+
+    /// Calls `use_it` with a contact over the period and the unit of its lengths.
+    fn with_orbit<T>(
+        &self,
+        point: usize,
+        contact: usize,
+        interrupt: &Interrupt<'_>,
+        use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
+    ) -> Result<T> {
+        let condensed = self.condensed_at(point);
+        let contact_classes = condensed.contact_classes();
+        if let Some(at) = contact_classes.linear(contact) {
+            let kept = &contact_classes.contacts()[contact];
+            let row = |i: usize, k: usize| &condensed.blocks()[i].linear_rows[at + k];
+            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| Ok(row(i, k).along(x)), interrupt)?;
+            let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
+            return use_it(&orbit, 1.0);
+        }
+        let laws = condensed.laws();
+        let Ok(found) = laws.binary_search_by_key(&contact, |assembled| assembled.contact) else {
+            return fail!(Internal, "contact {contact} has no law");
+        };
+        let assembled = &laws[found];
+        let set = condensed.set();
+        let m = set.packed_len();
+        let mut motion = Vec::new();
+        for c in &assembled.coordinates {
+            let all = self.motion_at(point).unwrap_or(&[]);
+            try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+        }
+        let omega = self.omega[point];
+        let law = match &assembled.load {
+            None => Arc::clone(&assembled.law),
+            Some(load) => load.contact_at(omega).law(condensed.length())?,
+        };
+        let mut orbit = Orbit::new(set, &motion, &*law, omega, self.samples_at(point));
+        let mut actual = Vec::new();
+        if let [c] = assembled.coordinates[..]
+            && condensed.is_exchanged(c)
+        {
+            let all = self.relative_motion_at(point, interrupt)?;
+            try_extend(&mut actual, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+            orbit = orbit.moving(&actual);
+        }
+        use_it(&orbit, condensed.length())
+    }
+
+    /// Packed harmonics of `signals` signals, one after the other. `of` computes the k-th signal from the i-th
+    /// carried harmonic of all degrees of freedom, in the caller's unit. The set has all harmonics, because those
+    /// of linear models have no common step.
+    fn recover(
+        &self,
+        point: usize,
+        signals: usize,
+        of: impl Fn(usize, usize, &[Complex64]) -> Result<Complex64>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<(HarmonicSet, Vec<f64>)> {
+        const CONTEXT: &str = "the harmonics";
+        let carried = self.carried_of(point)?;
+        let highest = carried.last().copied().unwrap_or(0);
+        let set = HarmonicSet::all(highest)?;
+        let m = set.packed_len();
+        let mut packed = try_vec(signals.saturating_mul(m), 0.0, CONTEXT)?;
+        let ndof = self.condensed_at(point).ndof();
+        let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+        let mut recovery = Recovery::at(self, point, interrupt)?;
+        for (i, &h) in carried.iter().enumerate() {
+            interrupt.part(Phase::Results, i, carried.len())?;
+            recovery.coordinates(i, &mut x)?;
+            for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
+                set.set(signal, h, of(i, k, &x)?);
+            }
+        }
+        Ok((set, packed))
+    }
+}
+
+fn check_times(n: usize) -> Result<()> {
+    if (1..=MOST_TIMES).contains(&n) {
+        return Ok(());
+    }
+    fail!(Dimension, "n = {n}, needs 1 .. {MOST_TIMES} times")
+}

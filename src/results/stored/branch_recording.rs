@@ -1,0 +1,368 @@
+//! Storing the points of a branch.
+
+use crate::condense::{Condensed, Reduction, Resolution};
+use crate::error::{Error, Result, Status, try_push};
+use crate::model::Model;
+use crate::options::SolverOptions;
+use crate::results::stored::branch::{Branch, Place};
+use crate::results::stored::mode_branch::ModeData;
+use crate::results::stored::special::Special;
+use crate::results::verdicts::verdict::{Bifurcation, BifurcationKind, Located};
+use crate::results::watched::response_series::SeenWithError;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// With the first point there is room for so many, if their motions are not more numbers than this.
+/// Kind: tuned; measured on: not recorded.
+const FIRST_ROOM: (usize, usize) = (32, 4096);
+
+/// Numbers of one point.
+#[derive(Clone, Copy, Debug)]
+pub struct Record<'a> {
+    /// Resolution with which the point was solved.
+    pub resolution: &'a Resolution,
+    /// Angular frequency.
+    pub omega: f64,
+    /// Packed relative motions, in the solver's units.
+    pub motion: &'a [f64],
+    /// Complex fundamental of the response degree of freedom, in the solver's units.
+    pub amplitude: Complex64,
+    /// Carried harmonics of the response degree of freedom, in the solver's units.
+    pub response: &'a [Complex64],
+    /// Relative residual.
+    pub residual: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Share of the period that each law slips.
+    pub slip_fractions: &'a [f64],
+    /// Estimated error by sampling, 0 where all laws are exact.
+    pub sampling_error: f64,
+    /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
+    /// damping ratio; NaN if unknown.
+    pub errors: (f64, f64),
+    /// The responses of the run, in the solver's units, with their errors; empty without any.
+    pub seen: &'a [SeenWithError],
+}
+
+/// List to which a special point belongs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SpecialKind {
+    Peak,
+    /// A peak of a further response.
+    PeakOf(usize),
+    /// One side of a kink of a response; the other one follows or comes before.
+    KinkOf(usize),
+    Fold,
+    At(usize),
+    /// Any but a fold, with the numbers of unstable directions before and after it.
+    Bifurcation(BifurcationKind, [Option<usize>; 2]),
+    /// With the derivative of the damping ratio by log₁₀ of the amplitude.
+    LimitCycle {
+        slope: f64,
+    },
+}
+
+impl SpecialKind {
+    pub fn is_fold(self) -> bool {
+        matches!(self, Self::Fold | Self::Bifurcation(BifurcationKind::Fold, _))
+    }
+
+    /// The response whose peak or kink it is.
+    pub fn response(self) -> Option<usize> {
+        match self {
+            Self::PeakOf(response) | Self::KinkOf(response) => Some(response),
+            _ => None,
+        }
+    }
+}
+
+impl Branch {
+    /// An empty branch of a condensed model, whose points have the harmonics up to `harmonics`, or up to the
+    /// highest that one of them carries.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    #[doc(hidden)]
+    pub fn new(resolution: &Resolution, reduction: Reduction, harmonics: usize, response_dof: usize) -> Result<Self> {
+        let mut resolutions = Vec::new();
+        try_push(&mut resolutions, resolution.clone(), "the branch")?;
+        Ok(Self {
+            resolutions,
+            places: Vec::new(),
+            reduction,
+            harmonics,
+            estimates: 0,
+            response_dof,
+            status: Status::Ok,
+            reason: None,
+            curve: 0,
+            omega: Vec::new(),
+            amplitude: Vec::new(),
+            residual: Vec::new(),
+            iterations: Vec::new(),
+            harmonics_used: Vec::new(),
+            slip_fraction: Vec::new(),
+            sampling_error: Vec::new(),
+            error_estimate: Vec::new(),
+            damping_error_estimate: Vec::new(),
+            motion: Vec::new(),
+            response: Vec::new(),
+            responses: Vec::new(),
+            together: false,
+            peaks: Vec::new(),
+            folds: Vec::new(),
+            limit_cycles: Vec::new(),
+            bifurcations: Vec::new(),
+            tells_stability: false,
+            floquet_radius: Vec::new(),
+            unstable_directions: Vec::new(),
+            freedom: None,
+            at: Vec::new(),
+            mode: None,
+            parameter: None,
+            origin: None,
+            children: Vec::new(),
+            descent: None,
+            searched: None,
+        })
+    }
+
+    /// The branch of a run that the caller stopped before its model was condensed: it has no point, and nothing is
+    /// known of the reduction.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn stopped(model: &Model, options: &SolverOptions) -> Result<Self> {
+        let condensed = Condensed::without_harmonics(model)?;
+        let reduction = Reduction {
+            harmonics_carried: 0,
+            mean_carried: false,
+            even_removed: false,
+            ..condensed.reduction_with(model, options, 0)
+        };
+        let resolution = Resolution {
+            condensed: Arc::new(condensed),
+            samples: options.samples,
+        };
+        let harmonics = if options.tolerance > 0.0 { 0 } else { options.harmonics };
+        let mut branch = Self::new(&resolution, reduction, harmonics, options.response_dof.unwrap_or(0))?;
+        branch.status = Status::StoppedByCaller;
+        branch.tells_stability = options.stability.is_some();
+        Ok(branch)
+    }
+
+    pub(crate) fn set_mode(&mut self, data: ModeData) {
+        self.mode = Some(data);
+    }
+
+    /// Stores a point and returns its number.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; the branch then ends before this point.
+    #[doc(hidden)]
+    pub fn push(&mut self, record: &Record<'_>) -> Result<usize> {
+        const CONTEXT: &str = "the points of the branch";
+        let contacts = self.contacts();
+        let resolution = self.resolution_of(record.resolution)?;
+        let place = Place {
+            resolution,
+            motion: self.motion.len(),
+            response: self.response.len(),
+        };
+        let points = if self.places.is_empty() {
+            (FIRST_ROOM.1 / record.motion.len().max(1)).clamp(1, FIRST_ROOM.0)
+        } else {
+            1
+        };
+        self.places
+            .try_reserve(points)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.slip_fraction
+            .try_reserve(points * contacts)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        for v in [
+            &mut self.amplitude,
+            &mut self.residual,
+            &mut self.iterations,
+            &mut self.harmonics_used,
+            &mut self.sampling_error,
+            &mut self.error_estimate,
+            &mut self.damping_error_estimate,
+        ] {
+            v.try_reserve(points).map_err(|_| Error::out_of_memory(CONTEXT))?;
+        }
+        self.response
+            .try_reserve(points * record.response.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.motion
+            .try_reserve(points * record.motion.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.motion.extend_from_slice(record.motion);
+        let length = record.resolution.condensed.length();
+        for (response, seen) in self.responses.iter_mut().zip(record.seen) {
+            let mut seen = *seen;
+            if response.is_observed() {
+                seen.seen.reading.value = record.amplitude.norm();
+            }
+            response.push(&seen, length)?;
+        }
+        // The frequency is stored last: its length is the number of points.
+        try_push(&mut self.omega, record.omega, CONTEXT)?;
+        self.places.push(place);
+        let condensed = &*record.resolution.condensed;
+        let leading = self.responses.first().zip(record.seen.first());
+        let amplitude = match leading.filter(|(response, _)| !response.is_observed()) {
+            Some((_, seen)) => seen.seen.reading.value,
+            None => record.amplitude.norm(),
+        };
+        self.amplitude.push(amplitude * length);
+        self.response.extend(record.response.iter().map(|x| x * length));
+        self.residual.push(record.residual);
+        self.sampling_error.push(record.sampling_error);
+        self.error_estimate.push(record.errors.0);
+        self.damping_error_estimate.push(record.errors.1);
+        self.iterations.push(record.iterations as f64);
+        let highest = condensed.set().numbers().last().copied().unwrap_or(0);
+        self.harmonics = self.harmonics.max(highest);
+        self.harmonics_used.push(highest as f64);
+        let at = self.slip_fraction.len();
+        self.slip_fraction.resize(at + contacts, 0.0);
+        for (assembled, &share) in condensed.laws().iter().zip(record.slip_fractions) {
+            self.slip_fraction[at + assembled.contact] = share;
+        }
+        Ok(self.omega.len() - 1)
+    }
+
+    /// Appends a point to the curve, which must be done before any special point is stored.
+    pub(crate) fn push_curve(&mut self, record: &Record<'_>) -> Result<()> {
+        self.push(record)?;
+        self.curve = self.omega.len();
+        Ok(())
+    }
+
+    /// Stores a point of a result over a parameter: on the curve, an optimum by its number alone, or a requested one.
+    pub(crate) fn push_followed(&mut self, kind: Option<SpecialKind>, record: &Record<'_>) -> Result<()> {
+        match kind {
+            None => self.push_curve(record),
+            Some(SpecialKind::Peak) => self.push(record).map(|_| ()),
+            Some(kind) => self.push_special(kind, self.points().saturating_sub(1), record),
+        }
+    }
+
+    /// Stores a point beside the curve, which lies after the first `after` points of the curve.
+    pub(crate) fn push_special(&mut self, kind: SpecialKind, after: usize, record: &Record<'_>) -> Result<()> {
+        let point = self.push(record)?;
+        let special = Special {
+            point,
+            omega: record.omega,
+            amplitude: self.amplitude[point],
+        };
+        let list = match kind {
+            SpecialKind::Peak => {
+                if let Some(response) = self.responses.first_mut() {
+                    response.push_peak(special)?;
+                }
+                &mut self.peaks
+            }
+            SpecialKind::PeakOf(response) => {
+                let Some(of) = self.responses.get_mut(response) else {
+                    return crate::error::fail!(Internal, "a peak of an unknown response");
+                };
+                let special = Special {
+                    amplitude: of.values()[point],
+                    ..special
+                };
+                of.push_peak(special)?;
+                if response > 0 {
+                    return Ok(());
+                }
+                &mut self.peaks
+            }
+            SpecialKind::KinkOf(response) => {
+                let Some(of) = self.responses.get_mut(response) else {
+                    return crate::error::fail!(Internal, "a kink of an unknown response");
+                };
+                let amplitude = of.values()[point];
+                return of.push_kink(Special { amplitude, ..special });
+            }
+            SpecialKind::Fold => {
+                self.push_bifurcation((BifurcationKind::Fold, [None; 2]), after, special)?;
+                &mut self.folds
+            }
+            SpecialKind::Bifurcation(kind, unstable) => {
+                return self.push_bifurcation((kind, unstable), after, special);
+            }
+            SpecialKind::LimitCycle { slope } => {
+                return try_push(&mut self.limit_cycles, (special, slope), "the limit cycles");
+            }
+            SpecialKind::At(i) => {
+                while self.at.len() <= i {
+                    try_push(&mut self.at, Vec::new(), "the requested solutions")?;
+                }
+                &mut self.at[i]
+            }
+        };
+        try_push(list, special, "the special points")
+    }
+
+    fn push_bifurcation(
+        &mut self,
+        (kind, unstable): (BifurcationKind, [Option<usize>; 2]),
+        after: usize,
+        special: Special,
+    ) -> Result<()> {
+        let bifurcation = Bifurcation {
+            point: special.point,
+            omega: special.omega,
+            amplitude: special.amplitude,
+            kind,
+            unstable,
+        };
+        try_push(
+            &mut self.bifurcations,
+            Located { bifurcation, after },
+            "the bifurcations",
+        )
+    }
+
+    /// Tells the parts that were removed from the problem with the most harmonics.
+    pub(crate) fn complete_reduction(&mut self, model: &Model, options: &SolverOptions) {
+        let largest = self
+            .resolutions
+            .iter()
+            .max_by_key(|resolution| resolution.condensed.unknowns());
+        if let Some(largest) = largest {
+            let held = self.reduction.held_by_contacts;
+            let reduction = largest.condensed.reduction_with(model, options, held);
+            self.set_reduction(reduction);
+        }
+    }
+
+    pub(crate) fn set_reduction(&mut self, reduction: Reduction) {
+        self.reduction = Reduction {
+            harmonics_asked: self.harmonics,
+            ..reduction
+        };
+    }
+
+    /// Sets the status of the branch. `stalled`: round-off stopped some point above the tolerance of the residual;
+    /// `missed`: the error of some point exceeds the tolerance that chooses the harmonics.
+    pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, (stalled, missed): (bool, bool)) {
+        self.status = match status {
+            Status::Ok if missed => Status::StoppedMaxHarmonics,
+            Status::Ok if stalled => Status::StoppedStalled,
+            status => status,
+        };
+        self.reason = reason;
+    }
+
+    /// Number of a resolution, which is stored if it is new.
+    pub(crate) fn resolution_of(&mut self, resolution: &Resolution) -> Result<usize> {
+        let known = |kept: &Resolution| Arc::ptr_eq(&kept.condensed, &resolution.condensed);
+        if let Some(found) = self.resolutions.iter().position(known) {
+            return Ok(found);
+        }
+        try_push(&mut self.resolutions, resolution.clone(), "the branch")?;
+        Ok(self.resolutions.len() - 1)
+    }
+}

@@ -1,0 +1,93 @@
+//! A number of each stored point: of the points of the curve first, then of those beside it.
+
+use crate::error::{Error, Result};
+use crate::results::Branch;
+use crate::results::stored::mode_branch::ModeField;
+
+/// A number that each stored point has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointField {
+    /// Angular frequency.
+    Omega,
+    /// Amplitude of the response degree of freedom.
+    Amplitude,
+    /// Relative residual.
+    Residual,
+    /// Newton iterations.
+    NewtonIterations,
+    /// Highest harmonic number carried.
+    HarmonicsUsed,
+    /// Share of the period that each contact slips, for each contact.
+    SlipFraction,
+    /// Error by sampling.
+    SamplingError,
+    /// Estimated error of the response, in a nonlinear mode of the frequency.
+    ErrorEstimate,
+    /// Estimated error of the damping ratio of a nonlinear mode.
+    DampingErrorEstimate,
+    /// Largest modulus of the ordinary Floquet multipliers; NaN beside the curve.
+    FloquetRadius,
+    /// Number of ordinary multipliers outside the unit circle; NaN beside the curve.
+    UnstableDirections,
+    /// Number of free sliders.
+    FreeSliders,
+    /// Derivatives of the amplitude by the places of free sliders, for each contact and direction.
+    ByPlace,
+    /// Value of the parameter.
+    Parameter,
+    /// Total derivative of the amplitude by the parameter.
+    DAmplitude,
+    /// Total derivative of the largest damping ratio by the parameter.
+    DDamping,
+    /// A number of a nonlinear mode.
+    Mode(ModeField),
+}
+
+impl Branch {
+    /// A number of all stored points; `None` where the branch does not have it.
+    #[must_use]
+    pub(crate) fn stored_field(&self, field: PointField) -> Option<&[f64]> {
+        let is_mode = self.mode.is_some();
+        match field {
+            PointField::Omega => Some(&self.omega),
+            PointField::Amplitude => Some(&self.amplitude),
+            PointField::Residual => Some(&self.residual),
+            PointField::NewtonIterations => Some(&self.iterations),
+            PointField::HarmonicsUsed => Some(&self.harmonics_used),
+            PointField::SlipFraction => Some(&self.slip_fraction),
+            PointField::SamplingError => Some(&self.sampling_error),
+            PointField::ErrorEstimate => Some(&self.error_estimate),
+            PointField::DampingErrorEstimate => is_mode.then_some(&self.damping_error_estimate[..]),
+            PointField::FloquetRadius => self.tells_stability.then_some(&self.floquet_radius[..]),
+            PointField::UnstableDirections => self.tells_stability.then_some(&self.unstable_directions[..]),
+            PointField::FreeSliders => self.freedom.as_ref().map(|freedom| freedom.count()),
+            PointField::ByPlace => self.freedom.as_ref().map(|freedom| freedom.by_place().as_flattened()),
+            PointField::Parameter => self.parameter.as_ref().map(|data| &data.parameter[..]),
+            PointField::DAmplitude => self.parameter.as_ref().map(|data| &data.d_amplitude[..]),
+            PointField::DDamping => self
+                .parameter
+                .as_ref()
+                .filter(|_| is_mode)
+                .map(|data| &data.d_damping[..]),
+            PointField::Mode(field) => self.mode.as_ref().map(|data| data.field(field)),
+        }
+    }
+
+    /// Gives the points without stability, those beside the curve among them, NaN for it.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn complete_stability(&mut self) -> Result<()> {
+        if !self.tells_stability {
+            return Ok(());
+        }
+        let stored = self.omega.len();
+        for numbers in [&mut self.floquet_radius, &mut self.unstable_directions] {
+            numbers
+                .try_reserve(stored.saturating_sub(numbers.len()))
+                .map_err(|_| Error::out_of_memory("the stability of the points"))?;
+            numbers.resize(stored, f64::NAN);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,166 @@
+//! Result of a fit: the values of least loss, their covariance, what the data tell.
+
+use crate::error::{Result, Status, try_copy, try_vec};
+use crate::model::Model;
+use crate::studies::fit::fit_data::FitData;
+use crate::studies::fit::fit_search::{Found, Search, State};
+use crate::studies::fit::identifiability::condition;
+use crate::studies::fit::marquardt_step::inverse;
+use crate::studies::fit::suspected_units::Suspicion;
+
+const CONTEXT: &str = "the result of a fit";
+
+/// χ² over the degrees of freedom above which units are suspected and other starts are tried.
+/// Kind: tuned; measured on: not recorded.
+const FIT_POOR: f64 = 9.0;
+
+/// Result of a fit.
+#[derive(Debug)]
+pub struct Fit {
+    /// `Ok`; `StoppedMaxPoints` where the iterations did not suffice, `StoppedStalled` where no step lowers the loss any more,
+    /// `StoppedByCaller`.
+    pub status: Status,
+    /// Values of the parameters, in their order.
+    pub theta: Vec<f64>,
+    /// Their covariance, row after row; 0 for fixed ones and for those at a bound.
+    pub covariance: Vec<f64>,
+    /// Whether each parameter lies at one of its bounds.
+    pub at_bound: Vec<bool>,
+    /// Σ r² over the data and the priors.
+    pub chi2: f64,
+    /// Number of data and priors minus the number of free unknowns.
+    pub degrees_of_freedom: i64,
+    /// The loss, Σ ρ(r); χ² without a robust one.
+    pub loss: f64,
+    /// Number of data: two for a complex amplitude.
+    pub data: usize,
+    /// Number of free unknowns.
+    pub free: usize,
+    /// Iterations from the start that led here.
+    pub iterations: usize,
+    /// Starts that were searched from.
+    pub starts: usize,
+    /// Residuals in standard deviations, two for each datum, set after set; 0 for numbers that are no data.
+    pub residuals: Vec<f64>,
+    /// Values of the model, likewise.
+    pub values: Vec<f64>,
+    /// Largest over smallest eigenvalue of the matrix of the fit with unit diagonal.
+    pub condition: f64,
+    /// Largest estimated error by harmonics over the standard deviation of its datum; NaN where none was estimated.
+    pub harmonic_error: f64,
+    /// Whether each contact slips at any point of the data.
+    pub slips: Vec<bool>,
+    /// Units that the data may have.
+    pub suspicion: Suspicion,
+    /// The model with the values of the parameters that all data sets have.
+    pub model: Model,
+}
+
+impl Fit {
+    /// Criterion of Akaike, χ² + 2k with k free unknowns, under known standard deviations.
+    #[must_use]
+    pub fn aic(&self) -> f64 {
+        self.chi2 + 2.0 * self.free as f64
+    }
+
+    /// Criterion of Schwarz, χ² + k ln n.
+    #[must_use]
+    pub fn bic(&self) -> f64 {
+        self.chi2 + self.free as f64 * (self.data as f64).ln()
+    }
+}
+
+/// End of all searches.
+pub(super) struct Ended {
+    pub(super) found: Found,
+    pub(super) starts: usize,
+    pub(super) stopped: bool,
+}
+
+/// Number of data, and of data and priors minus that of free unknowns.
+pub(super) fn sizes(search: &Search<'_>) -> (usize, i64) {
+    let of_set = |set: &FitData<'_>| {
+        let counted = |i| set.weights(i).iter().filter(|w| **w > 0.0).count();
+        (0..set.x.len()).map(counted).sum::<usize>()
+    };
+    let data: usize = search.predictor.data.iter().map(of_set).sum();
+    let free = &search.unknowns.free;
+    let priors = free.iter().filter(|free| free.prior.is_some()).count();
+    (data, (data + priors) as i64 - free.len() as i64)
+}
+
+/// Whether a state explains the data poorly.
+pub(super) fn is_poor(search: &Search<'_>, state: &State) -> bool {
+    state.cost > FIT_POOR * sizes(search).1.max(1) as f64
+}
+
+/// The result with its covariance.
+///
+/// # Errors
+/// `Singular` where the data do not tell the unknowns; those of the model; `OutOfMemory`, `StoppedByCaller`.
+pub(super) fn result(search: &Search<'_>, ended: Ended, suspicion: Suspicion) -> Result<Fit> {
+    let Search {
+        predictor,
+        unknowns,
+        options,
+    } = search;
+    let interrupt = predictor.interrupt;
+    let best = ended.found;
+    let (h, _) = search.normal_equations(&best.state, false)?;
+    let (_, g) = search.normal_equations(&best.state, true)?;
+    let z = &best.state.z;
+    let moves = search.moves(z, &g)?;
+    let slips = &best.state.predicted.slips;
+    let known = condition(&h, (unknowns, predictor.parameters), (z, slips, &moves), interrupt);
+    let known = known.map_err(|e| match suspicion {
+        Suspicion::None => e,
+        _ => e.at(format_args!("{}", suspicion.sentence())),
+    })?;
+    let (data, degrees) = sizes(search);
+    let chi2 = best.state.residuals.iter().map(|r| r * r).sum::<f64>();
+    let mut factor = options.loss.inefficiency();
+    if options.scale_covariance && degrees > 0 {
+        factor *= chi2 / degrees as f64;
+    }
+    let of_free = inverse(&h, &moves, interrupt)?;
+    let (p, n) = (unknowns.parameters(), z.len());
+    let mut covariance = try_vec(p * p, 0.0, CONTEXT)?;
+    let mut at_bound = try_vec(p, false, CONTEXT)?;
+    for i in 0..p {
+        let Some((a, by_a)) = unknowns.slope(i, z) else {
+            continue;
+        };
+        at_bound[i] = !moves[a];
+        for j in 0..p {
+            if let Some((b, by_b)) = unknowns.slope(j, z) {
+                covariance[i * p + j] = factor * by_a * by_b * of_free[a * n + b];
+            }
+        }
+    }
+    let status = match (ended.stopped, best.converged, best.iterations >= options.max_iterations) {
+        (true, ..) => Status::StoppedByCaller,
+        (_, true, _) => Status::Ok,
+        (_, _, true) => Status::StoppedMaxPoints,
+        _ => Status::StoppedStalled,
+    };
+    Ok(Fit {
+        status,
+        model: predictor.common_model(&best.state.theta)?,
+        covariance,
+        at_bound,
+        chi2,
+        degrees_of_freedom: degrees,
+        loss: best.state.cost,
+        data,
+        free: n,
+        iterations: best.iterations,
+        starts: ended.starts,
+        residuals: try_copy(&best.state.residuals[..predictor.rows()], CONTEXT)?,
+        condition: known,
+        harmonic_error: best.state.predicted.harmonic_error,
+        slips: best.state.predicted.slips,
+        values: best.state.predicted.values,
+        theta: best.state.theta,
+        suspicion,
+    })
+}

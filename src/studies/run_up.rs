@@ -1,0 +1,210 @@
+//! A run-up through a resonance by the slow flow of a nonlinear mode, with the memory of sliders.
+//!
+//! The amplitude of the mode follows an oscillator whose frequency and damping depend on it. Contacts with sliders remember amplitudes
+//! before, which is an effect of the first order in the rate: it is found by passing the motion of the slow flow through the laws, and
+//! the slow flow is solved again with it, until it repeats. The turns around the largest displacement are then integrated in time.
+
+mod chirp;
+mod integrated;
+pub(crate) mod mode_table;
+pub(crate) mod other_modes;
+mod slider_memory;
+pub(crate) mod slow_flow;
+mod slow_path;
+mod steady_motion;
+
+use crate::analysis::synthesis::{Load, SynthesisPeak, load_of, synthesise_with};
+use crate::error::{Result, fail};
+use crate::interrupt::Interrupt;
+use crate::model::Model;
+use crate::model::matrices::speed::Speed;
+use crate::options::{RunUpOptions, SynthesisOptions};
+use crate::results::Branch;
+use crate::studies::run_up::chirp::Chirp;
+use crate::studies::run_up::integrated::integrate;
+use crate::studies::run_up::mode_table::{ModeTable, Place};
+use crate::studies::run_up::other_modes::OtherModes;
+use crate::studies::run_up::slider_memory::{Defect, SliderMemory};
+pub use crate::studies::run_up::slow_flow::RunUpTurn;
+use crate::studies::run_up::slow_flow::SlowFlow;
+use crate::studies::run_up::slow_path::SlowPath;
+use crate::studies::run_up::steady_motion::largest_steady;
+use crate::time_integration::System;
+use std::f64::consts::TAU;
+
+/// Most solutions of the slow flow with the memory of the one before.
+/// Kind: cap.
+const RUN_UP_MOST_REPEATS: usize = 8;
+
+/// Change of the largest displacement, relative, at which the memory is known.
+/// Kind: cap; below what the slow flow alone errs by, 2e-5 and more
+/// on the oscillator of the stored runs.
+const RUN_UP_REPEATED: f64 = 1e-5;
+
+/// Phase over which the memory is averaged, two turns: the change of the amplitude in it is the share of the second order.
+/// Kind: tuned; measured on: six
+/// models, of three of which it bounds all errors: it decides about the estimate without integration alone.
+const RUN_UP_AVERAGED: f64 = 2.0 * TAU;
+
+/// A run-up by the slow flow.
+#[derive(Clone, Debug)]
+pub struct RunUp {
+    /// Turns of the forces.
+    pub turns: Vec<RunUpTurn>,
+    /// Largest displacement of the run-up.
+    pub largest: f64,
+    /// Angular frequency of the forces at that time.
+    pub largest_omega: f64,
+    /// That time, from the begin.
+    pub largest_time: f64,
+    /// Relative error of the largest displacement: by how much three leads of the integration in time change it. Without
+    /// integration it is an
+    /// estimate that may be too small, NaN where the mode has no resonance under these forces to compare with.
+    pub error: f64,
+    /// The largest displacement by the slow flow alone.
+    pub slow_flow: f64,
+    /// Turns that were integrated in time, as many as the run-up has where all were; 0: none.
+    pub integrated: usize,
+    /// The largest displacement without the memory of sliders.
+    pub without_memory: f64,
+    /// Largest displacement of the highest steady resonance within the mode, in the measure of `largest`: with the mean and all harmonics;
+    /// NaN without one.
+    pub steady: f64,
+}
+
+impl RunUp {
+    /// Largest displacement over that of the steady resonance. Both have in them how far constant forces displace.
+    #[must_use]
+    pub fn factor(&self) -> f64 {
+        self.largest / self.steady
+    }
+}
+
+/// Follows the amplitude of a plain model while the frequency of its forces changes at a constant rate, from the steady motion at the first
+/// frequency on, by the slow flow of its nonlinear mode.
+///
+/// # Errors
+/// Those of [`RunUpOptions::check`] and of [`synthesise`](crate::synthesise); `Unsupported` for a cyclic model, an unbalance or a
+/// speed that
+/// follows the frequency, and laws that are not integrated in time; `Argument` where the amplitude leaves those of the mode;
+/// `StoppedByCaller`.
+pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt: &Interrupt<'_>) -> Result<RunUp> {
+    options.check(model.ndof())?;
+    let structure = model.structure();
+    if structure.sectors() > 1 {
+        return fail!(
+            Unsupported,
+            "a run-up needs a plain model; a wheel makes one of a cyclic model"
+        );
+    }
+    if model.excitation().has_unbalance() || matches!(model.speed(), Speed::PerOmega(_)) {
+        return fail!(
+            Unsupported,
+            "an unbalance or a speed follows the frequency, which changes"
+        );
+    }
+    let (load, highest) = loaded(branch, model, &options.synthesis, interrupt)?;
+    let system = System::unforced(model, options.omega_start, interrupt)?;
+    let dof = options.dof.unwrap_or_else(|| branch.response_dof());
+    let number = branch.mode_data().map_or(0, |data| data.info.index);
+    let watched = (dof, &system.elements[..]);
+    let others = OtherModes::new(model, &load, number, watched, interrupt)?;
+    let table = ModeTable::new(branch, model, (&load, &others), watched, interrupt)?;
+    let chirp = Chirp::new(options.omega_start, options.omega_stop, options.rate);
+    let flow = SlowFlow {
+        table: &table,
+        others: &others,
+        chirp: &chirp,
+        interrupt,
+    };
+    // The solution of the first order, then that with q″, then that with the memory.
+    let mut memory = SliderMemory::new(&table, &others, &system.elements)?;
+    let mut defect = Defect::default();
+    let (mut path, mut seen) = flow.run(&defect, &SlowPath::default())?;
+    let mut change = 0.0;
+    let (mut without_memory, mut simple) = (seen.largest, SlowPath::default());
+    for repeat in 0..RUN_UP_MOST_REPEATS {
+        if repeat > 1 && !memory.is_empty() {
+            defect = memory.along(&path, &chirp, interrupt)?;
+        }
+        let before = seen.largest;
+        (path, seen) = flow.run(&defect, &path)?;
+        change = (seen.largest - before).abs();
+        if repeat == 1 {
+            simple = path.try_clone()?;
+        }
+        if repeat < 2 {
+            without_memory = seen.largest;
+        } else if change <= RUN_UP_REPEATED * seen.largest {
+            break;
+        }
+    }
+    let steady = match &highest {
+        Some(peak) => largest_steady(&table, &others, &peak.at)?,
+        None => f64::NAN,
+    };
+    let of_steady = highest
+        .as_ref()
+        .map_or(f64::NAN, |peak| peak.validity.error.abs() * steady);
+    // The change by the memory in the last time that the flow remembers, phase and amplitude, and how quickly the amplitude changes in it.
+    let mut place = Place::default();
+    let amplitude = path.at(seen.largest_time).norm();
+    table.find(amplitude, &mut place)?;
+    let decay = table.oscillator(&place).decay().abs();
+    let last = (
+        seen.largest_time - 1.0 / decay.max(f64::MIN_POSITIVE),
+        seen.largest_time,
+    );
+    let growth = path.growth(last, |time| chirp.omega(time));
+    let of_memory = path.distance(&simple, last) / amplitude.max(f64::MIN_POSITIVE) * seen.largest;
+    let slow_flow = seen.largest;
+    let mut found = RunUp {
+        largest_omega: chirp.omega(seen.largest_time),
+        largest: slow_flow,
+        largest_time: seen.largest_time,
+        error: (change + of_steady + seen.beside + of_memory * (RUN_UP_AVERAGED * growth).min(1.0)) / slow_flow,
+        slow_flow,
+        integrated: 0,
+        without_memory,
+        steady,
+        turns: Vec::new(),
+    };
+    let cost = (system.operations(), interrupt);
+    if let Some(part) = integrate(model, (&table, &mut seen), (options, &chirp, dof), cost)? {
+        found.largest = part.largest;
+        found.largest_time = part.largest_time;
+        found.largest_omega = part.largest_omega;
+        found.error = if part.turns > 0 {
+            part.error
+        } else {
+            part.error.max(found.error)
+        };
+        found.integrated = part.turns;
+    }
+    found.turns = seen.turns;
+    Ok(found)
+}
+
+/// Forces and damping on a mode, and its highest steady resonance under them, compared with the computed one; none without a resonance.
+///
+/// # Errors
+/// Those of [`synthesise`](crate::synthesise); `Argument` for a mode without points.
+pub(crate) fn loaded(
+    branch: &Branch,
+    model: &Model,
+    options: &SynthesisOptions,
+    interrupt: &Interrupt<'_>,
+) -> Result<(Load, Option<SynthesisPeak>)> {
+    let Some(load) = load_of(branch, model, options)? else {
+        return fail!(Argument, "the mode has no points");
+    };
+    let compared = SynthesisOptions {
+        compare: true,
+        ..*options
+    };
+    let peaks = synthesise_with(branch, model, &compared, interrupt)?.peaks;
+    let highest = peaks
+        .into_iter()
+        .max_by(|a, b| a.at.response.norm().total_cmp(&b.at.response.norm()));
+    Ok((load, highest))
+}

@@ -1,0 +1,54 @@
+//! Length of the next step of a life: from the error of the last one, and where the motion seems to end.
+
+/// How it is tried whether the motion ends, or a step was only long.
+#[derive(Clone, Copy)]
+pub(crate) enum Doubt {
+    /// A step is tried over half of the way.
+    Half,
+    /// It went on: a step is tried over the rest.
+    Rest,
+    /// The motion ends, and halves lead to the place.
+    None,
+}
+
+impl Doubt {
+    /// The doubt where a step is broken once more.
+    pub fn again(self) -> Self {
+        match self {
+            Self::Half => Self::Half,
+            Self::Rest | Self::None => Self::None,
+        }
+    }
+
+    /// The doubt about a motion at cycles `other` after a step to `n`.
+    pub fn after(self, other: f64, n: f64) -> Option<(f64, Self)> {
+        let doubt = match self {
+            Self::Half => Self::Rest,
+            doubt => doubt,
+        };
+        (n < other).then_some((other, doubt))
+    }
+}
+
+/// Length of a step: a step of the last hundredth of the rest alone would be lost on rounding.
+pub(crate) fn length_of(delta: f64, rest: f64, is_bounded: bool) -> f64 {
+    if is_bounded {
+        delta
+    } else if delta >= 0.99 * rest {
+        rest
+    } else {
+        delta.min(0.5 * rest).max(0.01 * delta)
+    }
+}
+
+/// Factor of the length of the next step from the error over the tolerance, and from the ratio of this length to the one before with the
+/// error there: the constant of the error goes on to change as it did (Gustafsson 1994, doi:10.1145/198429.198437).
+pub(crate) fn growth(share: f64, power: i32, before: Option<(f64, f64)>) -> f64 {
+    if share <= 0.0 {
+        return 4.0;
+    }
+    let own = 0.9 * share.powf(-1.0 / f64::from(power));
+    before.map_or(own, |(ratio, earlier)| {
+        own.min(0.9 * ratio * (earlier / (share * share)).powf(0.2))
+    })
+}

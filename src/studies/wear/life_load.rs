@@ -1,0 +1,206 @@
+//! The load, when new, with which the largest amplitude over a life is least.
+//!
+//! Loads above the best one of a new machine make it worse at first and better as they wear; loads below make it worse with wear. So the
+//! largest amplitude over the life, as a function of a factor on the loads, has its minimum as a rule where the new and the worn machine
+//! vibrate alike: a corner, found as a root. Otherwise the minimum is smooth, and found by golden sections.
+
+use crate::error::{Error, Result, Status, fail, try_push};
+use crate::hooks::{Hooks, Progress};
+use crate::model::Model;
+use crate::options::{LifeOptions, SolverOptions};
+use crate::studies::wear::life::{Life, life};
+
+/// Lives over the range of factors that find the neighbourhood of the minimum.
+/// Kind: tuned; measured on: not recorded.
+const SCANNED_LIVES: usize = 9;
+
+/// Most lives after that.
+/// Kind: cap.
+const LIVES_TO_CLOSE: usize = 60;
+
+/// Relative accuracy of the factor.
+/// Kind: rounding.
+const FACTOR_ACCURACY: f64 = 1e-7;
+
+/// The best loads for a life.
+#[derive(Clone, Copy, Debug)]
+pub struct BestLoad {
+    /// Factor on the loads of the contacts that wear.
+    pub factor: f64,
+    /// Largest amplitude over the life with it.
+    pub amplitude: f64,
+    /// Amplitude when new.
+    pub new: f64,
+    /// Amplitude at the end.
+    pub worn: f64,
+    /// Lives that were followed.
+    pub lives: usize,
+}
+
+/// A life with a factor on its loads.
+#[derive(Clone, Copy)]
+struct Tried {
+    factor: f64,
+    largest: f64,
+    ends: (f64, f64),
+}
+
+impl Tried {
+    /// Above 0 where the new machine vibrates more than the worn one.
+    fn difference(&self) -> f64 {
+        self.ends.0 - self.ends.1
+    }
+}
+
+/// Searches within a range of factors on the loads of the contacts that wear, as the model has them, for the one with which the largest
+/// amplitude over the life is least. It is the lowest of the minima that nine lives over the range show.
+///
+/// # Errors
+/// `Argument` for the range; those of [`life`]; the status of a life that ended early; `StoppedByCaller`.
+pub fn best_load_for_life(
+    model: &Model,
+    solver: &SolverOptions,
+    options: &LifeOptions<'_>,
+    (low, high): (f64, f64),
+    hooks: &mut Hooks<'_>,
+) -> Result<BestLoad> {
+    if !(low.is_finite() && high.is_finite() && low > 0.0 && high > low) {
+        return fail!(Argument, "factors {low} .. {high}, needs 0 < low < high, both finite");
+    }
+    options.check(model)?;
+    let mut search = Search {
+        model,
+        solver: *solver,
+        options,
+        lives: 0,
+    };
+    let mut scan: Vec<Tried> = Vec::new();
+    for i in 0..SCANNED_LIVES {
+        let share = i as f64 / (SCANNED_LIVES - 1) as f64;
+        let tried = search.with((low.ln() + share * (high / low).ln()).exp(), hooks)?;
+        try_push(&mut scan, tried, "the lives")?;
+    }
+    let best = (0..scan.len()).fold(0, |a, b| if scan[b].largest < scan[a].largest { b } else { a });
+    let mut found = scan[best];
+    let (a, b) = (scan[best.saturating_sub(1)], scan[(best + 1).min(scan.len() - 1)]);
+    for (a, b) in [(a, found), (found, b)] {
+        if a.difference() < 0.0 && b.difference() > 0.0 {
+            let corner = search.corner(a, b, hooks)?;
+            if corner.largest < found.largest {
+                found = corner;
+            }
+        }
+    }
+    let smooth = search.smooth((a.factor, b.factor), found, hooks)?;
+    if smooth.largest < found.largest {
+        found = smooth;
+    }
+    Ok(BestLoad {
+        factor: found.factor,
+        amplitude: found.largest,
+        new: found.ends.0,
+        worn: found.ends.1,
+        lives: search.lives,
+    })
+}
+
+struct Search<'a> {
+    model: &'a Model,
+    solver: SolverOptions,
+    options: &'a LifeOptions<'a>,
+    lives: usize,
+}
+
+impl Search<'_> {
+    fn with(&mut self, factor: f64, hooks: &mut Hooks<'_>) -> Result<Tried> {
+        let mut model = self.model.separate_clone()?;
+        for wear in self.options.wear {
+            let load = self.model.contacts()[wear.contact].load();
+            model.set_worn_load(wear.contact, factor * load)?;
+        }
+        let mut quiet = hooks.quiet();
+        let found: Life = life(&model, &self.solver, self.options, &mut quiet)?;
+        if found.status != Status::Ok {
+            return Err(found
+                .reason
+                .unwrap_or_else(|| Error::new(found.status, format_args!("a life ended early"))));
+        }
+        self.lives += 1;
+        let progress = Progress {
+            point: self.lives,
+            parameter: factor,
+            amplitude: found.largest.0,
+            ..Progress::default()
+        };
+        if hooks.report(&progress) {
+            return fail!(StoppedByCaller, "stopped by the caller after {} lives", self.lives);
+        }
+        Ok(Tried {
+            factor,
+            largest: found.largest.0,
+            ends: found.ends,
+        })
+    }
+
+    /// The factor at which the new and the worn machine vibrate alike: regula falsi, with the end that stays halved in weight.
+    fn corner(&mut self, mut a: Tried, mut b: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
+        let (mut fa, mut fb) = (a.difference(), b.difference());
+        for _ in 0..LIVES_TO_CLOSE {
+            let share = fa / (fa - fb);
+            let middle = self.with(a.factor + share * (b.factor - a.factor), hooks)?;
+            let difference = middle.difference();
+            if difference < 0.0 {
+                (a, fa, fb) = (middle, difference, 0.5 * fb);
+            } else {
+                (b, fb, fa) = (middle, difference, 0.5 * fa);
+            }
+            if b.factor - a.factor <= FACTOR_ACCURACY * b.factor || difference.abs() <= FACTOR_ACCURACY * middle.largest
+            {
+                return Ok(middle);
+            }
+        }
+        Ok(if a.largest < b.largest { a } else { b })
+    }
+
+    /// Golden sections of the largest amplitude, as long as they may find less than a known one.
+    fn smooth(&mut self, (mut low, mut high): (f64, f64), known: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let mut found = known;
+        // Inside of the bracket the known one may be the corner itself: both neighbours at a small distance decide.
+        for side in [-1.0, 1.0] {
+            let at = known.factor * (1.0 + side * 1e-4);
+            if at <= low || at >= high {
+                continue;
+            }
+            let near = self.with(at, hooks)?;
+            if near.largest < found.largest {
+                found = near;
+            }
+        }
+        if found.factor.to_bits() == known.factor.to_bits() && known.factor > low && known.factor < high {
+            return Ok(known);
+        }
+        let mut inner = [high - golden * (high - low), low + golden * (high - low)];
+        let mut tried = [self.with(inner[0], hooks)?, self.with(inner[1], hooks)?];
+        for _ in 0..LIVES_TO_CLOSE {
+            if high - low <= FACTOR_ACCURACY.sqrt() * high {
+                break;
+            }
+            if tried[0].largest < tried[1].largest {
+                high = inner[1];
+                inner = [high - golden * (high - low), inner[0]];
+                tried = [self.with(inner[0], hooks)?, tried[0]];
+            } else {
+                low = inner[0];
+                inner = [inner[1], low + golden * (high - low)];
+                tried = [tried[1], self.with(inner[1], hooks)?];
+            }
+        }
+        for one in tried {
+            if one.largest < found.largest {
+                found = one;
+            }
+        }
+        Ok(found)
+    }
+}
