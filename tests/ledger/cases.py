@@ -39,10 +39,12 @@ CASES = {}
 
 
 def curve(branch):
-    """Status, peaks and folds of a curve."""
-    found = [branch.status.name]
-    for points in (branch.peaks(), branch.folds()):
-        found += [len(points.omega), *points.omega, *points.amplitude]
+    """Status, highest peak and folds of a curve. Low peaks next to a fold are found or not as its steps fall."""
+    peaks, folds = branch.peaks(), branch.folds()
+    found = [branch.status.name, len(folds.omega), *folds.omega, *folds.amplitude]
+    if len(peaks.omega):
+        highest = int(np.argmax(peaks.amplitude))
+        found += [peaks.omega[highest], peaks.amplitude[highest]]
     return found
 
 
