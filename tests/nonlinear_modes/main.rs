@@ -13,6 +13,7 @@ mod mode_branches;
 mod mode_closed_forms;
 mod mode_conservative;
 mod mode_decay;
+mod mode_few_dampers;
 mod mode_forced;
 mod mode_linear_range;
 mod mode_range;

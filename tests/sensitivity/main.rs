@@ -16,6 +16,7 @@ mod fit_of_responses;
 mod fit_profiles;
 mod fit_uncertainty;
 mod life;
+mod life_of_varying_load;
 mod life_patch;
 mod ring_damper_preload;
 mod sampled_curves;

@@ -3,8 +3,9 @@
 //!
 //! With x = Φ ξ, the rows E = BΦ and the denominators d = a − b μ (see [`crate::condense::by_modes::sum_terms`]) the equations of a harmonic are
 //!
-//! > (diag(d) − Eᴴ e E) ξ = Eᴴ w,  a = 1 + i(νβ + η),  b = ν² − iνα,  e = (a − 1) k − i Im κ.
+//! > (diag(d) − Eᴴ e E) ξ = Eᴴ w,  a = 1 + i(νβ + η),  b = ν² − iνα,  e = (a − 1) k − i Im κ,
 //!
+//! and e = −iν for the directions of damping beside αM + βK.
 //! The artificial damping adds 2ihDω² to b (mass type), or −2ihD to a (stiffness type): the modes stay, their denominators follow D. The
 //! flexibility is made as in [`crate::condense::by_modes::modal_table`], with the low-rank term of [`crate::condense::by_modes::low_rank`]: X are the motions of
 //! B under unit forces, G its rows of the contacts. The rest takes vectors alone:
@@ -79,11 +80,12 @@ pub(crate) struct SumWork {
     turned: Vec<Complex64>,
 }
 
-/// a and b or their derivatives by one variable.
+/// a, b and iν of the directions of other damping, or their derivatives by one variable.
 #[derive(Clone, Copy)]
 struct Pair {
     a: Complex64,
     b: Complex64,
+    i_nu: Complex64,
 }
 
 impl SumWork {
@@ -95,7 +97,7 @@ impl SumWork {
 
 impl ModeSums {
     /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None`
-    /// where these belong to poles, which would follow the damping ratio, or to a wave with dampers.
+    /// where these belong to poles, which would follow the damping ratio.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -103,15 +105,12 @@ impl ModeSums {
         let Source::Modes(modes) = rows.source() else {
             return Ok(None);
         };
-        if !modes.dampers.is_empty() {
-            return Ok(None);
-        }
         let modes = Arc::clone(modes);
         let block = &condensed.blocks()[i];
         let is_mass_type = matches!(block.artificial, Artificial::Mass);
         let is_damped = modes.is_damped_by_stiffness() || !is_mass_type;
         Ok(Some(Self {
-            coefficients: Coefficients::new(condensed, i, (rows.springs(), 0), is_damped)?,
+            coefficients: Coefficients::new(condensed, i, (rows.springs(), rows.dampers().len()), is_damped)?,
             number: block.number as f64,
             longest_row: longest_row(&modes),
             is_mass_type,
@@ -257,7 +256,7 @@ impl ModeSums {
         }
     }
 
-    /// a and b, and their derivatives by ω and D.
+    /// a, b and iν, and their derivatives by ω and D.
     fn pairs(&self, omega: f64, damping: f64) -> [Pair; 3] {
         let (h, (alpha, beta)) = (self.number, self.modes.proportional);
         let nu = h * omega;
@@ -267,14 +266,17 @@ impl ModeSums {
             Pair {
                 a: Complex64::new(1.0, nu * beta + self.modes.loss_factor - 2.0 * stiffness * h * damping),
                 b: Complex64::new(nu * nu, 2.0 * mass * h * damping * omega * omega - nu * alpha),
+                i_nu: imaginary(nu),
             },
             Pair {
                 a: imaginary(h * beta),
                 b: Complex64::new(2.0 * h * nu, h * (4.0 * mass * damping * omega - alpha)),
+                i_nu: imaginary(h),
             },
             Pair {
                 a: imaginary(-2.0 * stiffness * h),
                 b: imaginary(2.0 * mass * h * omega * omega),
+                i_nu: Complex64::ZERO,
             },
         ]
     }
@@ -378,8 +380,12 @@ impl ModeSums {
         let (rows, of) = (self.rows.count(), &self.coefficients);
         work.force.fill(Complex64::ZERO);
         if of.counts {
+            let factors = Factors {
+                c: slope.a,
+                i_nu: slope.i_nu,
+            };
             for b in 0..of.len() {
-                work.force[of.row_of(b)] = of.d_entry(b, Factors::of_stiffness(slope.a)) * work.seen[of.row_of(b)];
+                work.force[of.row_of(b)] = of.d_entry(b, factors) * work.seen[of.row_of(b)];
             }
         }
         let rate = &mut work.rates[variable];
@@ -437,6 +443,7 @@ impl Pair {
     const ZERO: Self = Self {
         a: Complex64::ZERO,
         b: Complex64::ZERO,
+        i_nu: Complex64::ZERO,
     };
 }
 
@@ -460,7 +467,7 @@ fn denominator(at: Pair, slope: Pair) -> Denominator {
         d_a: slope.a,
         b: at.b,
         d_b: slope.b,
-        i_nu: Complex64::ZERO,
-        d_i_nu: Complex64::ZERO,
+        i_nu: at.i_nu,
+        d_i_nu: slope.i_nu,
     }
 }

@@ -147,6 +147,12 @@ impl WaveCache {
         }
         if condensed.ndof() < POLES_FROM {
             self.without_poles = Some(FlexibilityWay::Few);
+        } else if !matches!(block.artificial, Artificial::None) {
+            // Poles would follow the damping ratio of a nonlinear mode; directions of damping do not.
+            let found = self.with_dampers((model, condensed, i), FlexibilityWay::SingleFrequency, interrupt)?;
+            if found.is_ok() {
+                return Ok(found);
+            }
         }
         if let Some(reason) = self.without_poles {
             return self.with_dampers((model, condensed, i), reason, interrupt);
@@ -172,8 +178,7 @@ impl WaveCache {
         reason: FlexibilityWay,
         interrupt: &Interrupt<'_>,
     ) -> Result<Found> {
-        let block = &at.1.blocks()[at.2];
-        if self.has_many_dampers || reason == FlexibilityWay::Few || !matches!(block.artificial, Artificial::None) {
+        if self.has_many_dampers || reason == FlexibilityWay::Few {
             return Ok(Err(reason));
         }
         if let Some(modes) = self.modes(at, true, interrupt)? {

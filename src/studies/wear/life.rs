@@ -36,6 +36,10 @@ const LIFE_STEP_SHARE: f64 = 0.5;
 /// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_JUMP: f64 = 0.15;
 
+/// Steps in turn that may be refused.
+/// Kind: cap; halves of a life down to the length of a jump are 60.
+const LIFE_TRIES: usize = 200;
+
 /// Halvings of a step that fails.
 /// Kind: cap.
 const LIFE_HALVINGS: usize = 40;
@@ -189,6 +193,8 @@ impl Walk<'_> {
         let mut last: Option<LifeStep> = None;
         let mut delta = self.first_length(&at, end);
         let mut halvings = 0;
+        // Steps in turn that were not taken, and the number of those that were, when the first of them was tried.
+        let (mut tries, mut taken) = (0, 0);
         // The event that lies ahead, once a step has met it, and the cycles at which the motion seems another one.
         let mut met: Option<f64> = None;
         let mut broken: Option<(f64, Doubt)> = None;
@@ -201,6 +207,17 @@ impl Walk<'_> {
                 return Err(Error::new(
                     Status::StoppedMaxPoints,
                     format_args!("the life has {} steps at {} of {end} cycles", self.found.steps, at.n),
+                ));
+            }
+            tries = if self.found.steps == taken { tries + 1 } else { 0 };
+            taken = self.found.steps;
+            if tries > LIFE_TRIES {
+                return Err(Error::new(
+                    Status::StoppedStepTooSmall,
+                    format_args!(
+                        "the life does not go on at {} cycles after {LIFE_TRIES} steps that were refused",
+                        at.n
+                    ),
                 ));
             }
             let rest = end - at.n;
@@ -233,7 +250,7 @@ impl Walk<'_> {
                 Ok(Taken::Step(step)) => step,
                 Ok(Taken::Refused(share)) => {
                     delta = length * (0.9 * share.powf(-0.2)).clamp(0.1, 0.9);
-                    broken = self.too_short(&at, length).or(broken);
+                    broken = self.too_short(&at, length).or(Doubt::too_long(broken));
                     continue;
                 }
                 Ok(Taken::Broken) => {
@@ -271,7 +288,7 @@ impl Walk<'_> {
             let share = error / tolerance;
             if share > 1.0 {
                 delta = length * growth(share, power, None).clamp(0.1, 0.9);
-                broken = self.too_short(&at, length).or(broken);
+                broken = self.too_short(&at, length).or(Doubt::too_long(broken));
                 continue;
             }
             halvings = 0;

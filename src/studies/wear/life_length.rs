@@ -20,6 +20,14 @@ impl Doubt {
         }
     }
 
+    /// The doubt where a step was too long for its error: no other step goes as far as the one that was tried.
+    pub fn too_long(doubt: Option<(f64, Self)>) -> Option<(f64, Self)> {
+        doubt.map(|(other, doubt)| match doubt {
+            Self::Rest => (other, Self::Half),
+            doubt => (other, doubt),
+        })
+    }
+
     /// The doubt about a motion at cycles `other` after a step to `n`.
     pub fn after(self, other: f64, n: f64) -> Option<(f64, Self)> {
         let doubt = match self {
