@@ -19,6 +19,7 @@ import os
 import pickle
 import random
 import resource
+import shutil
 import signal
 import struct
 import sys
@@ -139,9 +140,10 @@ def known():
         return {line.split()[0] for line in file if line.strip() and not line.startswith("#")}
 
 
-def prepared(folder):
-    """The library of the copy, and the index of each number in it."""
-    if not os.path.exists(os.path.join(folder, "numbers.json")):
+def prepared(folder, keep):
+    """The library of the copy, and the index of each number in it; an earlier copy may be kept."""
+    if not keep or not os.path.exists(os.path.join(folder, "numbers.json")):
+        shutil.rmtree(folder, ignore_errors=True)
         instrument.copy(folder)
     library = instrument.build(folder)
     with open(os.path.join(folder, "numbers.json"), encoding="utf-8") as file:
@@ -151,6 +153,7 @@ def prepared(folder):
 def main():
     parser = argparse.ArgumentParser(description="Changes tuned numbers and compares answers and cost.")
     parser.add_argument("--folder", default=os.path.join(HERE, "../../target/ledger/source"), help="of the copy of the sources")
+    parser.add_argument("--keep", action="store_true", help="use the copy of an earlier run, whatever changed since")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="some numbers")
     parser.add_argument("--rooms", nargs="+", metavar="ROOM", help="the numbers of some rooms")
     parser.add_argument("--sample", type=int, help="as many numbers, drawn at random")
@@ -158,7 +161,7 @@ def main():
     given = parser.parse_args()
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ[name] = "1"
-    library, ledger = prepared(os.path.abspath(given.folder))
+    library, ledger = prepared(os.path.abspath(given.folder), given.keep)
     os.environ["HBVIB_LIBRARY"] = library
     import cases
 
