@@ -18,13 +18,20 @@ mod chains;
 mod counting;
 #[path = "../../examples/support/cpu_time.rs"]
 mod cpu_time;
+mod fe_sector;
 mod many;
+#[path = "../../examples/support/matrix_market.rs"]
+mod matrix_market;
 #[path = "../../examples/ring_damper/model.rs"]
 #[allow(dead_code, reason = "only the model is used here")]
 mod model;
 #[path = "../../examples/support/plate.rs"]
 mod plate;
+#[path = "../../examples/fe_sector/sector.rs"]
+mod sector;
 mod small;
+#[path = "../../examples/support/table.rs"]
+mod table;
 
 use calibration::Unit;
 use cpu_time::cpu_seconds;
@@ -177,7 +184,8 @@ fn main() -> ExitCode {
         .iter()
         .chain(blade_and_ring::ROWS)
         .chain(chains::ROWS)
-        .chain(many::ROWS);
+        .chain(many::ROWS)
+        .chain(fe_sector::ROWS);
     let mut refused = 0;
     for row in rows.filter(|row| wanted.is_empty() || wanted.iter().any(|w| row.name.contains(w.as_str()))) {
         match compare(row) {

@@ -61,7 +61,8 @@ pub struct FrequencyCache {
     is_stiff: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
     constant: Vec<bool>,
-    /// Per harmonic, whether its table has the slopes of the response degree of freedom only, and whether it is from modes.
+    /// Per harmonic, whether its table lacks slopes, but for those of the response degree of freedom where it is by factorisation, and
+    /// whether it is from modes.
     lacks_slopes: Vec<bool>,
     is_modal: Vec<bool>,
     /// Frequency of the current tables, how they were made, and whether with the columns of the contacts.
@@ -188,10 +189,16 @@ impl FrequencyCache {
         &self.current
     }
 
-    /// Whether the table of some harmonic has the slopes of the response degree of freedom only.
+    /// Whether the table of some harmonic lacks slopes.
     #[must_use]
     pub fn lacks_slopes(&self) -> bool {
         self.lacks_slopes.contains(&true)
+    }
+
+    /// Whether that of the i-th harmonic lacks those of the response too, which are then found along a motion with the others.
+    #[must_use]
+    pub fn lacks_slopes_of_response(&self, i: usize) -> bool {
+        self.lacks_slopes[i] && self.is_modal[i]
     }
 
     /// The derivative by the frequency of the motions of the i-th harmonic under contact forces that do not change, where its table
@@ -259,23 +266,17 @@ impl FrequencyCache {
             self.tabulated = Some((omega, self.way, true));
             return Ok(());
         }
-        let workspace = &mut self.workspace;
         let may_lack = !condensed.has_exchanges();
-        let of_modes = match self.modal_slopes {
-            false => Slopes::None,
-            true if may_lack && condensed.coordinates() > ALL_MODAL_SLOPES_UP_TO => Slopes::OfResponse,
-            true => Slopes::All,
-        };
-        // A large structure takes its sums where a small one is factorised: they have as many digits, and cost less.
-        let exactly =
-            self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff;
+        let keeps = self.modal_slopes && has_slopes_along(condensed);
+        let of_modes = self.modal_slopes && !keeps;
+        let exactly = self.takes_factors(condensed);
+        let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {
                 continue;
             }
             let block = &condensed.blocks()[i];
             if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
-                && let keeps = of_modes == Slopes::OfResponse
                 && let work = &mut self.modal_work[if keeps { i } else { 0 }]
                 && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
@@ -304,16 +305,28 @@ impl FrequencyCache {
         Ok(())
     }
 
-    /// The tables by factorisation with the column of the excitation alone.
+    /// Whether tables are by factorisation where they may be sums. A large structure takes its sums where a small one is factorised: they
+    /// have as many digits, and cost less.
+    fn takes_factors(&self, condensed: &Condensed) -> bool {
+        self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff
+    }
+
+    /// The tables with the column of the excitation alone: sums where they serve, else by factorisation.
     fn tabulate_excited(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
+        let exactly = self.takes_factors(condensed);
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {
                 continue;
             }
             interrupt.check()?;
+            (self.lacks_slopes[i], self.is_modal[i]) = (false, false);
+            if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
+                && modal.evaluate_excited(omega, &mut self.modal_work[0], table, interrupt)?
+            {
+                continue;
+            }
             self.workspace
                 .tabulate_excited(condensed, (i, omega), table, interrupt)?;
-            (self.lacks_slopes[i], self.is_modal[i]) = (false, false);
         }
         self.tabulated = Some((omega, self.way, false));
         Ok(())
@@ -349,6 +362,31 @@ fn of_wave(
     Ok(Some((modal, worst)))
 }
 
+/// Whether tables from modes have slopes along a motion alone.
+fn has_slopes_along(condensed: &Condensed) -> bool {
+    !condensed.has_exchanges() && condensed.coordinates() > ALL_MODAL_SLOPES_UP_TO
+}
+
+/// Whether the slopes along a motion that a table from modes has at a frequency, evaluated last, are those of a factorisation.
+fn agree_along(
+    modal: &ModalTable,
+    (condensed, i, omega): (&Condensed, usize, f64),
+    (work, workspace): (&mut ModalWork, &mut Workspace),
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let coordinates = condensed.coordinates();
+    let mut forces = Vec::new();
+    for c in 0..coordinates {
+        // Forces of all phases move every mode.
+        try_push(&mut forces, Complex64::cis(c as f64), CONTEXT)?;
+    }
+    let zeros = || try_vec(coordinates + 1, Complex64::ZERO, CONTEXT);
+    let (mut by_modes, mut exact) = (zeros()?, zeros()?);
+    modal.slope_along(omega, work, &forces, &mut by_modes);
+    workspace.slope_along(condensed, (i, omega), &forces, &mut exact, interrupt)?;
+    Ok(worst_column(&by_modes, &exact, coordinates + 1).1 <= OF_SLOPES)
+}
+
 /// The error of a factorisation at a frequency, 0 where it need not be known; `None` where a table from modes does not agree with it, in
 /// its slope too where that is to be checked: then nothing more of it is.
 fn agreement(
@@ -359,8 +397,14 @@ fn agreement(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<f64>> {
     let outputs = condensed.coordinates() + 1;
-    let slopes = if *checks_slope { Slopes::All } else { Slopes::None };
-    if !modal.evaluate((omega, slopes), work, table, interrupt)? {
+    if *checks_slope && has_slopes_along(condensed) {
+        if !modal.evaluate((omega, false), work, table, interrupt)? {
+            return Ok(Some(0.0));
+        }
+        // Where they do not agree along a motion, the whole table shows which is right.
+        *checks_slope = !agree_along(modal, (condensed, i, omega), (work, workspace), interrupt)?;
+    }
+    if !modal.evaluate((omega, *checks_slope), work, table, interrupt)? {
         return Ok(Some(0.0));
     }
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;

@@ -261,8 +261,10 @@ impl Corrector {
                 }
                 return self.finish(problem, v, metric, (iteration, foreseen.unwrap_or(residual)));
             }
-            // Where a near-rigid contact begins to close, the residual falls while small steps are dominated by rounding.
-            let falls = self.at.rounding > 0.0 && near && residual < 0.5 * last[0];
+            // Where a near-rigid contact begins to close, the residual falls while small steps are dominated by rounding. A step found by
+            // iteration leaves a share of the residual, which near a singular matrix is a long step.
+            let may_grow = !self.system.is_direct() || (self.at.rounding > 0.0 && near);
+            let falls = may_grow && residual < 0.5 * last[0];
             if iteration == self.max_iterations || (!damped && size > last_size && !falls) {
                 break;
             }

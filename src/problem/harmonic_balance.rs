@@ -340,7 +340,12 @@ impl<'a> HarmonicBalance<'a> {
         };
         let excited = coordinates * outputs + coordinates;
         let mut z = table.value[excited];
-        let mut dz = rate(table.slope[excited]);
+        // Tables without slopes have that of the response along the motion, from the last residual.
+        let along = self.tables.lacks_slopes_of_response(i);
+        let mut dz = match path {
+            None if along => rate(self.along.get(i * outputs + coordinates).copied().unwrap_or_default()),
+            _ => rate(table.slope[excited]),
+        };
         for c in (0..coordinates).filter(|&c| !self.forces.is_inactive(c)) {
             let w = self.forces.minus_reference(u, c, i);
             let g = table.value[c * outputs + coordinates];

@@ -166,11 +166,6 @@ impl LowRank {
         self.lu.solve(z);
     }
 
-    /// Replaces a row z of B by z (1 − G′ e)⁻¹, after [`Self::add`].
-    pub fn solve_row(&self, z: &mut [Complex64]) {
-        self.lu.solve_transposed(z);
-    }
-
     /// Adds the term to a table that holds T′, and to its slope if `slopes`.
     ///
     /// # Errors
@@ -186,7 +181,7 @@ impl LowRank {
         if !of.counts || self.order() == 0 {
             return Ok(());
         }
-        self.solve(of, plain, at, interrupt)?;
+        self.solve(of, plain, at, 0, interrupt)?;
         self.copy_rows(&self.inner, &mut table.value);
         self.add_response(of, (plain.value, plain.rows), &self.force, &mut table.value);
         if slopes {
@@ -208,8 +203,38 @@ impl LowRank {
         Ok(())
     }
 
-    /// X and e X
-    fn solve(&mut self, of: &Coefficients, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
+    /// Adds the term to the column of the excitation alone, which holds that of T′; [`Self::force`] and [`Self::inner`] have no other one
+    /// then.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_excited(
+        &mut self,
+        of: &Coefficients,
+        plain: &Plain<'_>,
+        at: Frequency,
+        column: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if !of.counts || self.order() == 0 {
+            return Ok(());
+        }
+        self.solve(of, plain, at, self.coordinates, interrupt)?;
+        let from = self.coordinates * self.order();
+        self.copy_rows(&self.inner[from..], column);
+        self.add_response(of, (plain.value, plain.rows), &self.force[from..], column);
+        Ok(())
+    }
+
+    /// X and e X of the columns from one on.
+    fn solve(
+        &mut self,
+        of: &Coefficients,
+        plain: &Plain<'_>,
+        at: Frequency,
+        first: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
         for q in 0..order {
             let (e, from) = (of.entry(q, at.at), of.row_of(q) * rows);
@@ -219,13 +244,15 @@ impl LowRank {
             }
         }
         self.lu.factor(interrupt)?;
-        for (k, from) in plain.value.chunks_exact(rows).take(self.coordinates + 1).enumerate() {
+        let columns = plain.value.chunks_exact(rows).take(self.coordinates + 1);
+        for (k, from) in columns.enumerate().skip(first) {
             for p in 0..order {
                 self.inner[k * order + p] = from[of.row_of(p)];
             }
         }
-        self.lu.solve_columns(&mut self.inner, false, interrupt)?;
-        for k in 0..=self.coordinates {
+        self.lu
+            .solve_columns(&mut self.inner[first * order..], false, interrupt)?;
+        for k in first..=self.coordinates {
             for p in 0..order {
                 self.force[k * order + p] = of.entry(p, at.at) * self.inner[k * order + p];
             }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::condense::Reference;
-use crate::condense::by_factors::flexibility::{Slopes, Table, Workspace};
+use crate::condense::by_factors::flexibility::{Table, Workspace};
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
 use crate::condense::by_modes::wave_cache::WaveCache;
 use crate::contact::Contact;
@@ -59,7 +59,7 @@ fn a_series_over_the_stiff_modes_is_the_sum_within_its_tolerance() {
             for omega in [0.01, 0.03, 0.1, 0.2, 0.35] {
                 assert!(
                     by_series
-                        .evaluate((omega, Slopes::None), &mut work, &mut found, &interrupt)
+                        .evaluate((omega, false), &mut work, &mut found, &interrupt)
                         .unwrap()
                 );
                 let exact = &direct.evaluate(&condensed, i, omega, false, &interrupt).unwrap().value;

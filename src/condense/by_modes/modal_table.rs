@@ -4,7 +4,7 @@
 //! T′ = L d⁻¹ Rᴴ, the excitation in place of the response among the inputs, and the low-rank term of `condense::low_rank`.
 
 use crate::condense::Condensed;
-use crate::condense::by_factors::flexibility::{Slopes, Table};
+use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::low_rank::{Coefficients, LowRank, Plain};
 use crate::condense::by_modes::modal_rows::{ModalRows, terms_within};
 use crate::condense::by_modes::single_contact::{Denominators, SingleContact};
@@ -153,14 +153,14 @@ impl ModalTable {
         Arc::clone(&self.rows)
     }
 
-    /// Evaluates H at `omega`, and of ∂H/∂ω what `slopes` says; `false` so near a resonance of the structure with stuck contacts that
+    /// Evaluates H at `omega`, and ∂H/∂ω if `slopes`, without which [`Self::slope_along`] has it along a motion; `false` so near a resonance of the structure with stuck contacts that
     /// digits would be lost.
     ///
     /// # Errors
     /// `Singular` at an undamped resonance; `StoppedByCaller`.
     pub fn evaluate(
         &self,
-        (omega, slopes): (f64, Slopes),
+        (omega, slopes): (f64, bool),
         work: &mut ModalWork,
         table: &mut Table,
         interrupt: &Interrupt<'_>,
@@ -191,11 +191,8 @@ impl ModalTable {
                 .invert((at, nu, near), &mut work.inverse, &mut work.slopes);
             if is_clear {
                 interrupt.check_before((4 * work.weighted.len() * self.rows.count()) as u64)?;
-                self.sum(work, (at, omega), slopes == Slopes::All)?;
-                self.complete(work, (frequency, slopes == Slopes::All), table, interrupt)?;
-                if slopes == Slopes::OfResponse {
-                    self.fill_slopes_of_response(work, (at, omega), table);
-                }
+                self.sum(work, (at, omega), slopes)?;
+                self.complete(work, (frequency, slopes), table, interrupt)?;
             }
             is_clear
         };
@@ -203,6 +200,49 @@ impl ModalTable {
             check_finite(&table.value, omega)?;
         }
         Ok(is_clear)
+    }
+
+    /// The column of the excitation of H and of ∂H/∂ω at `omega`, the others being zero; `false` as [`Self::evaluate`] says.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn evaluate_excited(
+        &self,
+        omega: f64,
+        work: &mut ModalWork,
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
+        let (at, nu) = (self.denominator(omega), self.number * omega);
+        let of_work = work.of(self)?;
+        let memory = (&mut of_work.inverse, &mut of_work.slopes);
+        let is_clear = self.rows.source().invert((at, nu, NEAR_RESONANCE), memory.0, memory.1);
+        if !is_clear {
+            return Ok(false);
+        }
+        if self.coefficients.counts {
+            interrupt.check_before((4 * of_work.weighted.len() * rows) as u64)?;
+            self.sum(of_work, (at, omega), false)?;
+        } else {
+            self.excite(of_work, omega, false);
+        }
+        table.value.fill(Complex64::ZERO);
+        table.slope.fill(Complex64::ZERO);
+        let first = coordinates * (coordinates + 1);
+        let column = &mut table.value[first..];
+        column.copy_from_slice(&of_work.plain[coordinates * rows..][..=coordinates]);
+        let plain = Plain {
+            value: &of_work.plain,
+            slope: &[],
+            rows,
+        };
+        of_work
+            .low_rank
+            .add_excited(&self.coefficients, &plain, at.frequency(), column, interrupt)?;
+        self.slope_along(omega, work, &[], &mut table.slope[first..]);
+        check_finite(&table.value[first..], omega)?;
+        Ok(true)
     }
 
     pub(crate) fn denominator(&self, omega: f64) -> Denominator {

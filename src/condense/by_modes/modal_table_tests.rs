@@ -44,7 +44,7 @@ fn tables_from_modes_are_those_by_factorisation() {
                 let mut work = ModalWork::default();
                 let mut table = Table::new(condensed.coordinates()).unwrap();
                 for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
-                    let found = by_modes.evaluate((omega, Slopes::All), &mut work, &mut table, &Interrupt::none());
+                    let found = by_modes.evaluate((omega, true), &mut work, &mut table, &Interrupt::none());
                     assert!(found.unwrap(), "{sectors} sectors, {damping:?}, block {i} at {omega}");
                     let exact = direct.evaluate(&condensed, i, omega, true, &Interrupt::none()).unwrap();
                     let size = |z: &[Complex64]| z.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
@@ -90,7 +90,7 @@ fn shared_rows_of_waves_with_the_same_real_matrices_are_their_own() {
             let work = &mut ModalWork::default();
             assert!(
                 by_modes
-                    .evaluate((0.9, Slopes::None), work, &mut table, &Interrupt::none())
+                    .evaluate((0.9, false), work, &mut table, &Interrupt::none())
                     .unwrap()
             );
             let exact = direct.evaluate(&condensed, i, 0.9, false, &Interrupt::none()).unwrap();
@@ -122,7 +122,7 @@ fn the_table_of_a_single_contact_is_that_by_factorisation() {
                 for omega in [0.05, 0.4, 1.3, 9.0] {
                     assert!(
                         by_modes
-                            .evaluate((omega, Slopes::All), &mut work, &mut table, &Interrupt::none())
+                            .evaluate((omega, true), &mut work, &mut table, &Interrupt::none())
                             .unwrap()
                     );
                     let exact = direct.evaluate(&condensed, i, omega, true, &Interrupt::none()).unwrap();
@@ -151,12 +151,7 @@ fn near_a_resonance_of_the_stuck_structure_nothing_is_told_that_lost_its_digits(
     let mut work = ModalWork::default();
     let mut table = Table::new(condensed.coordinates()).unwrap();
     for (factor, clear) in [(1.0, false), (1.0 + 1e-7, false), (1.01, true)] {
-        let found = by_modes.evaluate(
-            (factor * resonance, Slopes::All),
-            &mut work,
-            &mut table,
-            &Interrupt::none(),
-        );
+        let found = by_modes.evaluate((factor * resonance, true), &mut work, &mut table, &Interrupt::none());
         assert_eq!(found.unwrap(), clear, "{factor}");
     }
 }

@@ -22,9 +22,9 @@ use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_columns;
-use crate::linalg::{dot, expand, inner};
+use crate::linalg::dense::complex_columns::multiply_adjoint;
+use crate::linalg::{expand, inner};
 use num_complex::Complex64;
-use pulp::bytemuck::cast_slice;
 use std::sync::Arc;
 
 const CONTEXT: &str = "the flexibility of a mode";
@@ -415,27 +415,6 @@ impl ModeSums {
         } else {
             relative.copy_from_slice(&work.force[..relative.len()]);
         }
-    }
-}
-
-/// out = Eᴴ f for the rows E, mode after mode; `turned` is memory for −i f.
-pub(crate) fn multiply_adjoint(
-    left: &[Complex64],
-    force: &[Complex64],
-    turned: &mut [Complex64],
-    out: &mut [Complex64],
-) {
-    for (to, f) in turned.iter_mut().zip(force) {
-        *to = Complex64::new(f.im, -f.re);
-    }
-    // The products of numbers as they lie in memory: Re a* f, and Im a* f with f turned.
-    let (force, turned) = (
-        cast_slice::<Complex64, f64>(force),
-        cast_slice::<Complex64, f64>(turned),
-    );
-    for (out, left) in out.iter_mut().zip(left.chunks_exact((force.len() / 2).max(1))) {
-        let left = cast_slice::<Complex64, f64>(left);
-        *out = Complex64::new(dot(left, force), dot(left, turned));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::condense::Reference;
-use crate::condense::by_factors::flexibility::{Slopes, Table, Workspace};
+use crate::condense::by_factors::flexibility::{Table, Workspace};
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::modal_slopes::tests::assert_slopes;
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
@@ -73,7 +73,7 @@ fn check(model: &Model, reference: Reference) -> usize {
         for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
             assert!(
                 by_poles
-                    .evaluate((omega, Slopes::All), &mut work, &mut table, &interrupt)
+                    .evaluate((omega, true), &mut work, &mut table, &interrupt)
                     .unwrap()
             );
             let exact = direct.evaluate(&condensed, i, omega, true, &interrupt).unwrap();

@@ -362,7 +362,6 @@ impl Lanes {
 mod tests {
     use super::*;
     use crate::condense::Condensed;
-    use crate::condense::by_factors::flexibility::Slopes;
     use crate::condense::by_modes::modal_rows::ModalRows;
     use crate::condense::by_modes::modal_table::ModalWork;
     use crate::condense::by_modes::wave_cache::SharedWaves;
@@ -411,7 +410,7 @@ mod tests {
                             let table = table.as_mut().unwrap();
                             clear
                                 & table
-                                    .evaluate((omega, Slopes::All), &mut work, to, &Interrupt::none())
+                                    .evaluate((omega, true), &mut work, to, &Interrupt::none())
                                     .unwrap()
                         });
                         assert_eq!(lanes.evaluate(omega, &mut found), clear);

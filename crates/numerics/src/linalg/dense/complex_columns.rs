@@ -1,12 +1,18 @@
 //! Products of complex columns with a vector, and their change by two dyads, compiled for the vector instructions of the processor.
 //!
 //! Re z and Im z multiply the numbers of a column as they lie in memory, each into a sum of its own, and
-//! A z = Σ a Re z + i Σ a Im z is put together at the end: no number is moved within a register.
+//! A z = Σ a Re z + i Σ a Im z is put together at the end: no number is moved within a register. Aᴴ f takes the sums Re aᴴf and Im aᴴf,
+//! the latter as the former with −i f.
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
 use num_complex::Complex64;
+use pulp::bytemuck::cast_slice;
 use pulp::{Arch, Simd, WithSimd};
+
+/// Numbers of a column that are added at a time, each to a sum of its own.
+/// Kind: block.
+const LANES: usize = 8;
 
 /// out = A z for columns that begin `stride` apart; `memory` is as long as `out`.
 pub fn multiply(
@@ -61,6 +67,55 @@ impl WithSimd for Product<'_> {
     }
 }
 
+/// out = Aᴴ f for columns as long as f, one after the other; `turned` is memory for −i f.
+pub fn multiply_adjoint(columns: &[Complex64], force: &[Complex64], turned: &mut [Complex64], out: &mut [Complex64]) {
+    for (to, f) in turned.iter_mut().zip(force) {
+        *to = Complex64::new(f.im, -f.re);
+    }
+    Arch::new().dispatch(Adjoint {
+        columns,
+        force,
+        turned: &turned[..force.len()],
+        out,
+    });
+}
+
+struct Adjoint<'a> {
+    columns: &'a [Complex64],
+    force: &'a [Complex64],
+    turned: &'a [Complex64],
+    out: &'a mut [Complex64],
+}
+
+impl WithSimd for Adjoint<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let length = self.force.len().max(1);
+        let (force, turned) = (
+            cast_slice::<Complex64, f64>(self.force).as_chunks::<LANES>(),
+            cast_slice::<Complex64, f64>(self.turned).as_chunks::<LANES>(),
+        );
+        for (out, column) in self.out.iter_mut().zip(self.columns.chunks_exact(length)) {
+            let column = cast_slice::<Complex64, f64>(column).as_chunks::<LANES>();
+            let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
+            for ((a, f), t) in column.0.iter().zip(force.0).zip(turned.0) {
+                for k in 0..LANES {
+                    re[k] += a[k] * f[k];
+                    im[k] += a[k] * t[k];
+                }
+            }
+            let (mut sum_re, mut sum_im) = (re.iter().sum::<f64>(), im.iter().sum::<f64>());
+            for ((a, f), t) in column.1.iter().zip(force.1).zip(turned.1) {
+                sum_re += a * f;
+                sum_im += a * t;
+            }
+            *out = Complex64::new(sum_re, sum_im);
+        }
+    }
+}
+
 /// A ← A − v wᴴ − w vᴴ for columns that begin `stride` apart and are as long as v; the last one ends with the matrix.
 pub fn subtract_dyads(columns: &mut [Complex64], stride: usize, v: &[Complex64], w: &[Complex64]) {
     Arch::new().dispatch(Dyads { columns, stride, v, w });
@@ -90,7 +145,7 @@ impl WithSimd for Dyads<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{multiply, subtract_dyads};
+    use super::{multiply, multiply_adjoint, subtract_dyads};
     use num_complex::Complex64;
 
     #[test]
@@ -106,6 +161,24 @@ mod tests {
                 let exact: Complex64 = z.iter().enumerate().map(|(j, z)| a[j * stride + i] * z).sum();
                 assert!(
                     (out - exact).norm() < 1e-13 * count as f64,
+                    "{rows}, {count}: {out} {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_product_with_the_adjoint_is_the_inner_product_of_each_column() {
+        let number = |k: usize| Complex64::new((k as f64).sin(), (1.7 * k as f64).cos());
+        for (rows, count) in [(1, 1), (3, 2), (4, 5), (17, 9), (91, 61)] {
+            let a: Vec<Complex64> = (0..rows * count).map(number).collect();
+            let f: Vec<Complex64> = (0..rows).map(|k| number(3 * k + 1)).collect();
+            let (mut turned, mut out) = (vec![Complex64::ZERO; rows], vec![Complex64::ZERO; count]);
+            multiply_adjoint(&a, &f, &mut turned, &mut out);
+            for (column, out) in a.chunks_exact(rows).zip(&out) {
+                let exact: Complex64 = column.iter().zip(&f).map(|(a, f)| a.conj() * f).sum();
+                assert!(
+                    (out - exact).norm() < 1e-14 * rows as f64,
                     "{rows}, {count}: {out} {exact}"
                 );
             }
