@@ -12,7 +12,8 @@ pub struct ByteWriter<'a> {
 }
 
 /// An odd number without pattern: 2⁶⁴ over the golden ratio (Knuth, The Art of Computer Programming 3, 6.4).
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+/// Kind: fixed.
+const BYTE_STREAM_GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl<'a> ByteWriter<'a> {
     /// A writer from the begin of a buffer.
@@ -57,7 +58,7 @@ impl<'a> ByteWriter<'a> {
             for chunk in bytes.chunks(8) {
                 let mut eight = [0; 8];
                 eight[..chunk.len()].copy_from_slice(chunk);
-                let mixed = (*digest ^ u64::from_le_bytes(eight)).wrapping_mul(GOLDEN);
+                let mixed = (*digest ^ u64::from_le_bytes(eight)).wrapping_mul(BYTE_STREAM_GOLDEN);
                 *digest = (mixed ^ (mixed >> 29)).wrapping_add(chunk.len() as u64);
             }
         }
@@ -257,9 +258,11 @@ impl<'a> ByteReader<'a> {
 }
 
 /// Generator x⁶⁴ + … of ECMA-182, bits reflected.
+/// Kind: fixed.
 const GENERATOR: u64 = 0xC96C_5795_D787_0F42;
 
 /// Remainders of all bytes.
+/// Kind: fixed.
 const REMAINDERS: [u64; 256] = {
     let mut table = [0; 256];
     let mut byte = 0;

@@ -53,7 +53,6 @@
 // The numerics below, under the paths that they have in this crate.
 use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
 
-mod adaptivity;
 mod aft;
 mod analysis;
 mod at_a_point;
@@ -63,7 +62,7 @@ pub mod capi;
 mod condense;
 mod contact;
 mod continuation;
-mod error_estimate;
+mod harmonics;
 mod hooks;
 #[doc(hidden)]
 pub mod internals;
@@ -75,6 +74,7 @@ mod sensitivity;
 mod stability;
 mod studies;
 mod time_integration;
+mod tracing;
 
 // Models.
 pub use contact::laws::iwan::Iwan;
@@ -158,9 +158,9 @@ pub use contact::contact_state::State;
 pub use contact::time_piece::Grazing;
 #[doc(inline)]
 pub use error::{Error, Result, Status};
-pub use error_estimate::{Corrected, Estimate};
 #[doc(inline)]
 pub use fourier::{Measure, Reading};
+pub use harmonics::{Corrected, Estimate};
 pub use results::stored::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Descent, Energy, Floquet, HigherPeak,

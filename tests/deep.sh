@@ -40,6 +40,9 @@ cargo "+$oldest" check --release --workspace
 rustup target add x86_64-pc-windows-gnu
 cargo check --target x86_64-pc-windows-gnu -p hbvib -p hbvib-c -p hbvib-io -p hbvib-cli
 
+# Tuned numbers times a half and two: answers within their tolerances, twice the time at most.
+$python -B tests/ledger
+
 # Damaged input without a guide.
 (cd fuzz && cargo run --release --bin mutate -- "$(date +%j)" 1000000)
 

@@ -20,9 +20,11 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
 /// Largest number of marches that may end in a step of Newton's method.
+/// Kind: cap.
 const NEWTON_MARCHES: usize = 100;
 
 /// Largest number of marches; those beyond [`NEWTON_MARCHES`] start where the previous march ended.
+/// Kind: cap.
 const MARCHES: usize = 300;
 
 /// Tables and memory for marching one law over motions of one harmonic set.

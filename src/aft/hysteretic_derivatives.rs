@@ -11,6 +11,7 @@ use crate::linalg::{add_outer_products, transposed_products};
 use std::f64::consts::TAU;
 
 /// Number of samples whose outer products are added at a time.
+/// Kind: block.
 const BATCH: usize = 32;
 
 /// The motion at the samples, with the tables from which it follows.

@@ -14,10 +14,12 @@ use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Number of products g ⊗ c per pass over the Jacobian, which at many harmonics exceeds the caches.
+/// Kind: block.
 const MOST_PENDING: usize = 4;
 
 /// Numbers of a Jacobian that are written between two checks.
-const NUMBERS_TOGETHER: usize = 1 << 22;
+/// Kind: block.
+const JACOBIAN_ASSEMBLY_NUMBERS_TOGETHER: usize = 1 << 22;
 
 /// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
 pub(super) struct Assembly {
@@ -163,7 +165,7 @@ impl Assembly {
 
 /// Columns of m numbers between two checks.
 fn columns_together(m: usize) -> usize {
-    (NUMBERS_TOGETHER / m).max(1)
+    (JACOBIAN_ASSEMBLY_NUMBERS_TOGETHER / m).max(1)
 }
 
 /// Packed anchors and g of products, one after the other, and their number.

@@ -17,12 +17,15 @@ use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 
 /// Squarings in the search for Π; a part that decays by less than 1e-10 per period counts as kept.
+/// Kind: cap.
 const SQUARINGS: usize = 40;
 
 /// Products of steps between two checks of the interrupt.
+/// Kind: block.
 const TOGETHER: usize = 16;
 
 /// Largest size of Π that is no projection.
+/// Kind: rounding.
 const NOTHING: f64 = 1e-9;
 
 /// The linearised map over one period.

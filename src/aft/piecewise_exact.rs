@@ -131,6 +131,7 @@ pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Comp
 }
 
 /// Powers side by side, none of which waits for another.
+/// Kind: block.
 const SIDE_BY_SIDE: usize = 4;
 
 /// zₙ = middleⁿ·(factor·Im halfⁿ/n) for n from 1 on.

@@ -13,6 +13,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Products of samples and harmonics between two checks.
+/// Kind: block.
 const PRODUCTS_TOGETHER: usize = 1 << 20;
 
 /// Tables and memory of the sampled evaluation for one harmonic set.

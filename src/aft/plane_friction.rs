@@ -24,7 +24,7 @@ use crate::aft::toeplitz::Toeplitz;
 use crate::contact::contact_state::State;
 use crate::contact::law::PlaneFriction;
 use crate::contact::plane_path::{PlaneForce, PlanePath, PlanePiece, Repetition};
-use crate::contact::radau::STAGES;
+use crate::contact::radau::RADAU_STAGES;
 use crate::error::{Result, boxed, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -148,7 +148,7 @@ impl PlaneFrictionEvaluator {
             spectrum.fill(Complex64::ZERO);
         }
         for piece in &self.path.pieces {
-            interrupt.check_before((2 * m * STAGES) as u64)?;
+            interrupt.check_before((2 * m * RADAU_STAGES) as u64)?;
             if piece.state() == State::Slip {
                 out.count(State::Slip, (piece.end - piece.start) / turn);
             }
@@ -201,7 +201,7 @@ fn add_directions(path: &PlanePath, piece: &PlanePiece, first: &mut [Complex64],
         return;
     };
     let length = piece.end - piece.start;
-    let weights = &path.tables.integrals[STAGES - 1];
+    let weights = &path.tables.integrals[RADAU_STAGES - 1];
     for (j, e) in panel.directions.iter().enumerate() {
         let weight = weights[j] * length / path.turn;
         let step = Complex64::cis(-(piece.start + length * path.tables.nodes[j]));

@@ -8,7 +8,7 @@ use crate::aft::slip_session::{SlipSession, add, differentiate};
 use crate::contact::contact_state::State;
 use crate::contact::law::PlaneFriction;
 use crate::contact::plane_path::{PlaneForce, PlanePath, PlanePiece, Repetition, SlipPanel};
-use crate::contact::radau::STAGES;
+use crate::contact::radau::RADAU_STAGES;
 use crate::error::{Result, try_vec};
 use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::Interrupt;
@@ -83,7 +83,7 @@ impl PlaneSensitivity {
         self.begin(law, path, start);
         let m = self.set.packed_len();
         for piece in &path.pieces {
-            interrupt.check_before((self.directions * STAGES * m * m) as u64)?;
+            interrupt.check_before((self.directions * RADAU_STAGES * m * m) as u64)?;
             let PlaneForce::Slip(panel) = &piece.force else {
                 self.add_session(out, interrupt)?;
                 if piece.state() == State::Open {

@@ -10,7 +10,7 @@
 
 use crate::contact::law::PlaneFriction;
 use crate::contact::plane_path::{PlanePath, PlanePiece, SlipPanel};
-use crate::contact::radau::STAGES;
+use crate::contact::radau::RADAU_STAGES;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -18,15 +18,17 @@ use crate::linalg::add_outer_products_to;
 use crate::linalg::factors::lu::Lu;
 
 /// Products between two checks of a stop.
-const BETWEEN_CHECKS: usize = 10_000_000;
+/// Kind: block.
+const SLIP_SESSION_BETWEEN_CHECKS: usize = 10_000_000;
 
 /// Panels that are collected before they are added.
+/// Kind: block.
 const PANELS: usize = 16;
 
 const CONTEXT: &str = "the derivatives of friction in a plane";
 
 /// The last row of G, and the last number of s, of a panel.
-type AtEnd = ([f64; STAGES], f64);
+type AtEnd = ([f64; RADAU_STAGES], f64);
 
 /// Panels of slip that follow each other.
 pub(super) struct SlipSession {
@@ -51,7 +53,7 @@ impl SlipSession {
     pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
         let m = set.packed_len();
         let memory = |size: usize| try_vec(size, 0.0, CONTEXT);
-        let nodes = PANELS * STAGES;
+        let nodes = PANELS * RADAU_STAGES;
         let (weights, rates) = (memory(2 * m * nodes)?, memory(directions * m * nodes)?);
         // The first product of a thread asks for memory; those of an iteration must not.
         let order = directions * m;
@@ -68,11 +70,11 @@ impl SlipSession {
             weights,
             rates,
             by_angle: memory(2 * m * PANELS)?,
-            at_end: [([0.0; STAGES], 0.0); PANELS],
+            at_end: [([0.0; RADAU_STAGES], 0.0); PANELS],
             behind: memory(2 * m)?,
             basis: memory(m)?,
             slope: memory(m)?,
-            lu: Lu::new(STAGES, 1)?,
+            lu: Lu::new(RADAU_STAGES, 1)?,
         })
     }
 
@@ -104,10 +106,10 @@ impl SlipSession {
         let (g, s) = self.stages(panel, length, integrals, interrupt)?;
         let k = self.panels;
         self.panels += 1;
-        self.at_end[k] = (core::array::from_fn(|l| g[l][STAGES - 1]), s[STAGES - 1]);
-        let weights = &mut self.weights[k * 2 * m * STAGES..(k + 1) * 2 * m * STAGES];
+        self.at_end[k] = (core::array::from_fn(|l| g[l][RADAU_STAGES - 1]), s[RADAU_STAGES - 1]);
+        let weights = &mut self.weights[k * 2 * m * RADAU_STAGES..(k + 1) * 2 * m * RADAU_STAGES];
         let by_angle = &mut self.by_angle[k * 2 * m..(k + 1) * 2 * m];
-        let rates = &mut self.rates[k * d * m * STAGES..(k + 1) * d * m * STAGES];
+        let rates = &mut self.rates[k * d * m * RADAU_STAGES..(k + 1) * d * m * RADAU_STAGES];
         weights.fill(0.0);
         by_angle.fill(0.0);
         let mean = usize::from(self.set.has_mean());
@@ -129,7 +131,7 @@ impl SlipSession {
                 }
             }
             // Twice the mean of a signal times its basis; once for the mean itself.
-            let weight = 2.0 * integrals[STAGES - 1][j] * length / path.turn * panel.limits[j];
+            let weight = 2.0 * integrals[RADAU_STAGES - 1][j] * length / path.turn * panel.limits[j];
             self.basis[..mean].fill(0.5);
             let normal = [-sin * weight, cos * weight];
             for (l, column) in weights.chunks_exact_mut(2 * m).enumerate() {
@@ -156,20 +158,20 @@ impl SlipSession {
         &mut self,
         panel: &SlipPanel,
         length: f64,
-        integrals: &[[f64; STAGES]; STAGES],
+        integrals: &[[f64; RADAU_STAGES]; RADAU_STAGES],
         interrupt: &Interrupt<'_>,
-    ) -> Result<([[f64; STAGES]; STAGES], [f64; STAGES])> {
+    ) -> Result<([[f64; RADAU_STAGES]; RADAU_STAGES], [f64; RADAU_STAGES])> {
         let matrix = self.lu.matrix();
-        for j in 0..STAGES {
+        for j in 0..RADAU_STAGES {
             let slope = -length * panel.along[j] / panel.limits[j];
-            for i in 0..STAGES {
-                matrix[j * STAGES + i] = f64::from(u8::from(i == j)) - slope * integrals[i][j];
+            for i in 0..RADAU_STAGES {
+                matrix[j * RADAU_STAGES + i] = f64::from(u8::from(i == j)) - slope * integrals[i][j];
             }
         }
         self.lu.factor(interrupt)?;
-        let mut g: [[f64; STAGES]; STAGES] =
+        let mut g: [[f64; RADAU_STAGES]; RADAU_STAGES] =
             core::array::from_fn(|l| core::array::from_fn(|i| length * integrals[i][l]));
-        let mut s = [1.0; STAGES];
+        let mut s = [1.0; RADAU_STAGES];
         for column in &mut g {
             self.lu.solve(column);
         }
@@ -186,7 +188,7 @@ impl SlipSession {
         self.behind.fill(0.0);
         for k in (0..self.panels).rev() {
             let (row, whole) = self.at_end[k];
-            let weights = &mut self.weights[k * 2 * m * STAGES..(k + 1) * 2 * m * STAGES];
+            let weights = &mut self.weights[k * 2 * m * RADAU_STAGES..(k + 1) * 2 * m * RADAU_STAGES];
             for (column, factor) in weights.chunks_exact_mut((2 * m).max(1)).zip(row) {
                 add(column, factor, &self.behind);
             }
@@ -194,10 +196,10 @@ impl SlipSession {
                 *behind = by + whole * *behind;
             }
         }
-        let nodes = self.panels * STAGES;
+        let nodes = self.panels * RADAU_STAGES;
         let rates = &self.rates[..d * m * nodes];
         // So many columns that a stop waits for about a hundredth of a second.
-        let columns = (BETWEEN_CHECKS / (2 * m * nodes).max(1)).max(1);
+        let columns = (SLIP_SESSION_BETWEEN_CHECKS / (2 * m * nodes).max(1)).max(1);
         for first in (0..d * m).step_by(columns) {
             let count = columns.min(d * m - first);
             interrupt.check_before((2 * m * nodes * count) as u64)?;

@@ -11,7 +11,8 @@ use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 
 /// Numbers of columns between two checks.
-const NUMBERS_TOGETHER: usize = 1 << 22;
+/// Kind: block.
+const TOEPLITZ_NUMBERS_TOGETHER: usize = 1 << 22;
 
 /// The lists from which the columns of T(S) are read.
 pub(super) struct Toeplitz {
@@ -127,7 +128,7 @@ impl Toeplitz {
     /// `StoppedByCaller`.
     pub(super) fn add_product(&self, x: &[f64], force: &mut [f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let m = self.row.len();
-        let together = (NUMBERS_TOGETHER / m.max(1)).max(1);
+        let together = (TOEPLITZ_NUMBERS_TOGETHER / m.max(1)).max(1);
         let (mean, rest) = force[..m].split_at_mut(usize::from(self.has_mean));
         for (j, x) in x[..m].iter().enumerate() {
             if j % together == together - 1 {

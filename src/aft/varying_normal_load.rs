@@ -38,7 +38,8 @@ pub struct VaryingNormalLoadEvaluator {
 }
 
 /// Directions of force and motion of each spectrum.
-const BLOCKS: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
+/// Kind: fixed.
+const VARYING_NORMAL_LOAD_BLOCKS: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
 
 impl VaryingNormalLoadEvaluator {
     /// Memory for motions of `set`.
@@ -94,7 +95,7 @@ impl VaryingNormalLoadEvaluator {
         self.add_normal(set, out, interrupt)?;
         self.add_tangential(set, motion, out, interrupt)?;
         let m = set.packed_len();
-        for (spectrum, place) in self.spectra.iter().zip(BLOCKS) {
+        for (spectrum, place) in self.spectra.iter().zip(VARYING_NORMAL_LOAD_BLOCKS) {
             interrupt.check_before((m * m) as u64)?;
             self.toeplitz.set(set, spectrum);
             if out.is_force_alone() {

@@ -47,9 +47,11 @@ pub struct Validity {
 }
 
 /// Error of the amplitude above which a resonance is inaccurate.
+/// Kind: tuned; measured on: not recorded.
 const INACCURATE: f64 = 0.01;
 
 /// Share of the kinetic energy outside the fundamental above which a higher harmonic resonates.
+/// Kind: tuned; measured on: not recorded.
 const OUTSIDE: f64 = 0.01;
 
 impl Validity {

@@ -9,11 +9,13 @@ use crate::model::matrices::structure::MatrixKind;
 use crate::options::SolverOptions;
 
 /// Bytes above which the evaluation of a law is refused, and the same without the matrices that a Jacobian of the caller asks for.
+/// Kind: cap.
 const MOST_OF_A_LAW: usize = 16 << 30;
 const MOST_OF_A_FORCE: usize = 500 << 20;
 
 /// Bytes of the path of friction in a plane at most: the pieces of a motion that passes between stick and slip very often, and the
 /// tables of its panels.
+/// Kind: cap.
 const OF_A_PATH: usize = 256 << 20;
 const OF_PANELS: usize = 64 << 10;
 const OF_PIECES: usize = 2 << 20;

@@ -9,6 +9,7 @@ use crate::options::FloquetOptions;
 use crate::results::{Branch, Floquet, Recovery};
 
 /// Largest |D| of a point of a nonlinear mode that counts as a limit cycle.
+/// Kind: rounding.
 const LIMIT_CYCLE: f64 = 1e-7;
 
 /// Computes the Floquet multipliers of a stored point: the factors by which small perturbations of its motion grow in

@@ -8,6 +8,7 @@ use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Degrees of freedom.
+/// Kind: fixed.
 pub const N: usize = 9;
 
 /// A chain with uneven masses and springs, on a wheel where `sectors` is more than 1, without contacts.
@@ -103,6 +104,7 @@ pub fn real_wheel((alpha, beta): (f64, f64)) -> Model {
 }
 
 /// Damping αM + βK and loss factor.
+/// Kind: fixed.
 pub const DAMPED: [((f64, f64), f64); 6] = [
     ((0.0, 1e-3), 0.0),
     ((0.02, 0.0), 0.0),

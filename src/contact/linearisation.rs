@@ -23,4 +23,5 @@ impl Range {
 /// from such a term may have to pass the resonance, at an amplitude Q times that of the linear structure,
 /// where the term is larger by a power of Q; the term must stay negligible there, up to Q of a million for a
 /// cubic one.
-pub const SMALL: f64 = 1e-12;
+/// Kind: rounding.
+pub const LINEARISATION_SMALL: f64 = 1e-12;

@@ -16,12 +16,15 @@ pub struct Onset {
 }
 
 /// Relative difference of factors that count as equal.
+/// Kind: rounding.
 const BOTH: f64 = 1e-9;
 
 /// Points of the period between which the earliest slip in a plane is sought.
+/// Kind: tuned; measured on: not recorded.
 const ONSET_POINTS: usize = 256;
 
 /// Bisections of the place of the earliest slip.
+/// Kind: cap.
 const ONSET_BISECTIONS: usize = 60;
 
 impl Onset {

@@ -5,7 +5,7 @@
 //! equation; a piece of slip holds its direction at the nodes of a collocation, [`crate::contact::radau`].
 
 use crate::contact::contact_state::State;
-use crate::contact::radau::{RadauTables, STAGES};
+use crate::contact::radau::{RADAU_STAGES, RadauTables};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::factors::lu::Lu;
@@ -16,6 +16,7 @@ pub(super) const CONTEXT: &str = "the path of a friction force";
 
 /// Panels per turn and reduced harmonic: a force that turns in slip, times the highest harmonic, is integrated to
 /// about 1e-11 over such panels.
+/// Kind: tuned; measured on: not recorded.
 const PANELS_PER_HARMONIC: f64 = 1.6;
 
 /// Motion and limit at one time, with their derivatives by τ.
@@ -91,15 +92,15 @@ pub struct SlipPanel {
     /// Angle of the force at the start.
     pub angle: f64,
     /// Angles at the nodes.
-    pub angles: [f64; STAGES],
+    pub angles: [f64; RADAU_STAGES],
     /// Unit vectors e of the force at the nodes.
-    pub directions: [[f64; 2]; STAGES],
+    pub directions: [[f64; 2]; RADAU_STAGES],
     /// Limits R at the nodes.
-    pub limits: [f64; STAGES],
+    pub limits: [f64; RADAU_STAGES],
     /// e·u′ at the nodes.
-    pub along: [f64; STAGES],
+    pub along: [f64; RADAU_STAGES],
     /// n·u′ at the nodes, n a quarter turn left of e: R θ′.
-    pub across: [f64; STAGES],
+    pub across: [f64; RADAU_STAGES],
 }
 
 /// The force in a piece. A piece of slip is the largest and the most frequent: it is not put elsewhere.
@@ -229,11 +230,11 @@ impl PlanePath {
             constant_limit: 0.0,
             turn,
             panels,
-            grid: try_vec(panels.saturating_mul(STAGES), PlaneInstant::default(), CONTEXT)?,
+            grid: try_vec(panels.saturating_mul(RADAU_STAGES), PlaneInstant::default(), CONTEXT)?,
             pieces,
             repetition: Repetition::FromNothing,
             moments,
-            lu: Lu::new(STAGES, 1)?,
+            lu: Lu::new(RADAU_STAGES, 1)?,
         })
     }
 
@@ -262,7 +263,7 @@ impl PlanePath {
         let spacing = self.spacing();
         for k in 0..self.panels {
             for (j, c) in self.tables.nodes.iter().enumerate() {
-                self.grid[k * STAGES + j] = self.motion.at(self.constant_limit, spacing * (k as f64 + c));
+                self.grid[k * RADAU_STAGES + j] = self.motion.at(self.constant_limit, spacing * (k as f64 + c));
             }
         }
         self.pieces.clear();
@@ -324,13 +325,13 @@ impl PlanePath {
 impl SlipPanel {
     /// Angles at the start and the nodes.
     #[must_use]
-    pub fn points(&self) -> [f64; STAGES + 1] {
+    pub fn points(&self) -> [f64; RADAU_STAGES + 1] {
         core::array::from_fn(|i| if i == 0 { self.angle } else { self.angles[i - 1] })
     }
 
     /// Angle at the end.
     #[must_use]
     pub fn end(&self) -> f64 {
-        self.angles[STAGES - 1]
+        self.angles[RADAU_STAGES - 1]
     }
 }

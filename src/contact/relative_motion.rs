@@ -3,6 +3,7 @@
 use crate::error::{Result, fail};
 
 /// Most degrees of freedom that move side a, a point of a rigid body; and side b, a node.
+/// Kind: fixed.
 pub const TERMS_A: usize = 6;
 pub const TERMS_B: usize = 3;
 
@@ -49,6 +50,7 @@ pub struct Frame {
 }
 
 /// Largest |t·n| of unit vectors that counts as orthogonal: the rounding of a mesh file.
+/// Kind: rounding.
 const RELATIVE_MOTION_SQUARE: f64 = 1e-6;
 
 impl Frame {

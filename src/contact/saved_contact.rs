@@ -8,10 +8,12 @@ use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, try_push};
 
 /// Largest deviation of the products of the axes of a frame from those of unit vectors.
+/// Kind: rounding.
 const SAVED_CONTACT_SQUARE: f64 = 1e-9;
 
 impl Contact {
     /// Bytes that a contact has at least: kind, sides, frame, offset, seven constants and the length of its list.
+    /// Kind: fixed.
     pub(crate) const LEAST_BYTES: usize = 1 + 48 + 1 + 8 + 56 + 8;
 
     /// Writes the contact.

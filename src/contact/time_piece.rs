@@ -84,6 +84,7 @@ impl TimePiece {
 }
 
 /// Largest number of margins of a piece.
+/// Kind: fixed.
 pub const MARGINS: usize = 3;
 
 /// Number of zeros that each margin of a piece has at its begin by construction.

@@ -69,44 +69,58 @@ pub struct Continuation {
 const CONTEXT: &str = "the continuation";
 
 /// Least cosine between the directions of the branch at the two ends of one step.
+/// Kind: tuned; measured on: not recorded.
 const STRAIGHT: f64 = 0.5;
 
 /// Step below which a failure counts as a corner of the branch, and no resonance is looked for.
+/// Kind: tuned; measured on: not recorded.
 const CORNER_STEP: f64 = 1e-6;
 
 /// Step of a branch that a corner no longer shortens.
+/// Kind: tuned; measured on: not recorded.
 const GROWN: f64 = 1e-3;
 
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
+/// Kind: tuned; measured on: not recorded.
 const ALONG: f64 = 0.9;
 
 /// Angle in radians between two directions up to which they are one line, per length of the step between them, and its bounds:
 /// the branch itself turns along a step.
+/// Kind: tuned; measured on: not recorded.
 const LINE: f64 = 1e3;
 const LINE_BOUNDS: (f64, f64) = (1e-3, 1.4e-2);
 
 /// Motions below this share of the largest so far no longer refine the metric.
+/// Kind: tuned; measured on: not recorded.
 const FLOOR: f64 = 1e-2;
 
 /// Relative motions below this share of the largest motion of the structure, the unit of all lengths, are its rounding.
+/// Kind: rounding.
 const ROUNDING_OF_MOTION: f64 = 1e-12;
 
 /// Relative change of the parameter that is rounding, and the number of points in a row, no further apart, that show a branch
 /// which ends in rounding. An amplitude that grows without bound at a resonance would else be followed there by chance.
+/// Kind: rounding.
 const ARC_LENGTH_ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Number of points in a row, no further apart, that show a branch which ends in rounding.
+/// Kind: cap.
 const MOST_STATIONARY: usize = 32;
 
 /// Relative error of a prediction far below that which shortens steps.
+/// Kind: tuned; measured on: not recorded.
 const SMOOTH: f64 = 1e-5;
 
 /// Largest relative error of the prediction of a step over a crossing, and least cosine between its directions.
+/// Kind: tuned; measured on: not recorded.
 const CROSSED: (f64, f64) = (1e-4, 0.99);
 
 /// Length of a step that changes no parameter beyond rounding, wherever the branch leads.
+/// Kind: rounding.
 const TINY: f64 = 1e-6;
 
 /// Share of the way to a resonance that a step goes which would pass it.
-const APPROACH: f64 = 0.5;
+/// Kind: tuned; measured on: not recorded.
+const ARC_LENGTH_APPROACH: f64 = 0.5;
 
 /// Outcome of the corrected prediction of one step.
 enum Attempt {
@@ -275,7 +289,7 @@ impl Continuation {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                     }
                 }
-                Attempt::Passed { share } => self.steps.at_most(APPROACH * share * length),
+                Attempt::Passed { share } => self.steps.at_most(ARC_LENGTH_APPROACH * share * length),
                 Attempt::Failed => {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();

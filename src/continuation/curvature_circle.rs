@@ -12,6 +12,7 @@
 use crate::continuation::{Metric, Point};
 
 /// Angle between two tangents, over 1 the difference of its cosine from 1, below which the branch is straight.
+/// Kind: rounding.
 const CURVATURE_CIRCLE_STRAIGHT: f64 = 1e-14;
 
 /// φ at a point, and the factor that makes its tangent the derivative by φ.

@@ -18,17 +18,23 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the peak between solutions";
 
 /// Most nodes of the interpolation, those next to the peak, and most solutions that are sought.
+/// Kind: tuned; measured on: not recorded.
 const MOST_NODES: usize = 4;
+/// Most solutions that are sought at a peak.
+/// Kind: cap.
 const MOST_SOLUTIONS: usize = 4;
 
 /// Distance of the peak from the last solution, over that of the ends and over the parameter.
+/// Kind: rounding.
 const CLOSE_BY: f64 = 1e-6;
 const CLOSE_BY_PARAMETER: f64 = 1e-9;
 
 /// Halvings of the range in search of a root of the polynomial.
+/// Kind: cap.
 const ROOT_HALVINGS: usize = 45;
 
 /// Step of a difference of the polynomial, over the distance of the ends.
+/// Kind: tuned; measured on: not recorded.
 const OF_DIFFERENCE: f64 = 1e-3;
 
 /// Weight of a value and of its derivative, each with its own derivative by the parameter.

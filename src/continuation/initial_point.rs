@@ -72,9 +72,11 @@ const FULL: Effort = Effort {
 };
 
 /// Share of a homotopy that counts as progress.
+/// Kind: tuned; measured on: not recorded.
 const PROGRESS: f64 = 1e-3;
 
 /// Longest step of a homotopy, of which only the end matters.
+/// Kind: tuned; measured on: not recorded.
 const LONG_STEP: f64 = 0.1;
 
 /// Solves for the first point at `settings.start`. Its iterations are those of all attempts, homotopies included.

@@ -4,7 +4,8 @@ use crate::continuation::Settings;
 use crate::linalg::{SAFE_SQUARES, dot, norm};
 
 /// Numbers that are summed side by side.
-const LANES: usize = 4;
+/// Kind: block.
+const METRIC_LANES: usize = 4;
 
 /// Units in which the unknowns and the parameter are measured.
 #[derive(Clone, Copy, Debug)]
@@ -52,11 +53,11 @@ impl Metric {
         let n = here.len() - 1;
         let [a, b] = vectors;
         // Partial sums, which the processor adds in parallel.
-        let mut parts = [[0.0; LANES]; 4];
-        let [v4, h4, t4, a4, b4] = [v, here, tangent, a, b].map(|x| x[..n].as_chunks::<LANES>());
+        let mut parts = [[0.0; METRIC_LANES]; 4];
+        let [v4, h4, t4, a4, b4] = [v, here, tangent, a, b].map(|x| x[..n].as_chunks::<METRIC_LANES>());
         let numbers = v4.0.iter().zip(h4.0).zip(t4.0).zip(a4.0).zip(b4.0);
         for ((((v, h), t), a), b) in numbers {
-            for k in 0..LANES {
+            for k in 0..METRIC_LANES {
                 let way = v[k] - h[k];
                 parts[0][k] += way * a[k];
                 parts[1][k] += t[k] * a[k];

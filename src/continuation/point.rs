@@ -6,6 +6,7 @@ use crate::problem::End;
 use num_complex::Complex64;
 
 /// Relative change of a parameter that may be round-off of the correction.
+/// Kind: rounding.
 const POINT_ROUND_OFF: f64 = 1e-10;
 
 /// A point with the number of its resolution.

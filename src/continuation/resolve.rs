@@ -8,9 +8,11 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Distance, relative to the unknowns, beyond which a solution is another one than requested.
+/// Kind: tuned; measured on: not recorded.
 const RESOLVE_NEAR: f64 = 0.3;
 
 /// Cosine of the angle between two lines that are one.
+/// Kind: tuned; measured on: not recorded.
 const PARALLEL: f64 = 0.99;
 
 /// Solves from `near`, at its parameter or in the plane across its tangent. The found point is followed in the sense of
@@ -54,6 +56,7 @@ pub fn resolve(
 /// Bounds of the Newton iterations of a linear problem. One solves it, however small the residual before it: near a
 /// resonance a residual within the tolerance may leave an error of the motion, and with it of the tangent, that is far
 /// above rounding. The others remove rounding.
+/// Kind: cap.
 const LINEAR_ITERATIONS: (usize, usize) = (1, 4);
 
 /// Solves a problem that is linear around `near` at a parameter value. The found point is followed in the same sense of

@@ -2,7 +2,7 @@
 //! given parameter values, each solved for and not interpolated.
 
 use crate::continuation::arc_cubic::Cubic;
-use crate::continuation::bracket::{Bracket, WIDTH};
+use crate::continuation::bracket::{BRACKET_WIDTH, Bracket};
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
@@ -78,15 +78,19 @@ pub struct Locator {
 const CONTEXT: &str = "the search for special points";
 
 /// Distance of the last place of a further response from the one before it.
+/// Kind: tuned; measured on: not recorded.
 const CLOSE_FOR_RESPONSES: f64 = 1e-5;
 
 /// Maximum number of evaluations of one search.
+/// Kind: cap.
 const SPECIAL_POINTS_MAX_EVALUATIONS: usize = 60;
 
 /// Maximum number of halvings of an arc in search of a parameter.
+/// Kind: cap.
 const SPECIAL_POINTS_MAX_HALVINGS: usize = 12;
 
 /// Value of a function over the larger one at the ends that is that of a root.
+/// Kind: tuned; measured on: not recorded.
 const VANISHING: f64 = 1e-6;
 
 impl Locator {
@@ -198,7 +202,7 @@ impl Locator {
             let Some(point) = found else { break };
             last = value(&point);
             best = Some(point);
-            if is_last || last == 0.0 || bracket.width() < WIDTH || bracket.narrow(s, last) < WIDTH {
+            if is_last || last == 0.0 || bracket.width() < BRACKET_WIDTH || bracket.narrow(s, last) < BRACKET_WIDTH {
                 break;
             }
         }

@@ -39,6 +39,7 @@ impl Detail {
 }
 
 /// Relative residual before its last Newton step of a point that need not be exact: that step leaves about its square.
+/// Kind: tuned; measured on: not recorded.
 const LOOSE: f64 = 1e-5;
 
 /// Step length and its bounds, in scaled unknowns.
@@ -54,13 +55,16 @@ pub struct StepControl {
 }
 
 /// Angle in radians by which the branch may turn in a step as foreseen. Steps in which it turns by more than π/3 are rejected.
+/// Kind: tuned; measured on: not recorded.
 const MOST_TURN: f64 = 0.8;
 
 /// Largest growth of a step, and the share of it that the error allows.
+/// Kind: tuned; measured on: not recorded.
 const STEP_CONTROL_GROWTH: f64 = 2.5;
 const STEP_CONTROL_SAFETY: f64 = 0.8;
 
 /// Iterations above which the step is reduced at any error.
+/// Kind: tuned; measured on: not recorded.
 const MANY_ITERATIONS: usize = 6;
 
 impl StepControl {

@@ -17,6 +17,7 @@ use std::ops::Range;
 const CONTEXT: &str = "a damper";
 
 /// Most points of contact of a face.
+/// Kind: cap.
 const DAMPER_MOST_POINTS: usize = 10_000;
 
 /// A face of a damper on a platform.

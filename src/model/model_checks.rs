@@ -10,6 +10,7 @@ use crate::model::matrices::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Size of a force, over that of the largest one, from which its harmonic is watched.
+/// Kind: tuned; measured on: not recorded.
 const WATCHED: f64 = 1e-3;
 
 impl Model {

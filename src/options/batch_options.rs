@@ -4,6 +4,7 @@ use crate::error::{Result, fail};
 use crate::options::{ForcedOptions, Response};
 
 /// Most threads of one batch.
+/// Kind: cap.
 pub const MOST_THREADS: usize = 1024;
 
 /// Options of a batch of designs.

@@ -3,7 +3,8 @@
 use crate::error::{Result, fail};
 use crate::options::SynthesisOptions;
 
-/// Most factors on the forces in one call. A cap.
+/// Most factors on the forces in one call.
+/// Kind: cap.
 pub const CAMPBELL_MOST_FACTORS: usize = 100_000;
 
 /// Options of resonances in a Campbell diagram.

@@ -7,9 +7,11 @@ use crate::options::tree_size::{check_tree, size_of_tree};
 use num_complex::Complex64;
 
 /// Width of a range, relative, that is rounding of its ends.
+/// Kind: rounding.
 const NARROWEST_RANGE: f64 = 1e-12;
 
 /// Largest number of `branches`.
+/// Kind: fixed.
 const MOST_SOUGHT: usize = 4;
 
 /// Options of a forced response over a range of frequency.

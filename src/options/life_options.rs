@@ -60,12 +60,15 @@ pub struct LifeOptions<'a> {
 }
 
 /// Default tolerance of a life. Chosen: a hundredth of what wear rates are known to.
+/// Kind: fixed.
 pub const LIFE_TOLERANCE: f64 = 1e-4;
 
-/// Default of the largest number of steps of a life. A cap.
+/// Default of the largest number of steps of a life.
+/// Kind: cap.
 pub const LIFE_MOST_STEPS: usize = 10_000;
 
 /// Largest number of contacts that wear: the integrator factorises matrices of that order.
+/// Kind: cap.
 pub const MOST_WORN: usize = 2_000;
 
 impl Default for LifeOptions<'_> {

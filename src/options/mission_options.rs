@@ -3,7 +3,8 @@
 use crate::error::{Result, fail};
 use crate::options::SynthesisOptions;
 
-/// Most points of a mission, edges of amplitudes, or stresses. A cap.
+/// Most points of a mission, edges of amplitudes, or stresses.
+/// Kind: cap.
 pub const MISSION_MOST: usize = 10_000_000;
 
 /// A Wöhler line: N = cycles·(stress/σ)^slope cycles to failure at the stress amplitude σ, with another slope below its knee.

@@ -133,6 +133,7 @@ impl Default for ModeOptions<'_> {
 }
 
 /// Largest |log10| of an amplitude: its square must be a number, too.
+/// Kind: cap.
 const MAX_LOG10: f64 = 150.0;
 
 impl ModeOptions<'_> {

@@ -39,6 +39,7 @@ pub struct Response<'a> {
 }
 
 /// Most responses of one run.
+/// Kind: cap.
 const MOST_RESPONSES: usize = 100_000;
 
 impl Response<'_> {

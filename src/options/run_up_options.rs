@@ -5,10 +5,12 @@ use crate::options::SynthesisOptions;
 use crate::options::sweep_options::check_passage;
 use std::f64::consts::TAU;
 
-/// Most turns of the forces in a run-up by the slow flow; slower ones are steady. A cap.
+/// Most turns of the forces in a run-up by the slow flow; slower ones are steady.
+/// Kind: cap.
 pub const RUN_UP_MOST_TURNS: f64 = 2e5;
 
-/// Default of the most turns of a run-up that are integrated in time. A cap on work: one to some seconds for a few masses.
+/// Default of the most turns of a run-up that are integrated in time.
+/// Kind: cap; one to some seconds for a few masses.
 pub const RUN_UP_INTEGRATED_TURNS: usize = 10_000;
 
 /// Options of a run-up by the slow flow of a nonlinear mode.

@@ -121,15 +121,19 @@ impl Default for SolverOptions {
 }
 
 /// Largest number of harmonics that a tolerance chooses by default.
+/// Kind: fixed.
 const DEFAULT_MAX_HARMONICS: usize = 511;
 
 /// Highest harmonic number that is accepted; beyond it index arithmetic may overflow and run times are excessive.
+/// Kind: cap.
 pub const MAX_HARMONIC: usize = 100_000;
 
 /// Largest factor of the samples of laws without exact events.
+/// Kind: cap.
 pub const MAX_REFINEMENT: usize = 64;
 
 /// Largest accepted number of samples per period.
+/// Kind: cap.
 pub const MAX_SAMPLES: usize = 1 << 24;
 
 impl SolverOptions {

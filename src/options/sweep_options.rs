@@ -6,6 +6,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Most turns of a sweep.
+/// Kind: cap.
 const MOST_TURNS: f64 = 1e8;
 
 /// Options of a sweep of the frequency in time.

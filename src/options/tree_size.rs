@@ -3,8 +3,11 @@
 use crate::error::{Result, fail};
 
 /// Generations and branches where an option is 0, and their largest numbers.
+/// Kind: fixed.
 const DEPTH: usize = 3;
 const MOST_BRANCHES: usize = 32;
+/// Largest numbers of generations and branches.
+/// Kind: cap.
 const TREE_SIZE_LARGEST: (usize, usize) = (8, 10_000);
 
 /// Largest numbers of generations and of branches that options ask for.

@@ -31,29 +31,38 @@ use num_complex::Complex64;
 use std::f64::consts::LN_10;
 
 /// Change of ln ω that has the same weight as a change of the motions by their size.
-const OMEGA_UNIT: f64 = 0.05;
+/// Kind: tuned; measured on: not recorded.
+const EPMC_OMEGA_UNIT: f64 = 0.05;
 
 /// Change of D that has the same weight.
+/// Kind: tuned; measured on: not recorded.
 const DAMPING_UNIT: f64 = 2e-3;
 
 /// Distance below the onset of slip, in log₁₀, at which contacts stick despite round-off.
+/// Kind: rounding.
 const ONSET_ROUNDING: f64 = 1e-9;
 
 /// Share of the structure's largest motion that counts as size of the residual. A relative motion is known only to
 /// the round-off of the motions from which it is computed, which may be thousands of times larger: a tolerance of
 /// 1e-10 then requires no more than 1e-12 of them.
+/// Kind: tuned; measured on: not recorded.
 const OF_MOTION: f64 = 1e-2;
 
 /// Frequency relative to the linear mode's below which a motion is no vibration. Where a structure softens until its
 /// stiffness vanishes, the frequency falls towards zero at a constant amplitude; inertia, and with it D, is then lost
 /// in the round-off of the stiffness.
+/// Kind: tuned; measured on: not recorded.
 const VANISHED: f64 = 1e-5;
 
 /// Residual of the linear mode, relative to its size, at which it is a reliable initial guess.
+/// Kind: tuned; measured on: not recorded.
 const NEARLY: f64 = 1e-3;
 
 /// Steps of log₁₀ of the amplitude towards smaller ones in which such an amplitude is sought.
+/// Kind: tuned; measured on: not recorded.
 const NEARLY_STEP: f64 = 0.5;
+/// Most such steps.
+/// Kind: cap.
 const NEARLY_STEPS: u8 = 40;
 
 /// Normalisation of a mode: its amplitude and phase.
@@ -194,7 +203,7 @@ impl<'a> Epmc<'a> {
     pub fn frequency_and_damping(linear: &LinearMode, u: &[f64]) -> (f64, f64) {
         let n = u.len();
         (
-            linear.omega * (OMEGA_UNIT * u[n - 2]).exp(),
+            linear.omega * (EPMC_OMEGA_UNIT * u[n - 2]).exp(),
             linear.damping + DAMPING_UNIT * u[n - 1],
         )
     }
@@ -202,7 +211,7 @@ impl<'a> Epmc<'a> {
     /// Sets the unknowns that represent frequency and damping ratio.
     pub fn set_frequency_and_damping(linear: &LinearMode, (omega, damping): (f64, f64), u: &mut [f64]) {
         let n = u.len();
-        u[n - 2] = (omega / linear.omega).ln() / OMEGA_UNIT;
+        u[n - 2] = (omega / linear.omega).ln() / EPMC_OMEGA_UNIT;
         u[n - 1] = (damping - linear.damping) / DAMPING_UNIT;
     }
 
@@ -215,7 +224,7 @@ impl<'a> Epmc<'a> {
     /// Relative change of the frequency that belongs to a small change of the unknowns.
     #[must_use]
     pub fn frequency_of_change(change: &[f64]) -> f64 {
-        OMEGA_UNIT * change[change.len() - 2]
+        EPMC_OMEGA_UNIT * change[change.len() - 2]
     }
 
     /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
@@ -400,7 +409,7 @@ impl<'a> Epmc<'a> {
         if !(omega >= VANISHED * self.linear.omega && omega.is_finite()) {
             return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
         }
-        let rates = (OMEGA_UNIT * omega, DAMPING_UNIT);
+        let rates = (EPMC_OMEGA_UNIT * omega, DAMPING_UNIT);
         self.forces.evaluate(motion, omega)?;
         let set = self.condensed.set();
         let m = set.packed_len();

@@ -26,18 +26,22 @@ use crate::problem::static_force::static_force;
 use num_complex::Complex64;
 
 /// Harmonics between two checks of the interrupt.
-const BETWEEN_CHECKS: usize = 16;
+/// Kind: block.
+const HARMONIC_BALANCE_BETWEEN_CHECKS: usize = 16;
 
 /// Size of a motion, relative to that under linear contacts, beyond which the forces keep less than four digits in
 /// double precision.
+/// Kind: rounding.
 const FAR_MOTION: f64 = 1e12;
 
 /// Residual, in units of the motion under linear contacts, above which the forces are unbalanced, even if it is small
 /// against a large motion.
+/// Kind: tuned; measured on: not recorded.
 const UNBALANCED: f64 = 1e-2;
 
 /// Least motion under linear contacts to which others are compared, in units of the largest motion of the structure: a contact
 /// far from the forces, or between parts that move alike, vibrates less than its own static load moves it.
+/// Kind: tuned; measured on: not recorded.
 const LEAST_LINEAR_MOTION: f64 = 1e-6;
 
 /// The forced response of a condensed model.
@@ -238,7 +242,7 @@ impl<'a> HarmonicBalance<'a> {
         // Estimates of errors have one frequency, and tables without slopes.
         let has_slopes = path.is_some() || !self.tables.has_modes();
         for (i, table) in self.tables.current().iter().enumerate() {
-            if i.is_multiple_of(BETWEEN_CHECKS) {
+            if i.is_multiple_of(HARMONIC_BALANCE_BETWEEN_CHECKS) {
                 interrupt.check()?;
             }
             let at = set.offset(i);

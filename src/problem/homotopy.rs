@@ -12,7 +12,8 @@ use num_complex::Complex64;
 
 /// Points without progress towards the laws after which a mode about a static state is given up: a body that friction
 /// alone holds, and whose mean friction has no balance, moves ever further there.
-const PATIENCE: usize = 60;
+/// Kind: tuned; measured on: not recorded.
+const HOMOTOPY_PATIENCE: usize = 60;
 
 /// The meaning of the parameter of a homotopy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +59,7 @@ impl<'p> PathHomotopy<'p> {
             start,
             end,
             patience: if path == Path::FromTangents {
-                PATIENCE
+                HOMOTOPY_PATIENCE
             } else {
                 usize::MAX
             },

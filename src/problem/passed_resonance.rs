@@ -19,12 +19,15 @@ use num_complex::Complex64;
 use std::f64::consts::FRAC_PI_2;
 
 /// Least change of a harmonic that counts, as a share of the motion.
+/// Kind: tuned; measured on: not recorded.
 const RELEVANT: f64 = 1e-4;
 
 /// Cosine of the angle between the change and a derivative below which they have opposite directions.
+/// Kind: tuned; measured on: not recorded.
 const OPPOSITE: f64 = -0.5;
 
 /// Largest ratio of the change to that of the pole, either way.
+/// Kind: tuned; measured on: not recorded.
 const ALIKE: f64 = 2.0;
 
 /// Share of the step, of this length, from `a` to `b` at which a harmonic resonates between them; that of the first one.

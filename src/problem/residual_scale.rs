@@ -7,6 +7,7 @@
 use crate::fourier::HarmonicSet;
 
 /// Share of a mean motion.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const MEAN_SHARE: f64 = 1e-4;
 
 /// Sum of squares of a vibration, and of the mean.

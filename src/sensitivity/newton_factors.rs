@@ -9,6 +9,7 @@ use crate::linalg::dot;
 use crate::linalg::factors::lu::Lu;
 
 /// Entry beside the diagonal, which is 1, up to which a column is that of the identity. Rounding of the stiffness of a contact that sticks.
+/// Kind: rounding.
 const NEWTON_FACTORS_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 const CONTEXT: &str = "the factors of Newton's matrix";

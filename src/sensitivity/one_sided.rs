@@ -10,6 +10,7 @@ use crate::sensitivity::contact_products::{ContactMotion, evaluate};
 
 /// Relative change of the vibration within which a contact begins to slip that is at the onset: a solution is not known
 /// better.
+/// Kind: rounding.
 const ONE_SIDED_NEAR: f64 = 1e-8;
 
 /// The first contact at the onset of slip, if there is one. `model` is the model at the frequency of the solution.

@@ -9,9 +9,11 @@ use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::forced_point::ForcedPoint;
 
 /// Distance of the differences over the width of the peak.
+/// Kind: tuned; measured on: not recorded.
 const PEAK_SHIFT_STEP: f64 = 5e-4;
 
 /// Change of the frequency relative to itself that tells the width of the peak where no contact moves.
+/// Kind: tuned; measured on: not recorded.
 const PROBE: f64 = 1e-7;
 
 /// dω*/dp of a peak at (u, ω), whose amplitude is `amplitude`, for `count` parameters whose derivatives of the amplitude

@@ -3,8 +3,8 @@
 use crate::condense::Resolution;
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_vec};
-use crate::error_estimate::{Corrected, Estimate};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::{Corrected, Estimate};
 use crate::problem::{InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Special, SpecialKind};
 use num_complex::Complex64;
@@ -12,6 +12,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the parameter response";
 
 /// Step of the differences by the parameter, over its range.
+/// Kind: tuned; measured on: not recorded.
 const PARAMETER_STEP: f64 = 1e-5;
 
 /// A result over a parameter. Motions come first among its unknowns, in one unit of length for all harmonics and all values

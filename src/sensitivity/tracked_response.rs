@@ -14,9 +14,9 @@ use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference, Resolution};
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
-use crate::error_estimate::forced_response_error::ForcedEstimator;
-use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::forced_response_error::ForcedEstimator;
+use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
@@ -38,12 +38,15 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Change of ln ω that has the same weight as a change of the motions by their size.
-const OMEGA_UNIT: f64 = 0.05;
+/// Kind: tuned; measured on: not recorded.
+const TRACKED_RESPONSE_OMEGA_UNIT: f64 = 0.05;
 
 /// Step of the differences along the branch over ω, over the width of the peak.
+/// Kind: tuned; measured on: not recorded.
 const BRANCH_STEP: f64 = 1e-4;
 
 /// Newton iterations by which the work of an estimate is bounded: those of a point that is solved by homotopy.
+/// Kind: cap.
 const TRACKED_RESPONSE_ITERATIONS: usize = 200;
 
 /// Point of a response over the frequency that is followed.
@@ -136,7 +139,7 @@ impl<'a> TrackedResponse<'a> {
 
     fn frequency(&self, u: &[f64]) -> f64 {
         if self.is_free() {
-            self.omega * (OMEGA_UNIT * (u[u.len() - 1] - 1.0)).exp()
+            self.omega * (TRACKED_RESPONSE_OMEGA_UNIT * (u[u.len() - 1] - 1.0)).exp()
         } else {
             self.omega
         }
@@ -233,7 +236,7 @@ impl<'a> TrackedResponse<'a> {
         };
         values[..m].copy_from_slice(point.residual());
         let scale = point.scale();
-        let by_gauge = OMEGA_UNIT * omega / adjoint.amplitude;
+        let by_gauge = TRACKED_RESPONSE_OMEGA_UNIT * omega / adjoint.amplitude;
         if self.is_free() {
             values[m] = adjoint.by_omega * by_gauge;
         }
@@ -247,7 +250,7 @@ impl<'a> TrackedResponse<'a> {
             let (row, curvature) = peak_row(point, own, omega, &adjoint)?;
             self.curvature = curvature;
             self.fill_frequency((&by_omega, &row), omega, unit, by_gauge);
-            self.gradient[m] = adjoint.by_omega * OMEGA_UNIT * omega;
+            self.gradient[m] = adjoint.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
         }
         let slope = self.by_parameter((model, condensed), p, &adjoint)?;
         self.gradient[values.len()] = slope;
@@ -294,7 +297,7 @@ impl<'a> TrackedResponse<'a> {
         for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
+        self.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
         self.gradient[n] = self.by_parameter(models, p, &partial)?;
         // The adjoint of motions, frequency and condition together.
         let mut system = Lu::new(n, 1)?;
@@ -338,13 +341,13 @@ impl<'a> TrackedResponse<'a> {
             return Ok(scale);
         }
         self.fill_motions(point.jacobian());
-        let row = extremum_gradient(point, (own, omega, length), &at, OMEGA_UNIT * omega)?;
+        let row = extremum_gradient(point, (own, omega, length), &at, TRACKED_RESPONSE_OMEGA_UNIT * omega)?;
         self.fill_frequency((&by_omega, &row), omega, unit, 1.0);
         self.amplitude = length * amplitude.norm();
         for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
+        self.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
         self.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
         // The amplitude does not change with the frequency there, so that its derivative is that at a fixed one.
         self.d_amplitude = match point.adjoint(own, omega)? {
@@ -361,7 +364,7 @@ impl<'a> TrackedResponse<'a> {
         derivatives: (&[f64], &[f64], f64),
         omega: f64,
     ) -> Result<FoldCondition> {
-        let matrix = extremum_matrix(point.jacobian(), derivatives, OMEGA_UNIT * omega)?;
+        let matrix = extremum_matrix(point.jacobian(), derivatives, TRACKED_RESPONSE_OMEGA_UNIT * omega)?;
         let borders = match self.borders.take() {
             Some(borders) => borders,
             None => Borders::near(&matrix, derivatives.1.len() + 1, self.interrupt)?,
@@ -413,13 +416,13 @@ impl<'a> TrackedResponse<'a> {
     fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
         let (m, n) = (self.motions(), self.unknowns.len());
         for (x, r) in self.unknowns.matrix[m * n..m * n + m].iter_mut().zip(column) {
-            *x = OMEGA_UNIT * omega * r / unit;
+            *x = TRACKED_RESPONSE_OMEGA_UNIT * omega * r / unit;
         }
         for (k, x) in row[..m].iter().enumerate() {
             // The unknowns are in another unit than those of the condensed model.
             self.unknowns.matrix[k * n + m] = x * unit * factor;
         }
-        self.unknowns.matrix[m * n + m] = row[m] * OMEGA_UNIT * omega * factor;
+        self.unknowns.matrix[m * n + m] = row[m] * TRACKED_RESPONSE_OMEGA_UNIT * omega * factor;
     }
 
     /// The derivative of the result of an adjoint motion by the parameter.

@@ -13,13 +13,16 @@ use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD};
 use num_complex::Complex64;
 
 /// Singular values below this share of the largest are rounding: the displacement strains nothing.
-const NO_STRAIN: f64 = 1e-12;
+/// Kind: rounding.
+const KNOWN_DIRECTIONS_NO_STRAIN: f64 = 1e-12;
 
 /// Last pivot over the first one above which no singular value is rounding. Chosen: pivots are larger than singular values by a
 /// few powers of ten at most.
+/// Kind: rounding.
 const NO_DOUBT_OF_RANK: f64 = 1e-8;
 
 /// Iterations of the singular values, far above what converging cases need.
+/// Kind: cap.
 const KNOWN_DIRECTIONS_MOST_ITERATIONS: usize = 100_000;
 
 impl Perturbations<'_> {
@@ -59,7 +62,7 @@ impl Perturbations<'_> {
         let largest = svd.singular_values.max();
         let Some(v) = svd.v_t else { return Ok(empty) };
         let free: Vec<usize> = (0..n)
-            .filter(|&i| svd.singular_values[i] <= NO_STRAIN * largest)
+            .filter(|&i| svd.singular_values[i] <= KNOWN_DIRECTIONS_NO_STRAIN * largest)
             .collect();
         let mut found = DMatrix::zeros(ring.states(), free.len());
         for (c, &i) in free.iter().enumerate() {

@@ -19,19 +19,24 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the Floquet multipliers";
 
 /// Square matrices that the eigenvalues of a map need at a time.
+/// Kind: fixed.
 const MULTIPLIERS_COPIES: usize = 8;
 
 /// Share of the largest pivot below which a direction of the map is round-off.
+/// Kind: rounding.
 const MULTIPLIERS_ROUNDING: f64 = 1e-12;
 
 /// Modulus over a period below which the multiplier of a slider is zero to rounding: while another one remembers, what
 /// a slider has forgotten is not an exact null space.
+/// Kind: rounding.
 const FORGOTTEN: f64 = f64::EPSILON;
 
 /// Lapses of a period for each slider that moves from which a root of round-off vanishes. Chosen: round-off squared.
+/// Kind: rounding.
 const LAPSES_FOR_EACH_SLIDER: usize = 2;
 
 /// Largest residual of a known perturbation, relative to it; above it is not invariant after all.
+/// Kind: rounding.
 const INVARIANT: f64 = 1e-6;
 
 /// Facts about the motion from which multipliers are known.

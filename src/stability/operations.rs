@@ -5,15 +5,19 @@ use crate::linalg::sparse_storage::sparse::Csc;
 
 /// Operations of the eigenvalues of a complex matrix of order 1 (Golub & Van Loan, Matrix Computations, 2013, §7.5: 25 n³
 /// complex ones).
+/// Kind: tuned; measured on: not recorded.
 const OF_EIGENVALUES: f64 = 100.0;
 
 /// Terms of the series of a step.
+/// Kind: tuned; measured on: not recorded.
 const TERMS: f64 = 24.0;
 
 /// Rate of the fastest motion times the length of a step.
+/// Kind: tuned; measured on: not recorded.
 const OPERATIONS_STEP: f64 = 2.0;
 
 /// Columns that are carried: those of shooting and those of the perturbations.
+/// Kind: tuned; measured on: not recorded.
 const TWICE: f64 = 2.0;
 
 /// A structure as the operations of its perturbations depend on it.

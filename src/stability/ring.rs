@@ -16,6 +16,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the equations of perturbations";
 
 /// Entries of a sum over diameters below this share of the largest are rounding.
+/// Kind: rounding.
 const RING_ROUNDING: f64 = 1e-14;
 
 /// Row of a relative motion: entries (degree of freedom of the ring, coefficient).

@@ -18,21 +18,27 @@ use crate::time_integration::{DEGREE, first_fall};
 const CONTEXT: &str = "the motion on modes";
 
 /// Share of a step within which events count as simultaneous.
+/// Kind: rounding.
 const SLIDER_LAPSE_SIMULTANEOUS: f64 = 1e-13;
 
 /// Events at one time, per contact, before the integration stops with an error.
+/// Kind: cap.
 const SLIDER_LAPSE_AT_ONCE: usize = 20;
 
 /// Steps of a lapse before the integration stops with an error.
+/// Kind: cap.
 const SLIDER_LAPSE_MOST_STEPS: usize = 2_000_000;
 
 /// Speed of a slider that begins to move, relative to its play times ω, below which the event is touched rather than passed.
+/// Kind: tuned; measured on: not recorded.
 const SLIDER_LAPSE_GRAZING: f64 = 3e-6;
 
 /// Rounding of a slider's place at the begin of a lapse, relative to the motion.
+/// Kind: rounding.
 const SLIDER_LAPSE_BEGIN: f64 = 1e-14;
 
 /// Relative size below which the begin of a margin is rounding.
+/// Kind: rounding.
 const SLIDER_LAPSE_ROUNDING: f64 = 1e-12;
 
 impl SliderMotion<'_> {

@@ -21,12 +21,15 @@ use nalgebra::DMatrix;
 const CONTEXT: &str = "the perturbations on modes";
 
 /// Rate of the fastest motion times the length of one series.
+/// Kind: tuned; measured on: not recorded.
 const SLIDER_MAP_STEP: f64 = 2.0;
 
 /// Share of the largest term at which a series is cut off.
+/// Kind: rounding.
 const SLIDER_MAP_CUT: f64 = 1e-17;
 
 /// Terms of a series.
+/// Kind: cap.
 const SLIDER_MAP_MOST_TERMS: usize = 100;
 
 /// Perturbations by columns: those of coordinates, velocities, and the places of sliders at rest that move at some time.

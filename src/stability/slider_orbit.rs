@@ -12,9 +12,11 @@ use nalgebra::DVector;
 const CONTEXT: &str = "shooting on modes";
 
 /// Newton's iterations.
+/// Kind: cap.
 const SLIDER_ORBIT_MOST_ITERATIONS: usize = 30;
 
 /// Smallest share of a Newton step that is tried.
+/// Kind: cap.
 const SLIDER_ORBIT_SHORTEST: f64 = 1.0 / 64.0;
 
 /// A periodic motion.

@@ -20,9 +20,11 @@ use nalgebra::{DMatrix, DVector};
 const CONTEXT: &str = "the slipping contacts";
 
 /// Changes after which the inverse is computed anew.
+/// Kind: tuned; measured on: not recorded.
 const SLIPPING_MOST_CHANGES: usize = 48;
 
 /// Share of its own entry below which a pivot of a change is rounding, and the inverse is computed anew.
+/// Kind: rounding.
 const SLIPPING_LEAST_PIVOT: f64 = 1e-8;
 
 /// The equations.

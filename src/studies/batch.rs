@@ -24,12 +24,14 @@ use std::time::Duration;
 const CONTEXT: &str = "the designs";
 
 /// Degrees of freedom above which a basis may serve all designs.
+/// Kind: tuned; measured on: not recorded.
 const MAY_HAVE_BASIS: usize = 100;
 
 /// Time between two looks at the caller's flag while other threads work.
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Checks of a design between two of the caller's hooks.
+/// Kind: tuned; measured on: not recorded.
 const BATCH_BETWEEN_CHECKS: usize = 16;
 
 /// Runs the work of a thread in the surroundings that its caller wants; false: the thread cannot work, and others do it all.

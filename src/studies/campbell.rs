@@ -9,15 +9,19 @@ use crate::model::Model;
 use crate::model::matrices::speed::Speed;
 
 /// Relative accuracy of a crossing.
+/// Kind: rounding.
 const CAMPBELL_TOLERANCE: f64 = 1e-13;
 
 /// Largest number of steps towards a crossing.
+/// Kind: cap.
 const CAMPBELL_MAX_STEPS: usize = 200;
 
 /// Distance of a frequency from EO·Ω, relative, at which both are one.
+/// Kind: rounding.
 const MET: f64 = 1e-9;
 
 /// Number of halvings of the interval in which a mode ceases to oscillate.
+/// Kind: cap.
 const CAMPBELL_MAX_HALVINGS: usize = 40;
 
 const CONTEXT: &str = "the Campbell diagram";

@@ -11,9 +11,11 @@ use crate::studies::run_up::loaded;
 
 /// Half widths of a passage: bandwidths Dω and quick widths, the root of the rate, on each side of the resonance. Chosen, not measured:
 /// a passage begins where the response is 1/30 of the peak, and ends behind the beat.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const CAMPBELL_PASSAGE: f64 = 15.0;
 
-/// Least frequency of a passage over that of its resonance. A cap.
+/// Least frequency of a passage over that of its resonance.
+/// Kind: cap.
 const CAMPBELL_LOWEST: f64 = 0.2;
 
 /// The highest resonance of a mode under one force.

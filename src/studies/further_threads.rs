@@ -6,6 +6,7 @@
 use std::thread;
 
 /// Memory of the stack of a thread.
+/// Kind: cap.
 pub const STACK: usize = 8 << 20;
 
 /// Runs its last argument in this thread while others, at most the given number, run the task with their numbers from 0.

@@ -17,24 +17,30 @@ use crate::studies::run_up::slow_flow::{slow_root, steady};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Change of the frequency in a step over its distance from the resonance, or the bandwidth. Tuned with
-/// the next ones on an oscillator with one slider: its passages at 1e-5 to 1e-2 are within 5e-3 of the slow flow, whose
+/// Change of the frequency in a step over its distance from the resonance, or the bandwidth.
+/// Kind: tuned; measured on: an oscillator with one slider, as the next ones: its passages at 1e-5 to 1e-2 are within 5e-3 of the
+/// slow flow, whose
 /// harmonics they leave out.
 const MISSION_STEP: f64 = 0.04;
 
-/// Phase in which a quick crossing turns within a step, relative to the resonance. Tuned, as above.
+/// Phase in which a quick crossing turns within a step, relative to the resonance.
+/// Kind: tuned; measured on: the oscillator above.
 const MISSION_PHASE: f64 = 0.15;
 
-/// Bandwidths and quick widths (root of the rate) around the resonance in which steps are short. Tuned, as above.
+/// Bandwidths and quick widths (root of the rate) around the resonance in which steps are short.
+/// Kind: tuned; measured on: the oscillator above.
 const MISSION_NEAR: f64 = 12.0;
 
 /// Rate over the square of the bandwidth below which a crossing is steady. Chosen: an amplitude lags by about this share.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const MISSION_SLOW: f64 = 1e-4;
 
 /// Difference from the steady amplitude, relative, below which a dwell is settled. Chosen, as the lag above.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const MISSION_SETTLED: f64 = 1e-4;
 
-/// Most steps of a mission. A cap: some minutes.
+/// Most steps of a mission.
+/// Kind: cap; some minutes.
 const MISSION_MOST_STEPS: usize = 50_000_000;
 
 const CONTEXT: &str = "the mission";

@@ -22,7 +22,8 @@ use crate::studies::condition_noise::{ConditionNoise, ModeErrors};
 const CONTEXT: &str = "a measured mode";
 
 /// Departure of a tuned mode from the equations, relative to λ, that a first estimate of the shape allows for: mistuning of some
-/// per cent. Kind: tuned; it decides the start alone.
+/// per cent. It decides the start alone.
+/// Kind: tuned; measured on: not recorded.
 const FIRST_DEPARTURE: f64 = 0.1;
 
 /// Matrices of the wheel over its tuned modes, in units in which frequencies are about 1.

@@ -32,14 +32,17 @@ use crate::studies::run_up::steady_motion::largest_steady;
 use crate::time_integration::System;
 use std::f64::consts::TAU;
 
-/// Most solutions of the slow flow with the memory of the one before. A cap.
+/// Most solutions of the slow flow with the memory of the one before.
+/// Kind: cap.
 const RUN_UP_MOST_REPEATS: usize = 8;
 
-/// Change of the largest displacement, relative, at which the memory is known. A cap: below what the slow flow alone errs by, 2e-5 and more
+/// Change of the largest displacement, relative, at which the memory is known.
+/// Kind: cap; below what the slow flow alone errs by, 2e-5 and more
 /// on the oscillator of the stored runs.
 const RUN_UP_REPEATED: f64 = 1e-5;
 
-/// Phase over which the memory is averaged, two turns: the change of the amplitude in it is the share of the second order. Tuned on six
+/// Phase over which the memory is averaged, two turns: the change of the amplitude in it is the share of the second order.
+/// Kind: tuned; measured on: six
 /// models, of three of which it bounds all errors: it decides about the estimate without integration alone.
 const RUN_UP_AVERAGED: f64 = 2.0 * TAU;
 
@@ -54,7 +57,8 @@ pub struct RunUp {
     pub largest_omega: f64,
     /// That time, from the begin.
     pub largest_time: f64,
-    /// Relative error of the largest displacement: by how much three leads of the integration in time change it. Without integration it is an
+    /// Relative error of the largest displacement: by how much three leads of the integration in time change it. Without
+    /// integration it is an
     /// estimate that may be too small, NaN where the mode has no resonance under these forces to compare with.
     pub error: f64,
     /// The largest displacement by the slow flow alone.
@@ -80,7 +84,8 @@ impl RunUp {
 /// frequency on, by the slow flow of its nonlinear mode.
 ///
 /// # Errors
-/// Those of [`RunUpOptions::check`] and of [`synthesise`](crate::synthesise); `Unsupported` for a cyclic model, an unbalance or a speed that
+/// Those of [`RunUpOptions::check`] and of [`synthesise`](crate::synthesise); `Unsupported` for a cyclic model, an unbalance or a
+/// speed that
 /// follows the frequency, and laws that are not integrated in time; `Argument` where the amplitude leaves those of the mode;
 /// `StoppedByCaller`.
 pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt: &Interrupt<'_>) -> Result<RunUp> {

@@ -23,6 +23,7 @@ use crate::model::matrices::structure::Structure;
 const CONTEXT: &str = "the contacts";
 
 /// Operations, about, that place a spring, contact or load in one sector.
+/// Kind: block.
 pub(super) const OF_ONE_SECTOR: u64 = 100;
 
 /// One contact of one sector.

@@ -16,20 +16,25 @@ use crate::time_integration::variation::{Collocation, Interval, Variation};
 const CONTEXT: &str = "the motion in time";
 
 /// Operations that a law takes in a step, about.
+/// Kind: block.
 const OPERATIONS_OF_A_LAW: usize = 200;
 
 /// Steps of one lapse before the integration stops with an error: for integration in time the structure is then too
 /// stiff against its period.
+/// Kind: cap.
 const EVENT_LOOP_MOST_STEPS: usize = 20_000_000;
 
 /// Events without progress in time, per contact, before the integration stops with an error.
+/// Kind: cap.
 const MOST_AT_ONCE: usize = 50;
 
 /// Share of a step within which events count as simultaneous.
+/// Kind: rounding.
 const SIMULTANEOUS: f64 = 1e-13;
 
 /// Speed of a slider that begins to move, relative to its stretch times ω, or of a landing, relative to the largest
 /// velocity, below which the event is touched rather than passed.
+/// Kind: tuned; measured on: not recorded.
 const GRAZING_SPEED: f64 = 3e-6;
 
 /// Displacements, velocities and the stretches of the sliders' springs.
@@ -67,13 +72,14 @@ impl State {
     /// pattern come from multiples of the golden ratio.
     pub fn disturb(&mut self, share: f64, omega: f64) {
         /// Golden ratio − 1.
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        /// Kind: fixed.
+        const EVENT_LOOP_GOLDEN: f64 = 0.618_033_988_749_894_9;
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let size = largest(&self.x).max(largest(&self.v) / omega);
         let size = if size > 0.0 { size } else { 1.0 };
         for (values, unit) in [(&mut self.x, 1.0), (&mut self.v, omega)] {
             for (i, x) in values.iter_mut().enumerate() {
-                let part = (i as f64 + 1.0) * GOLDEN;
+                let part = (i as f64 + 1.0) * EVENT_LOOP_GOLDEN;
                 *x += share * size * unit * (part - part.floor() - 0.3);
             }
         }

@@ -3,7 +3,8 @@
 use crate::time_integration::step_polynomial::DEGREE;
 
 /// Stages of the implicit method, of order twice that.
-pub(crate) const STAGES: usize = 8;
+/// Kind: fixed.
+pub(crate) const GAUSS_STAGES: usize = 8;
 
 /// Nodes and weights of quadrature with `N` points on [0, 1], exact up to degree 2N − 1.
 pub(super) fn nodes<const N: usize>() -> ([f64; N], [f64; N]) {
@@ -34,21 +35,21 @@ pub(super) fn nodes<const N: usize>() -> ([f64; N], [f64; N]) {
 /// Collocation at Gauss's nodes.
 pub(crate) struct GaussTables {
     /// Nodes cᵢ.
-    pub nodes: [f64; STAGES],
+    pub nodes: [f64; GAUSS_STAGES],
     /// aᵢⱼ, integrals of the Lagrange polynomials up to the nodes.
-    pub once: [[f64; STAGES]; STAGES],
+    pub once: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
     /// Σₖ aᵢₖ aₖⱼ
-    pub twice: [[f64; STAGES]; STAGES],
+    pub twice: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
     /// Matrix from values at the nodes to the coefficients of the shifted Legendre polynomials.
-    pub legendre: [[f64; STAGES]; STAGES],
+    pub legendre: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
     /// The coefficients of θᵐ in the j-th of them: (−1)^{j+m} C(j,m) C(j+m,m).
-    pub powers: [[f64; STAGES]; STAGES],
+    pub powers: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
 }
 
 impl GaussTables {
     pub fn new() -> Self {
-        let (nodes, weights) = nodes::<STAGES>();
-        let mut powers = [[0.0; STAGES]; STAGES];
+        let (nodes, weights) = nodes::<GAUSS_STAGES>();
+        let mut powers = [[0.0; GAUSS_STAGES]; GAUSS_STAGES];
         for (j, row) in powers.iter_mut().enumerate() {
             let mut value = if j % 2 == 0 { 1.0 } else { -1.0 };
             for (m, p) in row.iter_mut().enumerate().take(j + 1) {
@@ -59,9 +60,9 @@ impl GaussTables {
         // The recurrence avoids the cancellation of powers.
         let values = |theta: f64| {
             let x = 2.0 * theta - 1.0;
-            let mut p = [1.0; STAGES + 1];
+            let mut p = [1.0; GAUSS_STAGES + 1];
             p[1] = x;
-            for k in 1..STAGES {
+            for k in 1..GAUSS_STAGES {
                 let n = k as f64;
                 p[k + 1] = ((2.0 * n + 1.0) * x * p[k] - n * p[k - 1]) / (n + 1.0);
             }
@@ -69,34 +70,34 @@ impl GaussTables {
         };
         let mut tables = Self {
             nodes,
-            once: [[0.0; STAGES]; STAGES],
-            twice: [[0.0; STAGES]; STAGES],
-            legendre: [[0.0; STAGES]; STAGES],
+            once: [[0.0; GAUSS_STAGES]; GAUSS_STAGES],
+            twice: [[0.0; GAUSS_STAGES]; GAUSS_STAGES],
+            legendre: [[0.0; GAUSS_STAGES]; GAUSS_STAGES],
             powers,
         };
         for (j, (&c, &b)) in nodes.iter().zip(&weights).enumerate() {
             let p = values(c);
-            for (k, p) in p.iter().enumerate().take(STAGES) {
+            for (k, p) in p.iter().enumerate().take(GAUSS_STAGES) {
                 tables.legendre[k][j] = (2 * k + 1) as f64 * b * p;
             }
         }
         for (i, &c) in nodes.iter().enumerate() {
             let p = values(c);
-            for k in 0..STAGES {
+            for k in 0..GAUSS_STAGES {
                 // The integral of P_k from 0 to θ is (P_{k+1} − P_{k−1})/(2(2k + 1)).
                 let integral = if k == 0 {
                     c
                 } else {
                     (p[k + 1] - p[k - 1]) / (2 * (2 * k + 1)) as f64
                 };
-                for j in 0..STAGES {
+                for j in 0..GAUSS_STAGES {
                     tables.once[i][j] += integral * tables.legendre[k][j];
                 }
             }
         }
-        for i in 0..STAGES {
-            for j in 0..STAGES {
-                tables.twice[i][j] = (0..STAGES).map(|k| tables.once[i][k] * tables.once[k][j]).sum();
+        for i in 0..GAUSS_STAGES {
+            for j in 0..GAUSS_STAGES {
+                tables.twice[i][j] = (0..GAUSS_STAGES).map(|k| tables.once[i][k] * tables.once[k][j]).sum();
             }
         }
         tables
@@ -104,9 +105,9 @@ impl GaussTables {
 
     /// Weights of the accelerations at the nodes in v and x at θ: v = v₀ + h Σ pⱼaⱼ,
     /// x = x₀ + hθv₀ + h² Σ qⱼaⱼ.
-    pub fn weights(&self, theta: f64) -> ([f64; STAGES], [f64; STAGES]) {
-        let (mut p, mut q) = ([0.0; STAGES], [0.0; STAGES]);
-        for k in 0..STAGES {
+    pub fn weights(&self, theta: f64) -> ([f64; GAUSS_STAGES], [f64; GAUSS_STAGES]) {
+        let (mut p, mut q) = ([0.0; GAUSS_STAGES], [0.0; GAUSS_STAGES]);
+        for k in 0..GAUSS_STAGES {
             let (mut once, mut twice, mut power) = (0.0, 0.0, theta);
             for m in 0..=k {
                 let c = self.powers[k][m] / (m + 1) as f64;
@@ -114,7 +115,7 @@ impl GaussTables {
                 power *= theta;
                 twice += c / (m + 2) as f64 * power;
             }
-            for j in 0..STAGES {
+            for j in 0..GAUSS_STAGES {
                 p[j] += once * self.legendre[k][j];
                 q[j] += twice * self.legendre[k][j];
             }
@@ -123,7 +124,7 @@ impl GaussTables {
     }
 }
 
-const _: () = assert!(STAGES < DEGREE);
+const _: () = assert!(GAUSS_STAGES < DEGREE);
 
 #[cfg(test)]
 mod tests {
@@ -144,11 +145,11 @@ mod tests {
     #[test]
     fn tables_integrate_polynomials_once_and_twice() {
         let t = GaussTables::new();
-        for degree in 0..STAGES as i32 {
+        for degree in 0..GAUSS_STAGES as i32 {
             let a = t.nodes.map(|c| c.powi(degree));
             let d = f64::from(degree);
-            for i in 0..STAGES {
-                let once: f64 = (0..STAGES).map(|j| t.once[i][j] * a[j]).sum();
+            for i in 0..GAUSS_STAGES {
+                let once: f64 = (0..GAUSS_STAGES).map(|j| t.once[i][j] * a[j]).sum();
                 assert!((once - t.nodes[i].powi(degree + 1) / (d + 1.0)).abs() < 1e-15);
             }
             let (p, q) = t.weights(0.7);

@@ -18,12 +18,15 @@ use std::f64::consts::TAU;
 const CONTEXT: &str = "the harmonics of the motion";
 
 /// Points of quadrature on each part.
+/// Kind: tuned; measured on: not recorded.
 const HARMONIC_ANALYSIS_POINTS: usize = 20;
 
 /// Harmonics, or times, between two checks of a stop.
+/// Kind: block.
 const HARMONIC_ANALYSIS_BETWEEN_CHECKS: usize = 64;
 
 /// Largest angle of a part.
+/// Kind: tuned; measured on: not recorded.
 const WIDEST: f64 = 4.0;
 
 /// A requested time within the lapse, with its sector and its sample.

@@ -10,12 +10,13 @@
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::linalg::factors::lu::Lu;
-use crate::time_integration::gauss::{GaussTables, STAGES};
+use crate::time_integration::gauss::{GAUSS_STAGES, GaussTables};
 use crate::time_integration::smooth_laws::Smooth;
 use crate::time_integration::step_polynomial::StepPolynomial;
 use crate::time_integration::unrolled_structure::System;
 
 /// Newton iterations of a step before it is halved.
+/// Kind: cap.
 const IMPLICIT_STEP_MOST_ITERATIONS: usize = 30;
 
 /// Memory of the steps.
@@ -41,13 +42,13 @@ impl Implicit {
     pub fn new(system: &System<'_>, tolerance: f64) -> Result<Self> {
         const CONTEXT: &str = "an implicit time step";
         let n = system.order();
-        let all = n.saturating_mul(STAGES);
+        let all = n.saturating_mul(GAUSS_STAGES);
         Ok(Self {
             tables: GaussTables::new(),
             lu: Lu::new(all, 1)?,
             accelerations: try_vec(all, 0.0, CONTEXT)?,
             residual: try_vec(all, 0.0, CONTEXT)?,
-            smooth: Smooth::new(system, STAGES)?,
+            smooth: Smooth::new(system, GAUSS_STAGES)?,
             x: try_vec(n, 0.0, CONTEXT)?,
             v: try_vec(n, 0.0, CONTEXT)?,
             trial: 0.05 * system.lapse(),
@@ -99,7 +100,7 @@ impl Implicit {
             let error = self.interpolate(x, v, h, step);
             step.begin = t;
             // The error grows with h to the power of the last coefficient's number plus 2.
-            let factor = 0.9 * (self.tolerance / error).powf(1.0 / (STAGES + 1) as f64);
+            let factor = 0.9 * (self.tolerance / error).powf(1.0 / (GAUSS_STAGES + 1) as f64);
             let next = h * factor.clamp(0.2, 2.0);
             if error <= self.tolerance {
                 // A step that ends with the lapse does not shorten the next one.
@@ -113,16 +114,16 @@ impl Implicit {
     /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
     fn factor(&mut self, system: &System<'_>, pieces: &[TimePiece], h: f64) -> Result<()> {
         let n = self.x.len();
-        let all = n * STAGES;
+        let all = n * GAUSS_STAGES;
         let tables = &self.tables;
         let matrix = self.lu.matrix();
         matrix.fill(0.0);
-        for i in 0..STAGES {
+        for i in 0..GAUSS_STAGES {
             system.interrupt.check()?;
             system
                 .inertia
                 .each(|r, c, m| matrix[(i * n + c) * all + i * n + r] += m);
-            for j in 0..STAGES {
+            for j in 0..GAUSS_STAGES {
                 system.interrupt.check()?;
                 let (once, twice) = (h * tables.once[i][j], h * h * tables.twice[i][j]);
                 let mut add = |r: usize, c: usize, value: f64| matrix[(j * n + c) * all + i * n + r] += value;
@@ -197,12 +198,12 @@ impl Implicit {
         h: f64,
     ) -> Result<()> {
         let n = self.x.len();
-        for i in 0..STAGES {
+        for i in 0..GAUSS_STAGES {
             system.interrupt.check_before(system.operations())?;
             let c = self.tables.nodes[i];
             for d in 0..n {
                 let (mut once, mut twice) = (0.0, 0.0);
-                for j in 0..STAGES {
+                for j in 0..GAUSS_STAGES {
                     let a = self.accelerations[j * n + d];
                     once += self.tables.once[i][j] * a;
                     twice += self.tables.twice[i][j] * a;
@@ -233,23 +234,23 @@ impl Implicit {
     fn interpolate(&mut self, x: &[f64], v: &[f64], h: f64, step: &mut StepPolynomial) -> f64 {
         let n = x.len();
         step.length = h;
-        step.degree = STAGES + 1;
+        step.degree = GAUSS_STAGES + 1;
         let c = &mut step.coefficients;
         c[..n].copy_from_slice(x);
         for (c, v) in c[n..2 * n].iter_mut().zip(v) {
             *c = h * v;
         }
-        c[2 * n..(STAGES + 2) * n].fill(0.0);
+        c[2 * n..(GAUSS_STAGES + 2) * n].fill(0.0);
         let mut last = 0.0_f64;
         for d in 0..n {
-            for k in 0..STAGES {
+            for k in 0..GAUSS_STAGES {
                 let sum = |k: usize| -> f64 {
-                    (0..STAGES)
+                    (0..GAUSS_STAGES)
                         .map(|j| self.tables.legendre[k][j] * self.accelerations[j * n + d])
                         .sum()
                 };
                 let coefficient = sum(k);
-                if k + 1 == STAGES {
+                if k + 1 == GAUSS_STAGES {
                     last = last.max(coefficient.abs());
                 }
                 for m in 0..=k {
@@ -269,7 +270,7 @@ impl Implicit {
             self.largest.1 = self.largest.1.max(v.abs());
         }
         // Each integration divides the last Legendre polynomial by about its number.
-        let order = 2.0 * (STAGES - 1) as f64;
+        let order = 2.0 * (GAUSS_STAGES - 1) as f64;
         let of = |error: f64, largest: f64| if error > 0.0 { error / largest } else { 0.0 };
         of(last * h / order, self.largest.1).max(of(last * (h / order).powi(2), self.largest.0))
     }

@@ -3,9 +3,11 @@
 use crate::time_integration::step_polynomial::StepPolynomial;
 
 /// Parts of a step between which the velocity is looked at: steps are shorter than half a period of the quickest motion.
+/// Kind: tuned; measured on: not recorded.
 const LARGEST_MOTION_PARTS: usize = 8;
 
 /// Halvings of a part in which the velocity changes its sign.
+/// Kind: cap.
 const LARGEST_MOTION_HALVINGS: usize = 60;
 
 /// The largest |x| of a degree of freedom.

@@ -14,13 +14,16 @@ use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 
 /// Share of the largest term below which the last terms of a step must be.
+/// Kind: rounding.
 const LINEAR_STEP_NEGLIGIBLE: f64 = 1e-18;
 
 /// Rounds of shortening a step whose largest terms shrink with it.
+/// Kind: cap.
 const LINEAR_STEP_ROUNDS: usize = 100;
 
 /// Size of a term from which on the next ones may overflow.
-const OVERFLOW: f64 = 1e200;
+/// Kind: rounding.
+const LINEAR_STEP_OVERFLOW: f64 = 1e200;
 
 /// Memory of the steps.
 pub(super) struct Taylor {
@@ -135,7 +138,7 @@ impl Taylor {
             e.push(-1.0, force, f);
         }
         // A step that is too long overflows, and is shortened.
-        if f.iter().all(|f| f.abs() < OVERFLOW) {
+        if f.iter().all(|f| f.abs() < LINEAR_STEP_OVERFLOW) {
             system.accelerate(f)?;
         } else {
             f.fill(f64::NAN);

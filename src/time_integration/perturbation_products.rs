@@ -9,7 +9,7 @@
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::time_integration::variational_equations::{
-    LANES, Number, Numbers, VariationalElement, VariationalEquations,
+    Number, Numbers, VARIATIONAL_EQUATIONS_LANES, VariationalElement, VariationalEquations,
 };
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
@@ -259,7 +259,7 @@ impl WithSimd for Multiply<'_> {
             new,
         } = self;
         for (i, new) in new.iter_mut().enumerate() {
-            let mut sum = [0.0; LANES];
+            let mut sum = [0.0; VARIATIONAL_EQUATIONS_LANES];
             for &(j, a) in products.stiffness.row(i) {
                 subtract(&mut sum, a, &this[j]);
             }
@@ -275,7 +275,7 @@ impl WithSimd for Multiply<'_> {
 #[inline(always)]
 fn subtract(y: &mut Numbers, a: f64, x: &Numbers) {
     let mut k = 0;
-    while k < LANES {
+    while k < VARIATIONAL_EQUATIONS_LANES {
         y[k] -= a * x[k];
         k += 1;
     }
@@ -296,7 +296,10 @@ impl WithSimd for AddTerm<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> Numbers {
         let Self { new, x, v, scale, rate } = self;
         let (scale, rate) = (simd.splat_f64s(scale), simd.splat_f64s(rate));
-        let (mut largest, mut sum) = ([0.0_f64; LANES], [0.0_f64; LANES]);
+        let (mut largest, mut sum) = (
+            [0.0_f64; VARIATIONAL_EQUATIONS_LANES],
+            [0.0_f64; VARIATIONAL_EQUATIONS_LANES],
+        );
         let (largest_lanes, _) = S::as_mut_simd_f64s(&mut largest);
         let (sum_lanes, _) = S::as_mut_simd_f64s(&mut sum);
         for ((new, x), v) in new.iter_mut().zip(x).zip(v) {

@@ -14,6 +14,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Operations of an element at one time.
+/// Kind: block.
 pub(super) const OF_ONE_ELEMENT: usize = 20;
 
 const CONTEXT: &str = "the structure in time";

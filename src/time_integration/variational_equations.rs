@@ -14,10 +14,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the equations of perturbations";
 
 /// Perturbations that are carried together.
-pub(crate) const LANES: usize = 8;
+/// Kind: block.
+pub(crate) const VARIATIONAL_EQUATIONS_LANES: usize = 8;
 
 /// One real number of each of the perturbations that are carried together.
-pub(super) type Numbers = [f64; LANES];
+pub(super) type Numbers = [f64; VARIATIONAL_EQUATIONS_LANES];
 
 /// Numbers of perturbations: real ones, or complex ones.
 pub(crate) trait Number: Entry + Scalar {}
@@ -126,7 +127,7 @@ impl<T: Number> VariationalEquations<T> {
     /// Operations of one product with the matrices and elements.
     pub(super) fn operations(&self) -> u64 {
         let elements = OF_ONE_ELEMENT * self.elements.len();
-        (LANES * (self.stiffness.len() + self.damping.len() + self.order + elements)) as u64
+        (VARIATIONAL_EQUATIONS_LANES * (self.stiffness.len() + self.damping.len() + self.order + elements)) as u64
     }
 
     /// 1/mᵢᵢ of a diagonal mass.
@@ -144,7 +145,7 @@ impl<T: Number> VariationalEquations<T> {
             return Ok(());
         };
         for i in 0..n {
-            for k in 0..LANES {
+            for k in 0..VARIATIONAL_EQUATIONS_LANES {
                 let im = a.get(n + i).map_or(0.0, |a| a[k]);
                 buffer[k * n + i] = Complex64::new(a[i][k], im);
             }
@@ -215,11 +216,15 @@ impl MassFactor {
             }
             return Ok(Self::Diagonal(inverse));
         }
-        let mut factor = Box::new(Factor::new(mass, LANES)?);
+        let mut factor = Box::new(Factor::new(mass, VARIATIONAL_EQUATIONS_LANES)?);
         match factor.factor(mass, interrupt) {
             Ok(()) => Ok(Self::General {
                 factor,
-                buffer: try_vec(mass.cols.saturating_mul(LANES), Complex64::ZERO, CONTEXT)?,
+                buffer: try_vec(
+                    mass.cols.saturating_mul(VARIATIONAL_EQUATIONS_LANES),
+                    Complex64::ZERO,
+                    CONTEXT,
+                )?,
             }),
             Err(e) if e.status == Status::Singular => fail!(
                 Unsupported,

@@ -7,27 +7,34 @@
 use crate::error::{Result, Status, fail, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
-use crate::time_integration::gauss::STAGES;
+use crate::time_integration::gauss::GAUSS_STAGES;
 use crate::time_integration::perturbation_products::Products;
 use crate::time_integration::variation::{Collocation, Interval};
-use crate::time_integration::variational_equations::{LANES, Number, Numbers, VariationalEquations};
+use crate::time_integration::variational_equations::{
+    Number, Numbers, VARIATIONAL_EQUATIONS_LANES, VariationalEquations,
+};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "a step of perturbations";
 
 /// Share of the largest term at which the series is cut off.
+/// Kind: rounding.
 const CUT: f64 = 1e-17;
 
 /// Terms of a series.
+/// Kind: cap.
 const VARIATIONAL_STEP_MOST_TERMS: usize = 200;
 
 /// Largest ratio of a term to the result: so many digits are lost.
+/// Kind: tuned; measured on: not recorded.
 const LARGEST_TERM: f64 = 100.0;
 
 /// Size of a term from which on the next ones may overflow.
-const OVERFLOW: f64 = 1e200;
+/// Kind: rounding.
+const VARIATIONAL_STEP_OVERFLOW: f64 = 1e200;
 
 /// Parts of an interval, beyond which the structure is too stiff.
+/// Kind: cap.
 const MOST_PARTS: usize = 1 << 20;
 
 /// Memory of the steps.
@@ -61,7 +68,7 @@ impl<T: Number> VariationalStep<T> {
             (Some(Products::new(equations)?), None)
         };
         let n = products.as_ref().map_or(0, Products::order);
-        let zeros = |n: usize| try_vec(n, [0.0; LANES], CONTEXT);
+        let zeros = |n: usize| try_vec(n, [0.0; VARIATIONAL_EQUATIONS_LANES], CONTEXT);
         Ok(Self {
             terms: [zeros(n)?, zeros(n)?, zeros(n)?],
             begin: [zeros(n)?, zeros(n)?],
@@ -85,7 +92,7 @@ impl<T: Number> VariationalStep<T> {
         if let (Some(implicit), Some(step)) = (&mut self.implicit, &interval.collocation) {
             implicit.factor(equations, interval, step, interrupt)?;
             // Every stage of every column meets all elements.
-            let operations = STAGES as u64 * equations.operations() / LANES as u64;
+            let operations = GAUSS_STAGES as u64 * equations.operations() / VARIATIONAL_EQUATIONS_LANES as u64;
             for column in columns.chunks_exact_mut(states.max(1)) {
                 interrupt.check_before(operations)?;
                 implicit.carry(equations, interval, step, column);
@@ -97,7 +104,7 @@ impl<T: Number> VariationalStep<T> {
         };
         products.set(&equations.elements, interval.pieces, equations.sliders)?;
         let n = equations.order;
-        for columns in columns.chunks_mut(LANES * states.max(1)) {
+        for columns in columns.chunks_mut(VARIATIONAL_EQUATIONS_LANES * states.max(1)) {
             self.load(equations, columns);
             self.through(equations, interval.length, interrupt)?;
             for (k, column) in columns.chunks_exact_mut(states).enumerate() {
@@ -119,7 +126,7 @@ impl<T: Number> VariationalStep<T> {
         let [x, v] = &mut self.begin;
         for (lanes, first, count) in [(x, 0, n), (v, n, n), (&mut self.sliders, 2 * n, sliders)] {
             for (i, lanes) in lanes.iter_mut().enumerate() {
-                *lanes = [0.0; LANES];
+                *lanes = [0.0; VARIATIONAL_EQUATIONS_LANES];
                 let (within, part) = (i % count, i / count);
                 for (lane, column) in lanes.iter_mut().zip(columns.chunks_exact(states)) {
                     let z = column[first + within].complex();
@@ -183,7 +190,7 @@ impl<T: Number> VariationalStep<T> {
             }
             if !equations.has_diagonal_mass() {
                 // A part that is too long overflows; factors of a mass matrix take finite numbers only.
-                if !sizes(new, 1.0).iter().all(|a| *a < OVERFLOW) {
+                if !sizes(new, 1.0).iter().all(|a| *a < VARIATIONAL_STEP_OVERFLOW) {
                     return Ok(false);
                 }
                 equations.accelerate(new, interrupt)?;
@@ -222,7 +229,7 @@ fn parts<T: Number>() -> usize {
 
 /// Largest modulus of each lane, times a factor.
 fn sizes(x: &[Numbers], factor: f64) -> Numbers {
-    let mut largest = [0.0_f64; LANES];
+    let mut largest = [0.0_f64; VARIATIONAL_EQUATIONS_LANES];
     for x in x {
         for (m, x) in largest.iter_mut().zip(x) {
             let size = x.abs();
@@ -248,7 +255,7 @@ fn below(a: &Numbers, factor: f64, b: &Numbers) -> bool {
 
 impl<T: Number> Implicit<T> {
     fn new(order: usize) -> Result<Self> {
-        let all = order.saturating_mul(STAGES);
+        let all = order.saturating_mul(GAUSS_STAGES);
         Ok(Self {
             lu: Lu::new(all, 1)?,
             accelerations: try_vec(all, T::NONE, CONTEXT)?,
@@ -265,16 +272,16 @@ impl<T: Number> Implicit<T> {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let n = equations.order;
-        let all = n * STAGES;
+        let all = n * GAUSS_STAGES;
         let h = step.step;
         let matrix = self.lu.matrix();
         matrix.fill(T::NONE);
-        for i in 0..STAGES {
+        for i in 0..GAUSS_STAGES {
             interrupt.check()?;
             for (r, c, m) in equations.mass.each() {
                 matrix[(i * n + c) * all + i * n + r] += m;
             }
-            for j in 0..STAGES {
+            for j in 0..GAUSS_STAGES {
                 let (once, twice) = (h * step.tables.once[i][j], h * h * step.tables.twice[i][j]);
                 let mut add = |r: usize, c: usize, value: T| matrix[(j * n + c) * all + i * n + r] += value;
                 for (r, c, d) in equations.damping.each() {
@@ -308,7 +315,7 @@ impl<T: Number> Implicit<T> {
         let (motion, w) = z.split_at_mut(2 * n);
         let (x, v) = motion.split_at_mut(n);
         let h = step.step;
-        for i in 0..STAGES {
+        for i in 0..GAUSS_STAGES {
             let c = step.tables.nodes[i];
             for ((at, x), v) in self.at_node.iter_mut().zip(x.iter()).zip(v.iter()) {
                 *at = *x + v.scaled(c * h);
@@ -339,7 +346,7 @@ impl<T: Number> Implicit<T> {
         let (p, q) = step.tables.weights(step.theta);
         for d in 0..n {
             let (mut once, mut twice) = (T::NONE, T::NONE);
-            for j in 0..STAGES {
+            for j in 0..GAUSS_STAGES {
                 let a = self.accelerations[j * n + d];
                 once += a.scaled(p[j]);
                 twice += a.scaled(q[j]);

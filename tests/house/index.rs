@@ -23,7 +23,8 @@ private, so they are compiled with the sources of the library; the packages in [
 
 Beside the crates: [common](common) holds what they share, [data](data) reference values, [c_abi](c_abi) and
 [languages](languages) the programs in C, C++, Fortran and Python that `programs` builds and runs, and
-[stored_results](stored_results) a program that prints results to the last bit, to compare two builds.
+[stored_results](stored_results) a program that prints results to the last bit, to compare two builds. [ledger](ledger) changes each
+tuned number by a half and by two, and compares answers and cost.
 
 Times fail no test. `cargo bench` has them as multiples of a factorisation, and ends with 1 where a row is more than 1.3 times as slow
 as its stored ratio in `benches/work`.

@@ -22,23 +22,23 @@ const LAYERS: [(&str, u8); 26] = [
     ("problem", 4),
     ("continuation", 5),
     ("results", 6),
-    ("error_estimate", 6),
     ("time_integration", 6),
     ("stability", 7),
     ("sensitivity", 7),
-    ("adaptivity", 7),
-    ("analysis", 8),
-    ("at_a_point", 9),
-    ("studies", 10),
-    ("capi", 11),
-    ("internals", 12),
-    ("lib", 13),
+    ("harmonics", 7),
+    ("tracing", 8),
+    ("analysis", 9),
+    ("at_a_point", 10),
+    ("studies", 11),
+    ("capi", 12),
+    ("internals", 13),
+    ("lib", 14),
 ];
 
 /// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, interrupts and streams of bytes
-/// report errors, options name a measure of Fourier series, hooks hold an interrupt, transforms are products of vectors, and a
-/// model has contacts.
-const SAME_LAYER: [(&str, &str); 9] = [
+/// report errors, options name a measure of Fourier series, hooks hold an interrupt, transforms are products of vectors, a
+/// model has contacts, and a response that is followed over a parameter has an error.
+const SAME_LAYER: [(&str, &str); 10] = [
     ("error", "shortage"),
     ("interrupt", "shortage"),
     ("byte_stream", "error"),
@@ -48,6 +48,7 @@ const SAME_LAYER: [(&str, &str); 9] = [
     ("hooks", "interrupt"),
     ("fourier", "linalg"),
     ("model", "contact"),
+    ("sensitivity", "harmonics"),
 ];
 
 /// Rooms that may import nothing but these, whatever their layer: the continuation never sees a model or a contact, and
@@ -76,7 +77,7 @@ const ONLY: [(&str, &[&str]); 2] = [
 ];
 
 /// Rooms that know contact laws by their traits alone.
-const WITHOUT_LAWS: [&str; 5] = ["aft", "time_integration", "results", "error_estimate", "problem"];
+const WITHOUT_LAWS: [&str; 5] = ["aft", "time_integration", "results", "harmonics", "problem"];
 
 /// Identifiers that the glossary has replaced.
 const REPLACED: [&str; 10] = [

@@ -1,28 +1,54 @@
-//! The numbers by which the library decides are listed in docs/thresholds.md, from their declarations, and names that stand for several
-//! values become fewer.
+//! The numbers by which the library decides: docs/thresholds.md lists them from their declarations. Each has a name of its own and a
+//! comment that ends with its kind.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Names that stand for several values today. A new constant has a name of its own; the number only falls.
-const SHARED_NAMES: usize = 26;
+/// The kinds, in the order of the page, and their meanings.
+const KINDS: [(&str, &str); 5] = [
+    (
+        "tuned",
+        "chosen for speed or robustness, by measurements: others would do",
+    ),
+    (
+        "rounding",
+        "the digits of a number, or an accuracy far below any that a caller asks",
+    ),
+    ("cap", "bounds work, memory or size; met where something fails"),
+    (
+        "block",
+        "things done at once or between two checks of a stop, and operations counted for these",
+    ),
+    (
+        "fixed",
+        "follows from mathematics, the method, a format or the interface",
+    ),
+];
+
+/// Remark of a tuned number whose measurement nobody knows.
+const NOT_RECORDED: &str = "not recorded";
 
 const INTRODUCTION: &str = "\
 # Thresholds
 
-Named numbers of the library, by the folders of `src/` and `crates/numerics/src/`, without the C interface: tolerances, limits of work,
-sizes of blocks, and numbers that were tuned. Each row is made from the declaration and its comment. A test fails where the page
-is out of date; CONTRIBUTING.md has the command that writes it.
+Named numbers of the library, by the folders of `src/` and `crates/numerics/src/`, without the C interface. Each row is made from the
+declaration and its comment, whose last sentence is the kind: `Kind: cap.`, or with a remark `Kind: cap; two or three suffice.` A tuned
+number says on what it was measured: `Kind: tuned; measured on: chains of 100 to 600 masses.` A test fails where the page is out of
+date, a name stands for two numbers or a kind is missing; CONTRIBUTING.md has the command that writes the page.
+
+`tests/ledger` changes tuned numbers by a half and by two, and compares answers and work of stored cases.
 ";
 
 /// A named number, or several in a tuple or a list.
 struct Threshold {
     name: String,
     value: String,
-    /// Its documentation, or that of the constant above it in one block.
+    /// Its documentation without the kind, or that of the constant above it in one block.
     meaning: String,
+    /// Kind and the remark behind it; empty where there is none.
+    kind: (String, String),
     /// File from `src/`.
     file: String,
 }
@@ -71,6 +97,18 @@ fn declared(text: &str) -> Option<(&str, &str, String)> {
     (upper && name != "_" && is_numeric(kind)).then_some((name, kind, value))
 }
 
+/// A comment without its sentence on the kind, the kind, and the remark of that sentence.
+fn kind_of(comment: &str) -> (String, String, String) {
+    let Some((meaning, rest)) = comment.split_once("Kind: ") else {
+        return (comment.to_owned(), String::new(), String::new());
+    };
+    let end = rest.find(". ").unwrap_or(rest.len().saturating_sub(1));
+    let (sentence, after) = (&rest[..end], rest[end..].trim_start_matches('.'));
+    let (kind, remark) = sentence.split_once("; ").unwrap_or((sentence, ""));
+    let meaning = format!("{}{after}", meaning.trim_end());
+    (meaning, kind.to_owned(), remark.to_owned())
+}
+
 fn thresholds() -> Vec<Threshold> {
     let crates = [root().join("src"), root().join("crates/numerics/src")];
     let mut paths = Vec::new();
@@ -90,10 +128,12 @@ fn thresholds() -> Vec<Threshold> {
                 comment += words;
             } else if let Some((name, _, value)) = declared(text[at..].trim_start()).filter(|_| code.contains("const "))
             {
+                let (meaning, kind, remark) = kind_of(comment.trim());
                 found.push(Threshold {
                     name: name.to_owned(),
                     value,
-                    meaning: comment.trim().replace('|', "\\|"),
+                    meaning: meaning.replace('|', "\\|"),
+                    kind: (kind, remark.replace('|', "\\|")),
                     file: file.clone(),
                 });
                 // One comment may stand above a block of constants.
@@ -112,17 +152,32 @@ fn thresholds() -> Vec<Threshold> {
     found
 }
 
+/// Number of thresholds of a kind.
+fn count(all: &[Threshold], kind: &str) -> usize {
+    all.iter().filter(|row| row.kind.0 == kind).count()
+}
+
 fn page() -> String {
+    let all = thresholds();
+    let mut text = format!("{INTRODUCTION}\n| kind | meaning | numbers |\n|---|---|---|\n");
+    for (kind, meaning) in KINDS {
+        writeln!(text, "| {kind} | {meaning} | {} |", count(&all, kind)).unwrap();
+    }
+    let unknown = all.iter().filter(|row| row.kind.1.ends_with(NOT_RECORDED)).count();
+    writeln!(
+        text,
+        "\nIt is {NOT_RECORDED} on what {unknown} of the tuned numbers were measured."
+    )
+    .unwrap();
     let mut rooms: BTreeMap<String, Vec<Threshold>> = BTreeMap::new();
-    for threshold in thresholds() {
+    for threshold in all {
         let room = threshold.file.split(['/', '.']).next().unwrap().to_owned();
         rooms.entry(room).or_default().push(threshold);
     }
-    let mut text = INTRODUCTION.to_owned();
     for (room, list) in rooms {
         write!(
             text,
-            "\n## {room}\n\n| name | value | meaning | file |\n|---|---|---|---|\n"
+            "\n## {room}\n\n| name | value | kind | meaning | file |\n|---|---|---|---|---|\n"
         )
         .unwrap();
         for row in list {
@@ -130,9 +185,15 @@ fn page() -> String {
                 name,
                 value,
                 meaning,
+                kind: (kind, remark),
                 file,
             } = row;
-            writeln!(text, "| `{name}` | `{value}` | {meaning} | `{file}` |").unwrap();
+            let remark = if remark.is_empty() || remark.ends_with(NOT_RECORDED) {
+                String::new()
+            } else {
+                format!("; {remark}")
+            };
+            writeln!(text, "| `{name}` | `{value}` | {kind}{remark} | {meaning} | `{file}` |").unwrap();
         }
     }
     text
@@ -158,23 +219,49 @@ fn every_threshold_has_a_meaning() {
 }
 
 #[test]
-fn names_that_stand_for_several_values_become_fewer() {
-    let mut values: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for row in thresholds() {
-        values.entry(row.name).or_default().insert(row.value);
+fn every_threshold_has_a_kind_and_a_tuned_one_says_on_what_it_was_measured() {
+    for Threshold { name, kind, file, .. } in thresholds() {
+        let (kind, remark) = (kind.0.as_str(), kind.1.as_str());
+        let known = KINDS.iter().any(|(known, _)| *known == kind);
+        assert!(
+            known,
+            "{name} in {file}: end its comment with `Kind: cap.`, or another kind of docs/thresholds.md, not {kind:?}"
+        );
+        let measured = remark.strip_prefix("measured on: ").is_some_and(|on| !on.is_empty());
+        assert!(
+            kind != "tuned" || measured,
+            "{name} in {file}: a tuned number is `Kind: tuned; measured on: …`, at least `{NOT_RECORDED}`"
+        );
     }
-    let shared: Vec<&String> = values
-        .iter()
-        .filter(|(_, all)| all.len() > 1)
-        .map(|(name, _)| name)
-        .collect();
-    let count = shared.len();
-    assert!(
-        count <= SHARED_NAMES,
-        "{count} names stand for several values, were {SHARED_NAMES}: {shared:?}"
+}
+
+#[test]
+fn a_name_stands_for_one_number() {
+    let mut files: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let mut twice = Vec::new();
+    for row in thresholds() {
+        let places = files.entry(row.name.clone()).or_default();
+        if !places.insert(row.file.clone()) || places.len() > 1 {
+            twice.push(format!("{} in {places:?}", row.name));
+        }
+    }
+    assert!(twice.is_empty(), "names that stand for several numbers: {twice:?}");
+}
+
+#[test]
+fn the_kind_is_the_last_sentence_of_a_comment() {
+    let of = |comment| {
+        let (meaning, kind, remark) = kind_of(comment);
+        [meaning, kind, remark]
+    };
+    assert_eq!(of("Most steps. Kind: cap."), ["Most steps.", "cap", ""]);
+    assert_eq!(
+        of("Share. Kind: tuned; measured on: 2.0 to 2.4 on chains."),
+        ["Share.", "tuned", "measured on: 2.0 to 2.4 on chains"]
     );
-    assert!(
-        count == SHARED_NAMES,
-        "{count} names stand for several values: SHARED_NAMES may fall to that"
+    assert_eq!(
+        of("Start. Kind: cap; one or two. It ends."),
+        ["Start. It ends.", "cap", "one or two"]
     );
+    assert_eq!(of("No kind."), ["No kind.", "", ""]);
 }

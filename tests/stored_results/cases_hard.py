@@ -32,7 +32,8 @@ def one_mass(record, change):
     for key, value in change.items():
         p[key] = value(p) if callable(value) else value
     model = hbvib.Model(mass=p["m"], stiffness=p["k"], damping=p["c"])
-    model.add_contact("jenkins", 0, kt=p["kt"], mu=1, preload=float(p["fc"]))
+    if p["kt"] > 0:
+        model.add_contact("jenkins", 0, kt=p["kt"], mu=1, preload=float(p["fc"]))
     if "F3" in change:
         model.add_force(0, _CASES["HC29"]["F3"], 3)
     elif p["F"]:

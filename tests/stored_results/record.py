@@ -85,6 +85,9 @@ class Record:
             print(f"{self.label}/{name}.argument", error.argument, file=self.stream)
             self.sentence(f"{name}.error", error.sentence)
             return None
+        except TypeError as error:  # before the library sees it
+            self.sentence(f"{name}.error", str(error))
+            return None
 
     def solve(self, name, function, *arguments, points=5, dofs=None, loops=True, log=False, **keywords):
         """Calls a solve and writes all of its branch; the progress of the steps as well. Returns the branch."""

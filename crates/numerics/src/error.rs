@@ -192,6 +192,7 @@ impl Status {
 }
 
 /// Longest error sentence in bytes; a longer one is cut at a character boundary.
+/// Kind: cap.
 pub const TEXT_CAPACITY: usize = 231;
 
 /// A sentence in a fixed buffer.

@@ -44,16 +44,20 @@ pub struct PhaseReport {
 pub type PhaseSink<'a> = dyn Fn(&PhaseReport) -> bool + 'a;
 
 /// Smallest increase of the share that is reported.
+/// Kind: block.
 const REPORTED: f64 = 0.01;
 
 /// Operations after which the phase is reported again, whatever its share: some ten milliseconds, so that a caller whose
 /// receiver looks for signals sees them in time.
+/// Kind: block.
 const BETWEEN_REPORTS: u64 = 20_000_000;
 
 /// Operations that a check without a number stands for.
+/// Kind: block.
 const OF_ONE_CHECK: u64 = 10_000;
 
 /// Zeros written between two checks.
+/// Kind: block.
 const ZEROS_TOGETHER: usize = 1 << 20;
 
 /// Asked by every long loop whether the caller wants to stop; see the module.

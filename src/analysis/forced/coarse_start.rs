@@ -4,12 +4,12 @@
 //! response. With as few harmonics as the forces have it costs little, and its solution, with the other harmonics zero, is a
 //! good guess with twice as many, and so on.
 
-use crate::adaptivity::transfer::transferred;
 use crate::condense::Condensed;
 use crate::contact::Contact;
 use crate::continuation::initial_point::{self, Effort, Way};
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status};
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::SolverOptions;
@@ -17,9 +17,11 @@ use crate::problem::InitialGuess;
 use crate::problem::harmonic_balance::HarmonicBalance;
 
 /// Highest harmonic up to which the first point is solved at once.
+/// Kind: tuned; measured on: not recorded.
 const COARSE_START_AT_ONCE: usize = 12;
 
 /// Degrees of freedom above which another number of harmonics costs more than it saves.
+/// Kind: tuned; measured on: not recorded.
 const COARSE_START_LARGE: usize = 1000;
 
 /// Bound of a homotopy with few harmonics.
@@ -29,6 +31,7 @@ const EFFORT: Effort = Effort {
 };
 
 /// Share of the period that a contact slips above which Newton's method from small motion mostly fails.
+/// Kind: tuned; measured on: not recorded.
 const MUCH_SLIP: f64 = 0.5;
 
 /// A solution with fewer harmonics.

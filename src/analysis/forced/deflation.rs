@@ -1,20 +1,22 @@
 //! Solutions of a forced response beside known ones, by deflation: Newton's method is led away from the solutions that are known at a
 //! frequency.
 
-use crate::adaptivity::discretised::Discretised;
 use crate::analysis::forced::forced_discretised::ForcedDiscretised;
 use crate::analysis::forced::known_curve::lies_on;
 use crate::continuation::Point;
 use crate::error::{Result, try_copy, try_push};
+use crate::harmonics::discretised::Discretised;
 use crate::interrupt::Interrupt;
 use crate::results::Branch;
 
 const CONTEXT: &str = "the deflation";
 
 /// Factors of one harmonic of the known motion, from which deflated steps begin.
+/// Kind: tuned; measured on: not recorded.
 const DEFLATION_STARTS: [f64; 4] = [1.5, 3.0, 8.0, -2.0];
 
 /// Most solutions that are left out at a place, from one start.
+/// Kind: cap.
 const DEFLATION_MOST_KNOWN: usize = 4;
 
 /// Solutions that are led away from the known ones.

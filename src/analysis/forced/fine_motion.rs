@@ -6,15 +6,16 @@
 use crate::condense::ModelCache;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::error::{Result, boxed, try_vec};
-use crate::error_estimate::Solved;
-use crate::error_estimate::forced_response_error::ForcedEstimator;
+use crate::harmonics::Solved;
+use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::results::Recovery;
 use num_complex::Complex64;
 
-/// States in time for each unknown of a point from which a correction takes less time than the lapses that it saves. Tuned on the
+/// States in time for each unknown of a point from which a correction takes less time than the lapses that it saves.
+/// Kind: tuned; measured on: the
 /// ring damper, 96 states and 10 unknowns, where it saves three quarters of them, and on chains of three masses with stops, 6 and 57,
 /// where it takes twice as long as they do.
 const STATES_FOR_EACH: usize = 2;

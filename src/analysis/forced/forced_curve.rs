@@ -3,12 +3,6 @@
 #[cfg(test)]
 mod lost_sense;
 
-use crate::adaptivity::branch_recorder::Ending;
-use crate::adaptivity::branch_tracer::{BranchTracer, Course};
-use crate::adaptivity::discretised::{Discretised, Recorder};
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::inner_ends::{Dropped, InnerEnds};
-use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::analysis::forced::coarse_start::CoarseStart;
 use crate::analysis::forced::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::forced::inside_start::{Entry, Inside, in_sense_of};
@@ -22,6 +16,8 @@ use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::{Detail, StepControl};
 use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, boxed, fail, try_copy, try_push, try_vec};
+use crate::harmonics::discretised::{Discretised, Recorder};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -29,6 +25,10 @@ use crate::model::Model;
 use crate::options::{Content, Exchanged, ForcedOptions, Response, SolverOptions, check_highest, check_responses};
 use crate::problem::InitialGuess;
 use crate::results::{Branch, Descent};
+use crate::tracing::branch_recorder::Ending;
+use crate::tracing::branch_tracer::{BranchTracer, Course};
+use crate::tracing::inner_ends::{Dropped, InnerEnds};
+use crate::tracing::resonance_bands::ResonanceBands;
 use num_complex::Complex64;
 
 /// Size of a first motion, over that under linear contacts, above which its bound is checked.

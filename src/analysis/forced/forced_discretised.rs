@@ -1,11 +1,5 @@
 //! A forced response as the tracer uses it: the equations at each resolution, and the records of its points.
 
-use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
-use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
-use crate::adaptivity::estimate_spacing::share_of_highest;
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::resolutions::Resolutions;
-use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::forced::fine_motion::FineMotion;
 use crate::analysis::forced::forced_equations::Equations;
 use crate::analysis::forced::point_error::observed;
@@ -19,8 +13,13 @@ use crate::continuation::corrector::Outcome;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
-use crate::error_estimate::forced_response_error::ForcedEstimator;
-use crate::error_estimate::{Estimate, Solved};
+use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::estimate_spacing::share_of_highest;
+use crate::harmonics::forced_response_error::ForcedEstimator;
+use crate::harmonics::harmonic_levels::HarmonicLevels;
+use crate::harmonics::resolutions::Resolutions;
+use crate::harmonics::transfer::transferred_point;
+use crate::harmonics::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
@@ -31,12 +30,15 @@ use crate::options::{Measure, Response, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
 use crate::results::{Branch, Resolution, SpecialKind, Verdict};
+use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the points of a linear response, which are few, are factorised where small structures are.
+/// Kind: tuned; measured on: not recorded.
 const FACTORISE_UP_TO: usize = 1000;
 
 /// Distance of two solutions that are one, over their size.
+/// Kind: tuned; measured on: not recorded.
 const KNOWN: f64 = 1e-6;
 
 /// The equations of a linear response: those with the stuck structure as their reference, where the others have another

@@ -5,8 +5,6 @@
 //! arc length leads on, away from the bifurcation (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! §8, doi:10.1137/1.9780898719154).
 
-use crate::adaptivity::discretised::Discretised;
-use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::forced::deflation::Deflation;
 use crate::analysis::forced::forced_discretised::ForcedDiscretised;
 use crate::analysis::forced::known_curve::lies_on;
@@ -15,10 +13,12 @@ use crate::analysis::forced::start_net::Net;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::options::Content;
 use crate::results::Branch;
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -26,15 +26,19 @@ use std::sync::Arc;
 const CONTEXT: &str = "the start of a branch";
 
 /// Distances from the bifurcation, as shares of the motion, in the order in which they are tried.
+/// Kind: tuned; measured on: not recorded.
 const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion in harmonics that it does not have.
+/// Kind: rounding.
 const ABSENT: f64 = 1e-8;
 
 /// Share of a point in harmonics that the branch does not have below which it lies on the branch itself.
+/// Kind: rounding.
 const FELL_BACK: f64 = 1e-6;
 
 /// Eigenvalue over the smallest one among the harmonics that a motion does not have, below which another symmetry breaks.
+/// Kind: tuned; measured on: not recorded.
 const OTHER_SYMMETRY: f64 = 0.1;
 
 /// Entry of a curve inside its range, near the guess of its options.

@@ -10,6 +10,7 @@ use crate::results::Branch;
 use std::f64::consts::TAU;
 
 /// Difference of a force from the opposite one, over the largest force, that is rounding of a callback.
+/// Kind: rounding.
 const ODD_LAWS_ROUNDING: f64 = 1e-6;
 
 const CONTEXT: &str = "the check of an odd force";

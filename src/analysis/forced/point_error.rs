@@ -1,11 +1,11 @@
-//! Error of stored points, see [`crate::error_estimate`].
+//! Error of stored points, see [`crate::harmonics`].
 
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Artificial, Condensed, ModelCache};
 use crate::error::{Result, fail, try_push};
-use crate::error_estimate::forced_response_error::ForcedEstimator;
-use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
-use crate::error_estimate::{Estimate, Solved};
+use crate::harmonics::forced_response_error::ForcedEstimator;
+use crate::harmonics::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
+use crate::harmonics::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{Content, DampingForm, Response, SolverOptions};
@@ -13,6 +13,7 @@ use crate::results::Branch;
 use num_complex::Complex64;
 
 /// Newton iterations by which the work is bounded: those of a point that is solved by homotopy.
+/// Kind: cap.
 const POINT_ERROR_ITERATIONS: usize = 200;
 
 /// Estimates the error of a stored point of a branch by the harmonics that it neglects. `model` and `solver` are

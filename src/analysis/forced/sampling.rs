@@ -1,8 +1,8 @@
 //! Samples that follow from the tolerance: a run whose laws without exact events are sampled too coarsely begins again
 //! with more samples, until the error of sampling takes no more than its share of the tolerance.
 
-use crate::adaptivity::discretised::Recorder;
 use crate::error::Result;
+use crate::harmonics::discretised::Recorder;
 use crate::options::{MAX_REFINEMENT, SolverOptions};
 use crate::results::Branch;
 

@@ -1,11 +1,11 @@
 //! A net of starts: a motion in several amplitudes and phases beside a solution, from which subharmonic motions are sought.
 
-use crate::adaptivity::discretised::Discretised;
 use crate::analysis::forced::forced_discretised::ForcedDiscretised;
 use crate::analysis::forced::known_curve::lies_on;
 use crate::continuation::Point;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::Branch;
@@ -23,10 +23,12 @@ pub(crate) struct Net<'n> {
 }
 
 /// Amplitudes and number of phases of a net.
+/// Kind: tuned; measured on: not recorded.
 const START_NET_AMPLITUDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 const PHASES: usize = 8;
 
 /// Share of a subharmonic motion outside the multiples of its order.
+/// Kind: tuned; measured on: not recorded.
 const SUBHARMONIC: f64 = 1e-3;
 
 impl Net<'_> {

@@ -9,6 +9,7 @@ use crate::results::Branch;
 
 /// Amplitude, over the size of the linear motion at the start of the range, above which it is the round-off of an
 /// undamped resonance: a damping ratio of 1e-12 reaches half of this.
+/// Kind: rounding.
 const UNBOUNDED: f64 = 1e12;
 
 /// Reason why the response on a branch has no bound: its highest point is an undamped resonance. `length` is the size

@@ -12,6 +12,7 @@ use std::hash::{DefaultHasher, Hasher as _};
 const CONTEXT: &str = "the responses";
 
 /// Points whose readings are kept: the ends of a step, and the peaks between them.
+/// Kind: cap.
 const MOST_RECENT: usize = 64;
 
 /// A point by a hash of its unknowns and its tangent, and by its resolution. Solutions at one frequency differ in any of their unknowns:

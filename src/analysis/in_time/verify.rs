@@ -177,19 +177,24 @@ pub fn verify(
 
 /// Disturbance of a start that is marched, relative to the motion: at least this, and so much more than the change over a period
 /// that counts as steady.
+/// Kind: tuned; measured on: not recorded.
 const DISTURBANCE: f64 = 1e-6;
 const MORE_THAN_STEADY: f64 = 1e3;
 const MOST_DISTURBED: f64 = 1e-3;
 
 /// Smallest number of times of a period at which motions are compared.
+/// Kind: tuned; measured on: not recorded.
 const FEWEST_TIMES: usize = 1024;
 
 /// Times per period of the highest harmonic.
-const TIMES_PER_WAVE: usize = 16;
+/// Kind: tuned; measured on: not recorded.
+const VERIFY_TIMES_PER_WAVE: usize = 16;
 
 /// Number of times at which motions with H harmonics are compared.
 fn times(highest: usize) -> usize {
-    (TIMES_PER_WAVE * (highest + 1)).next_power_of_two().max(FEWEST_TIMES)
+    (VERIFY_TIMES_PER_WAVE * (highest + 1))
+        .next_power_of_two()
+        .max(FEWEST_TIMES)
 }
 
 fn compare(

@@ -18,22 +18,27 @@ use crate::options::SolverOptions;
 const CONTEXT: &str = "the static states of a load history";
 
 /// Most halvings of a step, of one with a bend, and of one in which a slider slides in a plane.
+/// Kind: cap.
 const STATIC_HISTORY_HALVINGS: usize = 12;
 const STATIC_HISTORY_BENT: usize = 26;
 const STATIC_HISTORY_IN_PLANE: usize = 9;
 
 /// Difference of the places of sliders, over the largest motion of a contact, at which the halves of a step agree, and of those in
 /// a plane.
+/// Kind: rounding.
 const AGREES: f64 = 1e-11;
 const AGREES_IN_PLANE: f64 = 1e-7;
 
 /// Distance of the middle of a motion to the line between its ends, over the motion, that is rounding.
+/// Kind: rounding.
 const STATIC_HISTORY_STRAIGHT: f64 = 1e-9;
 
 /// Halvings before a step may be a curve.
+/// Kind: tuned; measured on: not recorded.
 const STATIC_HISTORY_CURVE: usize = 3;
 
 /// Most steps of a history.
+/// Kind: cap.
 const STATIC_HISTORY_MOST_STEPS: usize = 1_000_000;
 
 /// A load history: values of each step, straight lines between them.

@@ -9,8 +9,8 @@ use crate::continuation::Settings;
 use crate::continuation::initial_point;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_vec};
-use crate::error_estimate::allow_point;
 use crate::fourier::HarmonicSet;
+use crate::harmonics::allow_point;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -31,12 +31,15 @@ const CONTEXT: &str = "the static state";
 pub(crate) const NEEDS_SPEED: &str = "a nonlinear mode about it needs one speed";
 
 /// Tolerance of the residual: an error of the static state is one of every amplitude.
+/// Kind: rounding.
 const STATIC_SOLUTION_TOLERANCE: f64 = 1e-13;
 
 /// Residual at zero, relative to the motion under the forces with linear contacts, at which zero is the solution.
+/// Kind: rounding.
 const BALANCED: f64 = 1e-12;
 
 /// Angular frequency that laws are told; nothing moves, so that none has an effect.
+/// Kind: fixed.
 const OMEGA: f64 = 1.0;
 
 /// The static state of a model; that at zero if nothing loads it. `needs_speed` tells which analysis needs one speed.

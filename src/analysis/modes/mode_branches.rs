@@ -3,7 +3,6 @@
 //! The even harmonics and the mean of an odd model are carried along, so that a broken symmetry is a branch point, too. Each curve
 //! has children of its own, down to a bounded depth, see [`crate::analysis::modes::mode_entry`].
 
-use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::forced::inside_start::Entry;
 use crate::analysis::modes::mode_curve::alone;
 use crate::analysis::modes::mode_discretised::VANISHING_FUNDAMENTAL;
@@ -14,11 +13,13 @@ use crate::model::Model;
 use crate::options::{ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Bifurcation, Branch, Descent, Recovery, Searched};
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 
 const CONTEXT: &str = "the further curves of a mode";
 
 /// Distance of a branch point, in log₁₀ of the amplitude, at which a curve that came back ends in it.
+/// Kind: tuned; measured on: not recorded.
 const MODE_BRANCHES_SAME: f64 = 2e-2;
 
 /// A branch above those that grow, and the ones above it.

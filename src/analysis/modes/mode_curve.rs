@@ -1,10 +1,5 @@
 //! One curve of a nonlinear mode over a range of amplitude.
 
-use crate::adaptivity::branch_recorder::Ending;
-use crate::adaptivity::branch_tracer::{BranchTracer, Course};
-use crate::adaptivity::discretised::{Discretised, Recorder};
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::inner_ends::InnerEnds;
 use crate::analysis::forced::inside_start::in_sense_of;
 use crate::analysis::forced::odd_laws;
 use crate::analysis::forced::sampling::{Sampled, required, with_samples};
@@ -19,7 +14,9 @@ use crate::condense::{Condensed, ModelCache};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, boxed, fail};
-use crate::error_estimate::mode_error::ModeEstimator;
+use crate::harmonics::discretised::{Discretised, Recorder};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
+use crate::harmonics::mode_error::ModeEstimator;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
@@ -29,6 +26,9 @@ use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
 use crate::results::stored::mode_branch::{ModeData, ModeInfo};
 use crate::results::{Branch, Descent};
+use crate::tracing::branch_recorder::Ending;
+use crate::tracing::branch_tracer::{BranchTracer, Course};
+use crate::tracing::inner_ends::InnerEnds;
 
 /// One curve: that of the linear mode, that of the guess, or the one that an entry leads to.
 ///

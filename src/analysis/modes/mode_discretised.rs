@@ -1,19 +1,18 @@
 //! A nonlinear mode as the tracer uses it: the equations at each resolution, and the records of its points.
 
-use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
-use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
-use crate::adaptivity::estimate_spacing::share_of_highest;
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::resolutions::Resolutions;
-use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::modes::mode_equations::{Equations, LinearStart};
 use crate::analysis::modes::mode_onset::OnsetSearch;
 use crate::condense::Reduction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, boxed, try_copy};
-use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
-use crate::error_estimate::{Estimate, Solved};
+use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::estimate_spacing::share_of_highest;
+use crate::harmonics::harmonic_levels::HarmonicLevels;
+use crate::harmonics::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
+use crate::harmonics::resolutions::Resolutions;
+use crate::harmonics::transfer::transferred_point;
+use crate::harmonics::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
@@ -22,10 +21,12 @@ use crate::problem::Problem;
 use crate::problem::epmc::Epmc;
 use crate::results::stored::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
+use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
 
 /// Share of the fundamental in the energy below which a motion is nearly that of another mode, with a part of the period. Its equations
 /// for the fundamental are then near rounding, and have no branch point that is told.
+/// Kind: tuned; measured on: not recorded.
 pub(crate) const VANISHING_FUNDAMENTAL: f64 = 0.1;
 
 /// A nonlinear mode in the form that the tracer follows.

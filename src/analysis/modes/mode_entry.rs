@@ -8,9 +8,6 @@
 //! of that period. With the fundamental turned back to its phase, harmonic h changes its sign by the parity of h/n, rounded
 //! (Kerschen et al. 2009, doi:10.1016/j.ymssp.2008.04.002, shows both curves, S33+ and S33−, that leave it).
 
-use crate::adaptivity::discretised::Discretised;
-use crate::adaptivity::inner_ends::Dropped;
-use crate::adaptivity::transfer::transferred;
 use crate::analysis::forced::inside_start::{Entered, Entry, dropped, null_vector};
 use crate::analysis::forced::known_curve::lies_on;
 use crate::analysis::modes::mode_discretised::ModeDiscretised;
@@ -18,22 +15,28 @@ use crate::condense::Condensed;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, fail, try_copy};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::Discretised;
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::Branch;
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the start of a mode's further curve";
 
 /// Unknowns that are no motions, and the same with the parameter.
+/// Kind: fixed.
 const OTHERS: usize = 2;
 const OTHERS_AND_PARAMETER: usize = OTHERS + 1;
 
 /// Distances from a branch point, as shares of the motion, in the order in which they are tried.
+/// Kind: tuned; measured on: not recorded.
 const MODE_ENTRY_DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion at a branch point in harmonics that the curve through it does not have.
+/// Kind: tuned; measured on: not recorded.
 const MODE_ENTRY_ABSENT: f64 = 1e-4;
 
 /// How a further curve is reached from a known point.

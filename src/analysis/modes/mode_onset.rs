@@ -9,12 +9,15 @@ use crate::problem::epmc::Epmc;
 use crate::problem::{Problem, Residual};
 
 /// Width of log₁₀ of the amplitude to which an onset is located.
+/// Kind: rounding.
 const MODE_ONSET_WIDTH: f64 = 1e-7;
 
 /// Share of the period that counts as slip or opening.
+/// Kind: rounding.
 const MODE_ONSET_SHARE: f64 = 1e-9;
 
 /// Number of kinds of onset: slip, lift-off.
+/// Kind: fixed.
 const MODE_ONSET_KINDS: usize = 2;
 
 /// Finds the onsets, as points are recorded one after the other.

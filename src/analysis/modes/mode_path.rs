@@ -1,25 +1,27 @@
 //! The path of a nonlinear mode: points of the linear range, the first point with slip, the branch from there on.
 
-use crate::adaptivity::branch_tracer::{BranchTracer, Course};
-use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::analysis::forced::forced_curve::told_way;
 use crate::analysis::forced::sampling::may_refine;
 use crate::analysis::modes::mode_discretised::ModeDiscretised;
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
+use crate::harmonics::discretised::{Discretised, Recorder};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::options::{ModeOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::SpecialKind;
+use crate::tracing::branch_tracer::{BranchTracer, Course};
 
 /// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset itself the branch
 /// has a corner, and where modes share a frequency no solution is isolated.
+/// Kind: tuned; measured on: not recorded.
 const BEYOND_ONSET: f64 = 1.02;
 
 /// Distance below the onset, in log₁₀, to which a branch that began to slip may come back before it reaches an
 /// amplitude above the onset.
+/// Kind: tuned; measured on: not recorded.
 const BELOW_ONSET: f64 = 3.0;
 
 /// log₁₀ of the amplitudes up to which the mode is linear, and up to which it nearly is.

@@ -13,6 +13,7 @@ use crate::problem::epmc::{Gauge, LinearMode};
 use crate::results::stored::mode_branch::{ModeData, ModeInfo};
 
 /// Motion that counts as zero, relative to the largest of the mode.
+/// Kind: rounding.
 const NODE: f64 = 1e-9;
 
 /// The linear mode from which the nonlinear one starts, and how it was selected.

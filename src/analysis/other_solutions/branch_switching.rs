@@ -6,7 +6,6 @@
 //! frequency, whose odd harmonics are those that its parent does not have. Where the symmetry breaks these are the even ones
 //! and the mean. Children have children of their own, down to a bounded depth.
 
-use crate::adaptivity::inner_ends::Dropped;
 use crate::analysis::forced::forced_curve::{forced_from_inside, forced_harmonics, misses_fundamental};
 use crate::analysis::forced::inside_start::Inside;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -16,15 +15,18 @@ use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{Content, ForcedOptions, Measure, Response, SolverOptions};
 use crate::results::{Bifurcation, BifurcationKind, Branch, Descent, Recovery, Searched};
+use crate::tracing::inner_ends::Dropped;
 use core::cell::Cell;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the branches that branch off";
 
 /// Distance of a bifurcation to the end of a known child, over the range, at which that child ends there.
+/// Kind: tuned; measured on: not recorded.
 const BRANCH_SWITCHING_SAME: f64 = 2e-2;
 
 /// Share of the harmonics that a branch does not have in a motion that is one of it.
+/// Kind: tuned; measured on: not recorded.
 const AT_START: f64 = 1e-3;
 
 /// Place of a branch in the tree.

@@ -15,7 +15,10 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the deflated curves";
 
 /// Shares of the points of the response at which solutions are sought, beside its peaks, of which at most so many count.
+/// Kind: tuned; measured on: not recorded.
 const DEFLATION_PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Most peaks of the response at which solutions are sought.
+/// Kind: cap.
 const DEFLATION_MOST_PEAKS: usize = 3;
 
 impl Tree<'_> {

@@ -23,19 +23,26 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the detached curves";
 
 /// Most linear modes whose nonlinear ones are followed.
+/// Kind: cap.
 const DETACHED_CURVES_MOST_MODES: usize = 16;
 
 /// Frequencies of these modes, as factors of the ends of the range: contacts soften or stiffen the structure.
+/// Kind: tuned; measured on: not recorded.
 const FREQUENCIES: (f64, f64) = (0.5, 2.0);
 
 /// Range of the modal amplitude, in log₁₀ about the largest one of the branch in the motion of the mode.
+/// Kind: tuned; measured on: not recorded.
 const DETACHED_CURVES_AMPLITUDES: (f64, f64) = (2.0, 2.0);
 
 /// Harmonics of the modes, which are starts alone, and most of their points.
+/// Kind: tuned; measured on: not recorded.
 const HARMONICS: usize = 5;
+/// Most points of such a mode.
+/// Kind: cap.
 const DETACHED_CURVES_MOST_POINTS: usize = 2_000;
 
 /// Distance of two motions that are one at an end of the range, over their size, where no tolerance is given.
+/// Kind: tuned; measured on: not recorded.
 const ONE_END: f64 = 1e-6;
 
 impl Tree<'_> {

@@ -19,13 +19,18 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the subharmonic curves";
 
 /// Orders that are sought.
+/// Kind: tuned; measured on: not recorded.
 const ORDERS: [usize; 2] = [2, 3];
 
 /// Shares of the points of the response at which starts are made.
+/// Kind: tuned; measured on: not recorded.
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Most modes that are added, and their frequencies over the fraction of that of the response.
+/// Kind: cap.
 const SUBHARMONIC_NET_MOST_MODES: usize = 4;
+/// Frequencies of these modes over the fraction of that of the response.
+/// Kind: tuned; measured on: not recorded.
 const SUBHARMONIC_NET_NEAR: (f64, f64) = (0.3, 2.0);
 
 impl Tree<'_> {

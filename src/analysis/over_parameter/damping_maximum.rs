@@ -1,6 +1,5 @@
 //! The largest damping ratio along a nonlinear mode as a function of a parameter of the model.
 
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::modes::nonlinear_mode::nonlinear_mode;
 use crate::analysis::over_parameter::followed::Followed;
 use crate::analysis::over_parameter::parameter_curve::CurveRecorder;
@@ -8,6 +7,7 @@ use crate::analysis::over_parameter::parameter_range::{ParameterRange, settings,
 use crate::analysis::over_parameter::tracked_damping::TrackedDamping;
 use crate::condense::Condensed;
 use crate::error::{Result, Status, fail, try_vec};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -17,9 +17,11 @@ use crate::results::{Branch, ParameterData};
 use crate::sensitivity::Parameter;
 
 /// log₁₀ of an amplitude at which every contact that can stick sticks, whatever the units.
+/// Kind: fixed.
 const STUCK: f64 = -60.0;
 
 /// Distances in log₁₀ from the onset of slip between which the maximum is sought.
+/// Kind: tuned; measured on: not recorded.
 const FROM_ONSET: (f64, f64) = (-0.1, 3.0);
 
 /// Follows the maximum from the first value of the parameter, at which the model is `first`.

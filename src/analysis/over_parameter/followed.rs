@@ -1,14 +1,14 @@
 //! A result that is followed over a parameter, as the controller of the harmonics uses it: its equations at each resolution.
 
-use crate::adaptivity::discretised::{Assessment, Discretised};
-use crate::adaptivity::estimate_spacing::share_of_highest;
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::continuation::corrector::Corrector;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
-use crate::error_estimate::{Corrected, Estimate};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::discretised::{Assessment, Discretised};
+use crate::harmonics::estimate_spacing::share_of_highest;
+use crate::harmonics::harmonic_levels::HarmonicLevels;
+use crate::harmonics::{Corrected, Estimate};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;

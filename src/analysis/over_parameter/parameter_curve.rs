@@ -1,16 +1,16 @@
 //! The curve of a result over a parameter: its points, its optima, its turns, and the solutions at requested values.
 
-use crate::adaptivity::branch_recorder::largest_change;
-use crate::adaptivity::controller::AdaptivityController;
-use crate::adaptivity::discretised::Discretised;
 use crate::analysis::over_parameter::followed::Followed;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Point, Settings, initial_point};
 use crate::error::{Result, Status, try_push};
+use crate::harmonics::controller::AdaptivityController;
+use crate::harmonics::discretised::Discretised;
 use crate::hooks::{Hooks, Progress};
 use crate::interrupt::{Interrupt, Phase};
 use crate::problem::Problem;
 use crate::results::{Branch, Optimum, ParameterData, SpecialKind, Turn};
+use crate::tracing::branch_recorder::largest_change;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the parameter response";

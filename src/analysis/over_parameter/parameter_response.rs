@@ -1,7 +1,6 @@
 //! A result over a parameter of the model: the amplitude of a forced response at a fixed frequency, in a peak or in a fold,
 //! or the largest damping ratio of a nonlinear mode.
 
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced::forced_curve::forced_harmonics;
 use crate::analysis::forced_response::forced_response;
 use crate::analysis::over_parameter::damping_maximum;
@@ -10,6 +9,7 @@ use crate::analysis::over_parameter::parameter_curve::CurveRecorder;
 use crate::analysis::over_parameter::parameter_range::{Follow, ParameterRange, settings, wanted};
 use crate::condense::{Condensed, Reference};
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
@@ -18,10 +18,12 @@ use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
 /// Share of a frequency within which its peak or fold is sought.
+/// Kind: tuned; measured on: not recorded.
 const PARAMETER_RESPONSE_NEAR: f64 = 0.1;
 
 /// Ends of the sweeps in which it is sought, over the frequency, until one meets it: where several motions exist, the one that has it
 /// may be reached from one side only, and from afar.
+/// Kind: tuned; measured on: not recorded.
 const WAYS: [(f64, f64); 4] = [
     (1.0 - PARAMETER_RESPONSE_NEAR, 1.0 + PARAMETER_RESPONSE_NEAR),
     (1.0 + PARAMETER_RESPONSE_NEAR, 1.0 - PARAMETER_RESPONSE_NEAR),
@@ -31,10 +33,12 @@ const WAYS: [(f64, f64); 4] = [
 
 /// Share of the rest of the range by which the response is examined beyond the value at which a peak vanished, and share of its
 /// frequency within which another peak is sought there.
+/// Kind: tuned; measured on: not recorded.
 const BEYOND: f64 = 0.02;
 const AROUND: f64 = 0.3;
 
 /// Relative excess of an amplitude, and distance of a frequency, of another peak that is higher.
+/// Kind: tuned; measured on: not recorded.
 const HIGHER: (f64, f64) = (1e-6, 1e-5);
 
 /// Follows a result over a parameter. Steps are controlled by the angle of the curve, so that folds over the parameter are

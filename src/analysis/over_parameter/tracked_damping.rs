@@ -12,9 +12,9 @@ use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status, fail, try_copy, try_vec};
-use crate::error_estimate::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
-use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
+use crate::harmonics::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
+use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
@@ -33,9 +33,11 @@ use std::sync::Arc;
 const CONTEXT: &str = "the parameter response";
 
 /// Change of log₁₀ of the amplitude that has the same weight as a change of the motions by their size.
+/// Kind: tuned; measured on: not recorded.
 const AMPLITUDE_UNIT: f64 = 0.1;
 
 /// Step of the differences along the mode, in log₁₀ of the amplitude.
+/// Kind: tuned; measured on: not recorded.
 const MODE_STEP: f64 = 1e-4;
 
 /// The largest damping ratio over a parameter.

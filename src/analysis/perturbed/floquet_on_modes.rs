@@ -22,15 +22,19 @@ use std::sync::Arc;
 const CONTEXT: &str = "the models on modes";
 
 /// Operations up to which the whole structure is carried, a few minutes of one core.
+/// Kind: tuned; measured on: not recorded.
 const ON_ALL: f64 = 1e11;
 
 /// Smallest number of modes of a nodal diameter at which a search begins.
+/// Kind: tuned; measured on: not recorded.
 const FLOQUET_ON_MODES_FIRST: usize = 4;
 
 /// Largest number of times that the modes are doubled for agreement.
+/// Kind: cap.
 const DOUBLINGS: usize = 4;
 
 /// Frequency below which modes belong to the first ones, relative to that of the highest force.
+/// Kind: tuned; measured on: not recorded.
 const CUTOFF: f64 = 5.0;
 
 /// Shapes and small models that points of one branch share.

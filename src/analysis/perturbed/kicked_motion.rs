@@ -11,31 +11,43 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the smallest kick";
 
 /// Distance of two motions, relative to their size, up to which they are one.
+/// Kind: tuned; measured on: not recorded.
 const KICKED_SAME: f64 = 1e-6;
 
 /// Accuracy of shooting and of the last check, and of the many integrations before it where a law is smooth.
+/// Kind: rounding.
 const TIGHT: f64 = 1e-11;
+/// Accuracy of the many integrations before the last check, where a law is smooth.
+/// Kind: tuned; measured on: not recorded.
 const KICKED_LOOSE: f64 = 1e-7;
 
 /// Distances over that of the two motions: within it of the lower motion a kick has returned; beyond it, and settled, it has not.
+/// Kind: tuned; measured on: not recorded.
 const RETURNED: f64 = 0.05;
 const ELSEWHERE: f64 = 0.5;
 
 /// Change over a period, over the same distance, of a motion that has settled, and its distance from the saddle, near which all is slow.
+/// Kind: tuned; measured on: not recorded.
 const SETTLED: f64 = 1e-4;
 const AWAY: f64 = 0.1;
 
 /// Periods after which a motion that has not returned counts as one that does not.
+/// Kind: cap.
 const KICKED_MOST_PERIODS: usize = 3_000;
 
 /// Iterations for the left eigenvector, and its change that ends them.
+/// Kind: cap.
 const KICKED_ITERATIONS: usize = 20_000;
+/// Change of the left eigenvector that ends its iterations.
+/// Kind: rounding.
 const KICKED_CHANGE: f64 = 1e-10;
 
 /// Lapses over which the growth of perturbations beside the unstable direction is measured, after as many others.
+/// Kind: tuned; measured on: not recorded.
 const KICKED_GROWTH: usize = 200;
 
 /// Growth of a lapse up to which a second direction counts as stable: sliders that rest neither grow nor decay.
+/// Kind: tuned; measured on: not recorded.
 const KICKED_NEUTRAL: f64 = 1e-4;
 
 /// End of a kicked motion.

@@ -16,9 +16,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the motion in time";
 
 /// Distance of the motion in time from its point, relative to it, above which it may be another motion.
+/// Kind: tuned; measured on: not recorded.
 pub(crate) const FAR: f64 = 0.2;
 
 /// Largest difference of opposite sectors, relative to the motion, of a motion that is odd.
+/// Kind: rounding.
 pub(crate) const ODD: f64 = 1e-9;
 
 /// A periodic motion by its harmonics 0 … H in the caller's unit and numbering.

@@ -4,12 +4,15 @@ use crate::analysis::perturbed::perturbed_motion::FAR;
 use crate::results::{Floquet, Multiplier, MultiplierClass};
 
 /// Difference of the radius, as a share of its distance from the unit circle, up to which two numbers of modes agree.
+/// Kind: tuned; measured on: not recorded.
 const AGREEMENT: f64 = 0.01;
 
 /// The same where the radius is next to 1.
+/// Kind: tuned; measured on: not recorded.
 const FLOQUET_ON_MODES_LEAST: f64 = 1e-7;
 
 /// Share of the radius above which multipliers of two numbers of modes are compared.
+/// Kind: tuned; measured on: not recorded.
 const FLOQUET_ON_MODES_LARGE: f64 = 0.5;
 
 /// Whether two numbers of modes have the same verdict.

@@ -20,6 +20,7 @@ pub use crate::analysis::residual_states::held_sliders::BandOf;
 const CONTEXT: &str = "the band of a response";
 
 /// Most starts of a search.
+/// Kind: cap.
 const BAND_MOST_STARTS: usize = 1000;
 
 /// The band of a stored point of a forced response: the least and the largest result over all places of the sliders that stick through

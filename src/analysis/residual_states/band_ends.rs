@@ -20,27 +20,35 @@ use std::sync::Arc;
 const CONTEXT: &str = "the ends of a band";
 
 /// Margin, over the mean limit, at which a contact is at its limit.
+/// Kind: rounding.
 const BAND_AT_LIMIT: f64 = 1e-6;
 
 /// Gain that the linear model foretells at an extremum, relative to the result.
+/// Kind: tuned; measured on: not recorded.
 const BAND_FORETOLD: f64 = 1e-4;
 
 /// Times that contacts which stick at an end, but not at the state before, are set free.
+/// Kind: cap.
 const BAND_GROWTHS: usize = 8;
 
 /// Other states of the model for each start, from which the search begins where other contacts stick in them.
+/// Kind: tuned; measured on: not recorded.
 const BAND_STATES_PER_START: usize = 2;
 
 /// Shares of the distances of the sliders by which those that are not at their limits go on beyond an end.
+/// Kind: tuned; measured on: not recorded.
 const BAND_BEYOND: [f64; 2] = [0.05, 0.3];
 
 /// Senses of the searches of both ends.
+/// Kind: fixed.
 const BAND_SENSES: [f64; 2] = [-1.0, 1.0];
 
 /// Relative gain with which a search from another state betters an end.
+/// Kind: rounding.
 const BAND_BETTER: f64 = 1e-9;
 
 /// Relative difference of an end from the solution of the model with its places.
+/// Kind: rounding.
 const BAND_SAME: f64 = 1e-6;
 
 /// A band whose ends are states with held sliders.

@@ -6,25 +6,32 @@ use crate::error::{Result, try_push};
 const CONTEXT: &str = "the states of a band";
 
 /// Steps over the width that the margins foretell at the first state.
+/// Kind: tuned; measured on: not recorded.
 const BAND_LINE_STEPS: f64 = 12.0;
 
 /// Smallest step, over that width.
-const SMALLEST: f64 = 1e-5;
+/// Kind: tuned; measured on: not recorded.
+const BAND_LINE_SMALLEST: f64 = 1e-5;
 
 /// Margin, over the mean limit, of a slider at its limit.
+/// Kind: rounding.
 const BAND_LINE_AT_LIMIT: f64 = 1e-11;
 
 /// Steps of the search for a limit, of that for an extremum, and states in one direction.
+/// Kind: cap.
 const MOST_SECANTS: usize = 30;
 const MOST_STATES: usize = 400;
 
 /// Change of the place of an extremum, over the width, at which it is found.
+/// Kind: rounding.
 const BAND_LINE_SETTLED: f64 = 1e-8;
 
 /// Slope, as a relative change of the result over the width, that is rounding.
+/// Kind: rounding.
 const FLAT: f64 = 1e-9;
 
 /// Halvings of an interval whose cubic has extrema between its ends.
+/// Kind: cap.
 const BAND_LINE_HALVINGS: usize = 5;
 
 /// States in the order of the place of the slider.
@@ -124,7 +131,7 @@ impl Walk<'_, '_> {
             }
             let Some(next) = self.solve(last.places[0] + sign * step, &last)? else {
                 step *= 0.5;
-                if step < SMALLEST * self.width {
+                if step < BAND_LINE_SMALLEST * self.width {
                     return Ok((states, false));
                 }
                 continue;
@@ -136,7 +143,7 @@ impl Walk<'_, '_> {
                     return Ok((states, true));
                 }
                 step *= 0.5;
-                if step < SMALLEST * self.width {
+                if step < BAND_LINE_SMALLEST * self.width {
                     return Ok((states, false));
                 }
                 continue;

@@ -17,9 +17,11 @@ use std::rc::Rc;
 const CONTEXT: &str = "the ends of a band";
 
 /// First radius of the search with more harmonics, in units of the distances of the sliders.
+/// Kind: tuned; measured on: not recorded.
 const BAND_REFINEMENT_FIRST: f64 = 3e-3;
 
 /// Unknowns above which no end is refined: Newton's method factors dense matrices.
+/// Kind: cap.
 pub(crate) const BAND_REFINEMENT_MOST_UNKNOWNS: usize = 1500;
 
 /// How far the ends of a band are refined.

@@ -10,25 +10,31 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 const CONTEXT: &str = "the search of a band";
 
 /// First radius of a step, its largest, and the smallest, which ends the search; in units of the sliders' distances.
+/// Kind: tuned; measured on: not recorded.
 const BAND_SEARCH_FIRST: f64 = 0.3;
 const BAND_SEARCH_LARGEST: f64 = 1.0;
-const SMALLEST: f64 = 1e-5;
+const BAND_SEARCH_SMALLEST: f64 = 1e-5;
 
 /// Share of the foretold gain that is enough, growth after success and shrinking after failure.
+/// Kind: tuned; measured on: not recorded.
 const BAND_SEARCH_ENOUGH: f64 = 0.1;
 const BAND_SEARCH_GROWTH: f64 = 2.0;
 const SHRINKING: f64 = 0.35;
 
 /// Steps of one search.
+/// Kind: cap.
 const BAND_SEARCH_MOST_STEPS: usize = 80;
 
 /// Foretold gain, relative to the result, that ends a search.
+/// Kind: rounding.
 const BAND_SEARCH_SETTLED: f64 = 1e-9;
 
 /// Beyond a limit, over its mean, that counts as within: rounding of a solution.
+/// Kind: rounding.
 const WITHIN: f64 = 1e-10;
 
 /// Rounds of the projection.
+/// Kind: cap.
 const BAND_SEARCH_ROUNDS: usize = 400;
 
 /// An end that was found.
@@ -129,7 +135,9 @@ impl Search<'_, '_> {
             let step = self.step(&state, sign, radius)?;
             let foretold = self.foretold(&state, sign, &step);
             let violated = (-state.least_margin()).max(0.0);
-            if radius < SMALLEST || (foretold < BAND_SEARCH_SETTLED * state.value.abs() && violated < WITHIN) {
+            if radius < BAND_SEARCH_SMALLEST
+                || (foretold < BAND_SEARCH_SETTLED * state.value.abs() && violated < WITHIN)
+            {
                 break;
             }
             let next = self.solve(&self.moved(&state, &step)?, &state)?;

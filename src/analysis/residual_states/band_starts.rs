@@ -20,9 +20,11 @@ use std::rc::Rc;
 const CONTEXT: &str = "the starts of a band";
 
 /// Share of the reach of a limit within which sliders are placed.
+/// Kind: tuned; measured on: not recorded.
 const BAND_STARTS_WITHIN: f64 = 0.9;
 
 /// Margin, over the mean limit, of a contact at its limit.
+/// Kind: rounding.
 const BAND_STARTS_AT_LIMIT: f64 = 1e-6;
 
 /// A slider that may be placed: its contact and direction, the middle of its motion, and the reach of its limit.

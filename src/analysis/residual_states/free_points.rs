@@ -19,6 +19,7 @@ use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};
 const CONTEXT: &str = "the freedom of a solution";
 
 /// Vibration that a change of the place makes, over that change, which is rounding.
+/// Kind: rounding.
 const FREEDOM_ROUNDING: f64 = 1e-11;
 
 /// The points of a branch of forced responses of a model.

@@ -22,19 +22,24 @@ use std::sync::Arc;
 const CONTEXT: &str = "a response with held sliders";
 
 /// Factor of the friction coefficient of a held contact.
+/// Kind: tuned; measured on: not recorded.
 pub(crate) const HELD: f64 = 1e6;
 
 /// Newton iterations at one frequency, and corrections of the frequency of a peak.
+/// Kind: cap.
 const HELD_SLIDERS_ITERATIONS: usize = 15;
 const HELD_SLIDERS_CORRECTIONS: usize = 12;
 
 /// Residual, relative to the motion, of a solution.
+/// Kind: rounding.
 const RESIDUAL: f64 = 1e-13;
 
 /// Residual at which a solution without further progress counts.
+/// Kind: rounding.
 const HELD_SLIDERS_ENOUGH: f64 = 1e-10;
 
 /// Change of the frequency of a peak, relative to itself, that is rounding; and that which counts after all corrections.
+/// Kind: rounding.
 const HELD_SLIDERS_SETTLED: f64 = 1e-13;
 const HELD_SLIDERS_NEARLY: f64 = 1e-9;
 

@@ -17,23 +17,33 @@ use crate::results::stored::mode_branch::ModeField;
 const CONTEXT: &str = "the band of a nonlinear mode";
 
 /// Places of a slider that are computed between both ends of its interval, and their refinements beside an extremum.
+/// Kind: tuned; measured on: not recorded.
 const MODE_BAND_PLACES: usize = 16;
+/// Refinements of such a place beside an extremum.
+/// Kind: cap.
 const MODE_BAND_SECTIONS: usize = 40;
 
 /// Width of the interval of an extremum, over that of all places, at which it is found.
+/// Kind: rounding.
 const MODE_BAND_SETTLED: f64 = 1e-7;
 
 /// Rounds over several sliders, and the relative gain of one below which it is the last.
+/// Kind: cap.
 const MODE_BAND_ROUNDS: usize = 6;
+/// Relative gain of a round below which it is the last.
+/// Kind: rounding.
 const MODE_BAND_ENOUGH: f64 = 1e-8;
 
 /// Times that the interval of a slider is doubled until its ends are dragged.
+/// Kind: cap.
 const MODE_BAND_DOUBLINGS: usize = 5;
 
 /// Distance in log10 of the amplitude of the second end of a range of one point.
+/// Kind: tuned; measured on: not recorded.
 const NEXT: f64 = 1e-3;
 
 /// Shift of a place from the one that was given, over its limit, from which the limit has dragged it.
+/// Kind: rounding.
 const DRAGGED: f64 = 1e-9;
 
 /// Result of a nonlinear mode that is bounded.

@@ -15,9 +15,11 @@ use std::f64::consts::TAU;
 const CONTEXT: &str = "the margins of sliders";
 
 /// Times per wave of the highest harmonic at which a margin in a plane is sampled.
-const TIMES_PER_WAVE: usize = 16;
+/// Kind: tuned; measured on: not recorded.
+const SLIP_MARGINS_TIMES_PER_WAVE: usize = 16;
 
 /// Golden sections of a minimum between two times.
+/// Kind: cap.
 const SECTIONS: usize = 60;
 
 /// A condition margin ≥ 0.
@@ -181,7 +183,7 @@ fn in_line(signals: &Signals<'_>, interrupt: &Interrupt<'_>) -> Result<Vec<(f64,
 /// The same of μN − |f| in a plane.
 fn in_plane(signals: &Signals<'_>, interrupt: &Interrupt<'_>) -> Result<Vec<(f64, [f64; 2], f64)>> {
     let set = signals.set;
-    let times = TIMES_PER_WAVE * (set.highest_reduced() + 1);
+    let times = SLIP_MARGINS_TIMES_PER_WAVE * (set.highest_reduced() + 1);
     interrupt.check_before((12 * times * set.packed_len()) as u64)?;
     let step = TAU / times as f64;
     let mut values = try_vec(times, 0.0, CONTEXT)?;

@@ -10,14 +10,19 @@ use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, try_push};
 
 /// Largest number of evaluations for one extremum, and its width in log₁₀ of the amplitude: the force is flat there.
+/// Kind: cap.
 const FORCE_EXTREMA_MAX_EVALUATIONS: usize = 60;
+/// Width of an extremum in log₁₀ of the amplitude: the force is flat there.
+/// Kind: rounding.
 const FORCE_EXTREMA_WIDTH: f64 = 1e-7;
 
 /// Width of a resonance, of which a start is made, in log₁₀ of the amplitude.
+/// Kind: rounding.
 const CROSSING: f64 = 1e-10;
 
 /// Ratio of the golden section.
-const GOLDEN: f64 = 0.381_966_011_250_105_1;
+/// Kind: fixed.
+const FORCE_EXTREMA_GOLDEN: f64 = 0.381_966_011_250_105_1;
 
 /// Appends the extrema between the points of a mode, whose states are given, and the resonances next to them that no point shows.
 pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mut Motions) -> Result<()> {
@@ -100,7 +105,7 @@ fn minimum(
             break;
         }
         let wide = if c.0 - b.0 > b.0 - a.0 { c } else { a };
-        let golden = b.0 + GOLDEN * (wide.0 - b.0);
+        let golden = b.0 + FORCE_EXTREMA_GOLDEN * (wide.0 - b.0);
         let mut p = if use_parabola {
             vertex(a, b, c).unwrap_or(golden)
         } else {

@@ -1,6 +1,5 @@
 //! The resonance between two points of a mode's branch, solved on the mode's equations.
 
-use crate::adaptivity::transfer::transferred;
 use crate::analysis::synthesis::computed_peak::AtPeak;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
@@ -8,6 +7,7 @@ use crate::continuation::special_points::Locator;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::harmonics::transfer::transferred;
 use crate::interrupt::Interrupt;
 use crate::linalg::inner;
 use crate::linalg::newton::linear_system::Jacobian;
@@ -21,9 +21,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the synthesised response";
 
 /// Relative accuracy of the amplitude of a resonance.
+/// Kind: rounding.
 const RESONANCE_WIDTH: f64 = 1e-12;
 
 /// Largest number of evaluations for one resonance.
+/// Kind: cap.
 const RESONANCE_MAX_EVALUATIONS: usize = 60;
 
 /// Solves the mode between two points of its branch.

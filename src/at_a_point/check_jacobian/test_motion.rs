@@ -4,6 +4,7 @@ use crate::error::{Result, try_copy, try_vec};
 use std::f64::consts::TAU;
 
 /// Samples of the test motion.
+/// Kind: tuned; measured on: not recorded.
 pub(super) const SAMPLES: usize = 64;
 
 pub(super) const CONTEXT: &str = "the test of a Jacobian";

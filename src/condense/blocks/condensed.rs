@@ -18,7 +18,8 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Rounding of a motion relative to its size.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Kind: rounding.
+const CONDENSED_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The reference stiffness κ of the contacts. Solutions do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -347,7 +348,7 @@ impl Condensed {
     #[inline]
     pub fn rounding(&self, coordinate: usize) -> f64 {
         if self.is_near_rigid(coordinate) {
-            ROUNDING * self.stiffness[coordinate]
+            CONDENSED_ROUNDING * self.stiffness[coordinate]
         } else {
             0.0
         }

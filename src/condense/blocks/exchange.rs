@@ -24,6 +24,7 @@
 use num_complex::Complex64;
 
 /// Share of its place that a slider in the mean of the motion loses in a turn.
+/// Kind: rounding.
 pub(crate) const CREEP: f64 = 1e-6;
 
 /// The exchange of one coordinate.

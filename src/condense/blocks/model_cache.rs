@@ -8,12 +8,15 @@ use std::cell::OnceCell;
 const CONTEXT: &str = "the condensed models";
 
 /// Ratio of neighbouring numbers of harmonics in extended problems.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_RATIO: f64 = 1.1;
 
 /// Lowest number of harmonics of an extended problem from which the ratio counts.
+/// Kind: tuned; measured on: not recorded.
 const EXTENDED_FIRST: usize = 10;
 
 /// Slots above the first ones; nothing is affordable beyond the last.
+/// Kind: cap.
 const EXTENDED_SLOTS: i32 = 90;
 
 /// Condensed models by their highest harmonic, rising.

@@ -15,12 +15,15 @@ use crate::model::matrices::wave::Wave;
 use num_complex::Complex64;
 
 /// Stiffness of a contact over that of the structure above which it is near-rigid.
+/// Kind: tuned; measured on: not recorded.
 const NEAR_RIGID: f64 = 1e3;
 
 /// Reference stiffness of a near-rigid contact over the stiffness of the structure.
-const REDUCED: f64 = 10.0;
+/// Kind: tuned; measured on: not recorded.
+const REFERENCE_STIFFNESS_REDUCED: f64 = 10.0;
 
 /// Stiffness of a spring over that of the structure where that is negative: then neither κ nor κ/2 makes their sum zero.
+/// Kind: tuned; measured on: not recorded.
 const ABOVE_NEGATIVE: f64 = 4.0;
 
 /// Stiffness of the structure at each of `coordinates` relative coordinates: the largest diagonal entry of K with its
@@ -93,7 +96,7 @@ pub(crate) fn reference_stiffness(stiffness: &[f64], structural: &[f64]) -> Resu
     let mut reference = try_copy(stiffness, "the contacts")?;
     for (r, &structural) in reference.iter_mut().zip(structural) {
         if structural > 0.0 && *r > NEAR_RIGID * structural {
-            *r = REDUCED * structural;
+            *r = REFERENCE_STIFFNESS_REDUCED * structural;
         }
     }
     Ok(reference)

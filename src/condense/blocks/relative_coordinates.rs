@@ -7,7 +7,8 @@ use crate::model::matrices::spring::along;
 use num_complex::Complex64;
 
 /// Keys between two checks of a stop, and operations of one of them.
-const BETWEEN_CHECKS: usize = 1024;
+/// Kind: block.
+const RELATIVE_COORDINATES_BETWEEN_CHECKS: usize = 1024;
 const OF_ONE_KEY: usize = 100;
 
 /// A direction of an active contact, and its relative coordinate.
@@ -47,8 +48,8 @@ pub(crate) fn assign_coordinates(
     // Each key once: a comparison takes less time than a key.
     let mut keys = try_room(assembled.len(), CONTEXT)?;
     for (i, p) in assembled.iter().enumerate() {
-        if i.is_multiple_of(BETWEEN_CHECKS) {
-            interrupt.check_before((BETWEEN_CHECKS * OF_ONE_KEY) as u64)?;
+        if i.is_multiple_of(RELATIVE_COORDINATES_BETWEEN_CHECKS) {
+            interrupt.check_before((RELATIVE_COORDINATES_BETWEEN_CHECKS * OF_ONE_KEY) as u64)?;
         }
         keys.push(structure.key(&structure.contact_motion(&model.contacts()[p.contact], p.direction)));
     }

@@ -14,7 +14,8 @@ use crate::model::matrices::speed::{Speed, SpeedLoad};
 use std::sync::Arc;
 
 /// Smallest r: the motion over it stays finite.
-const LEAST: f64 = 1e-100;
+/// Kind: rounding.
+const TIED_LOAD_LEAST: f64 = 1e-100;
 
 /// A load that depends on the frequency.
 #[derive(Clone, Debug)]
@@ -105,7 +106,7 @@ impl TiedLoad {
     pub(crate) fn at<'a>(&'a self, law: &'a dyn Law, omega: f64) -> LoadedLaw<'a> {
         let load = self.constant + self.per_omega2 * omega * omega;
         let slope = 2.0 * self.per_omega2 * omega / self.reference;
-        let factor = (load.abs() / self.reference).max(LEAST);
+        let factor = (load.abs() / self.reference).max(TIED_LOAD_LEAST);
         let (law, slope) = match &self.open {
             Some(open) if load < 0.0 => (&**open, -slope),
             _ => (law, slope),

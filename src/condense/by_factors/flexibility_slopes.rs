@@ -13,6 +13,7 @@ use crate::linalg::inner;
 use num_complex::Complex64;
 
 /// Columns of Z′ Z⁻¹ B at a time.
+/// Kind: block.
 const PRODUCTS: usize = 8;
 
 impl Workspace {

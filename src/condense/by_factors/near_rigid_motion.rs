@@ -17,9 +17,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the motion of near-rigid contacts";
 
 /// Largest number of corrections: each leaves the rounding of the last.
+/// Kind: cap.
 const CORRECTIONS: usize = 4;
 
 /// Relative size below which a direction of G is no flexibility: relative motions that depend on each other.
+/// Kind: rounding.
 const RANK: f64 = 1e-11;
 
 /// Corrects the motion `x` of the i-th carried harmonic at `omega` so that near-rigid coordinates have their share of

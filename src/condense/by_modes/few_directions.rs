@@ -16,26 +16,33 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the directions of the damping";
 
 /// Degrees of freedom over directions, and the most directions: a basis begins with them and has a few hundred columns, and the term of a
-/// sum over modes costs their cube. Kind: cap.
+/// sum over modes costs their cube.
+/// Kind: cap.
 const DEGREES_PER_DIRECTION: usize = 6;
 const MOST_DIRECTIONS: usize = 200;
 
 /// Entry of R over the sum of its terms that is rounding.
+/// Kind: rounding.
 const OF_ROUNDING: f64 = 1e-12;
 
 /// Part of a diagonal entry that is left of it, beyond which a direction is none of rounding.
+/// Kind: rounding.
 const LEFT_OF_ENTRY: f64 = 4e-12;
 
 /// Difference of products with R and L Lᴴ, relative to the diagonal, beyond which R is not of this form.
+/// Kind: rounding.
 const NOT_SEMIDEFINITE: f64 = 1e-10;
 
 /// Size of αM + βK over that of C, in a diagonal entry, beyond which R cancels it.
+/// Kind: tuned; measured on: not recorded.
 const CANCELS: f64 = 100.0;
 
 /// Share of the terms of a diagonal entry of R below which it has few digits.
+/// Kind: tuned; measured on: not recorded.
 const SMALL_SHARE: f64 = 1e-3;
 
 /// Columns from whose entries α and β are taken.
+/// Kind: tuned; measured on: not recorded.
 const SAMPLED_COLUMNS: usize = 8;
 
 /// α, β and R = D S Dᴴ.

@@ -25,31 +25,40 @@ use std::sync::{Arc, OnceLock};
 const CONTEXT: &str = "the flexibility from modes";
 
 /// Multiplications up to which plain loops are quicker than the blocked product.
+/// Kind: tuned; measured on: not recorded.
 const SMALL_PRODUCT: usize = 4096;
 
 /// Numbers of modes that are not summed by series; the least that suffices is taken.
+/// Kind: tuned; measured on: not recorded.
 const SOFT: [usize; 2] = [36, 108];
 
 /// Modes of a structure, over those, above which a series is quicker.
+/// Kind: tuned; measured on: not recorded.
 const MANY: usize = 2;
 
 /// Rows up to which a series is used: the matrices of more would take too much memory.
+/// Kind: cap.
 const MOST_ROWS: usize = 200;
 
 /// |σ μ| of the stiff modes.
+/// Kind: tuned; measured on: not recorded.
 const STIFF: f64 = 0.125;
 
 /// Error of a series over the tolerance.
-const SHARE: f64 = 0.1;
+/// Kind: tuned; measured on: not recorded.
+const MODAL_ROWS_SHARE: f64 = 0.1;
 
 /// Most terms of a series: with them it has the digits of a number.
+/// Kind: cap.
 const MOST_TERMS: usize = 18;
 
 /// Rows of a sum over stiff modes that are made at a time: those above them follow from its symmetry.
-const AT_ONCE: usize = 24;
+/// Kind: block.
+const MODAL_ROWS_AT_ONCE: usize = 24;
 
 /// Entries of a table to which the terms of a series are added at a time.
-const ENTRIES: usize = 256;
+/// Kind: block.
+const MODAL_ROWS_ENTRIES: usize = 256;
 
 /// The rows of a wave in its modes, or in its poles.
 pub struct ModalRows {
@@ -75,7 +84,7 @@ pub struct ModalRows {
 #[must_use]
 pub fn terms_within(tolerance: f64) -> usize {
     if tolerance > 0.0 {
-        (((SHARE * tolerance).ln() / STIFF.ln()).ceil() as usize).min(MOST_TERMS)
+        (((MODAL_ROWS_SHARE * tolerance).ln() / STIFF.ln()).ceil() as usize).min(MOST_TERMS)
     } else {
         0
     }
@@ -317,8 +326,8 @@ impl ModalRows {
         let weighted = MatRef::from_row_major_slice(&weighted, end, rows);
         // That of modes is its own adjoint.
         let is_hermitian = self.adjoint.is_empty();
-        for from in (0..rows).step_by(AT_ONCE) {
-            let columns = AT_ONCE.min(rows - from);
+        for from in (0..rows).step_by(MODAL_ROWS_AT_ONCE) {
+            let columns = MODAL_ROWS_AT_ONCE.min(rows - from);
             let above = if is_hermitian { from } else { 0 };
             matmul(
                 MatMut::from_column_major_slice_mut(&mut sum, rows, rows).submatrix_mut(
@@ -393,8 +402,8 @@ impl WithSimd for Series<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut from = 0;
-        for out in self.out.chunks_mut(ENTRIES) {
-            let [mut by_re, mut by_im] = [[0.0; 2 * ENTRIES]; 2];
+        for out in self.out.chunks_mut(MODAL_ROWS_ENTRIES) {
+            let [mut by_re, mut by_im] = [[0.0; 2 * MODAL_ROWS_ENTRIES]; 2];
             let numbers = 2 * out.len();
             for (sum, factor) in self.sums.iter().zip(self.factors) {
                 let sum = cast_slice::<Complex64, f64>(&sum[from..from + out.len()]);

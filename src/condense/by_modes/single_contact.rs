@@ -10,10 +10,11 @@ use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Entries of the table: of the contact and the response by the contact, of both by the excitation.
-const ENTRIES: usize = 4;
+/// Kind: fixed.
+const SINGLE_CONTACT_ENTRIES: usize = 4;
 
 /// One complex number for each entry, real parts first.
-type Entries = [[f64; ENTRIES]; 2];
+type Entries = [[f64; SINGLE_CONTACT_ENTRIES]; 2];
 
 /// One mode.
 pub struct Mode {
@@ -118,7 +119,7 @@ impl WithSimd for Sum<'_> {
     fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
         let Self(modes, by) = self;
         let (c, d_c) = (by.at.at.c, by.at.slope.c);
-        let mut sums = [[[0.0; ENTRIES]; 2]; 2];
+        let mut sums = [[[0.0; SINGLE_CONTACT_ENTRIES]; 2]; 2];
         let mut is_clear = true;
         for mode in modes {
             let (re, im) = (1.0 + c.re - by.s.re * mode.value, c.im - by.s.im * mode.value);
@@ -131,7 +132,7 @@ impl WithSimd for Sum<'_> {
             for (sum, factor) in sums.iter_mut().zip([inverse, slope]) {
                 let [p_re, p_im] = &mode.products;
                 let [re, im] = sum;
-                for i in 0..ENTRIES {
+                for i in 0..SINGLE_CONTACT_ENTRIES {
                     re[i] += p_re[i] * factor.re - p_im[i] * factor.im;
                     im[i] += p_re[i] * factor.im + p_im[i] * factor.re;
                 }

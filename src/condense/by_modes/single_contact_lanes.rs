@@ -13,13 +13,15 @@ use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Harmonics of a group: a multiple of the numbers in a vector of any processor.
-const LANES: usize = 8;
+/// Kind: block.
+const HARMONIC_LANES: usize = 8;
 
 /// Entries of a table: of the contact and the response by the contact, of both by the excitation.
-const ENTRIES: usize = 4;
+/// Kind: fixed.
+const LANE_ENTRIES: usize = 4;
 
 /// One number for each harmonic of a group.
-type Numbers = [f64; LANES];
+type Numbers = [f64; HARMONIC_LANES];
 
 /// One complex number for each harmonic of a group.
 #[derive(Clone, Copy)]
@@ -33,7 +35,7 @@ struct Mode {
     /// μ
     value: Numbers,
     /// Output times input of each entry.
-    products: [Lanes; ENTRIES],
+    products: [Lanes; LANE_ENTRIES],
 }
 
 /// Up to eight harmonics.
@@ -67,8 +69,8 @@ impl SingleContactLanes {
     /// `OutOfMemory`.
     pub fn new(tables: &[Option<ModalTable>]) -> Result<Option<Self>> {
         const CONTEXT: &str = "the flexibility from modes";
-        let mut groups = try_room(tables.len().div_ceil(LANES), CONTEXT)?;
-        for (k, tables) in tables.chunks(LANES).enumerate() {
+        let mut groups = try_room(tables.len().div_ceil(HARMONIC_LANES), CONTEXT)?;
+        for (k, tables) in tables.chunks(HARMONIC_LANES).enumerate() {
             let all = tables
                 .iter()
                 .all(|table| table.as_ref().is_some_and(|t| t.single().is_some()));
@@ -80,7 +82,7 @@ impl SingleContactLanes {
                 from_fn(|lane| of(lane).map_or(0.0, |part| value(&part)))
             };
             let count = |lane: usize| of(lane).map_or(0, |part| part.contact.modes().len());
-            let most = (0..LANES).map(count).max().unwrap_or(0);
+            let most = (0..HARMONIC_LANES).map(count).max().unwrap_or(0);
             let mut modes = try_room(most, CONTEXT)?;
             for m in 0..most {
                 // A wave with fewer modes has others that do not move.
@@ -96,7 +98,7 @@ impl SingleContactLanes {
                 modes.push(Mode { value, products });
             }
             let group = Group {
-                first: k * LANES,
+                first: k * HARMONIC_LANES,
                 count: tables.len(),
                 number: number(&|part| part.number),
                 alpha: number(&|part| part.proportional.0),
@@ -121,7 +123,7 @@ impl SingleContactLanes {
     /// small or a number is not finite.
     pub fn evaluate(&self, omega: f64, tables: &mut [Table]) -> bool {
         self.groups.iter().all(|group| {
-            let mut found = [[Lanes::ZERO; ENTRIES]; 2];
+            let mut found = [[Lanes::ZERO; LANE_ENTRIES]; 2];
             if !self.arch.dispatch(Evaluate(group, omega, &mut found)) {
                 return false;
             }
@@ -140,7 +142,7 @@ impl SingleContactLanes {
 }
 
 /// Fills in the entries of the tables of a group and their slopes at ω; `false` where that is not possible.
-struct Evaluate<'a>(&'a Group, f64, &'a mut [[Lanes; ENTRIES]; 2]);
+struct Evaluate<'a>(&'a Group, f64, &'a mut [[Lanes; LANE_ENTRIES]; 2]);
 
 impl WithSimd for Evaluate<'_> {
     type Output = bool;
@@ -242,7 +244,7 @@ impl<S: Simd> Vectors<S> {
 
     /// The tables and their slopes; `false` where a denominator is small or a number is not finite.
     #[inline(always)]
-    fn evaluate(self, group: &Group, omega: f64, tables: &mut [[Lanes; ENTRIES]; 2]) -> bool {
+    fn evaluate(self, group: &Group, omega: f64, tables: &mut [[Lanes; LANE_ENTRIES]; 2]) -> bool {
         let simd = self.simd;
         let (zero, one) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
         let none = Complex { re: zero, im: zero };
@@ -264,9 +266,9 @@ impl<S: Simd> Vectors<S> {
             re: self.mul(number, self.mul(simd.splat_f64s(2.0), nu)),
             im: simd.neg_f64s(self.mul(number, alpha)),
         };
-        let (mut sums, mut d_sums, mut least) = ([none; ENTRIES], [none; ENTRIES], one);
+        let (mut sums, mut d_sums, mut least) = ([none; LANE_ENTRIES], [none; LANE_ENTRIES], one);
         let is_forced = self.k * (size_of::<S::f64s>() / size_of::<f64>()) < group.forced;
-        let entries = if is_forced { ENTRIES } else { ENTRIES / 2 };
+        let entries = if is_forced { LANE_ENTRIES } else { LANE_ENTRIES / 2 };
         for mode in &group.modes {
             let value = self.read(&mode.value);
             let d = Complex {
@@ -339,7 +341,7 @@ impl<S: Simd> Vectors<S> {
                 self.write(from, to);
             }
         }
-        let mut checks = [[0.0; LANES]; 2];
+        let mut checks = [[0.0; HARMONIC_LANES]; 2];
         for (check, vector) in checks.iter_mut().zip([zeros, least]) {
             S::as_mut_simd_f64s(check).0[self.k] = vector;
         }
@@ -351,8 +353,8 @@ impl<S: Simd> Vectors<S> {
 
 impl Lanes {
     const ZERO: Self = Self {
-        re: [0.0; LANES],
-        im: [0.0; LANES],
+        re: [0.0; HARMONIC_LANES],
+        im: [0.0; HARMONIC_LANES],
     };
 }
 

@@ -14,6 +14,7 @@ use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 /// Relative deviation of a damping matrix from αM + βK that is rounding.
+/// Kind: rounding.
 const PROPORTIONAL: f64 = 1e-12;
 
 /// The modes of one wave.
@@ -39,13 +40,16 @@ pub struct WaveModes {
 }
 
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
+/// Kind: rounding.
 pub(crate) const NEAR_RESONANCE: f64 = 1e-6;
 
 /// The same of a response without contacts: the mode hides no flexibility that acts on a contact, and a factorisation has no more
 /// digits of its response.
+/// Kind: rounding.
 pub(crate) const NEAR_ALONE: f64 = 1e-10;
 
 /// The same for a nonlinear mode, which is a resonance of the stuck structure while its contacts stick.
+/// Kind: rounding.
 pub(crate) const NEAR_MODE: f64 = 1e-4;
 
 impl WaveModes {

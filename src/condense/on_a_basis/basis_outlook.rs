@@ -13,25 +13,30 @@ use crate::linalg::factors::inertia::eigenvalues_below;
 use crate::linalg::sparse_storage::sparse::{Columns, Csc};
 
 /// Usual columns of a basis per input, and besides.
+/// Kind: tuned; measured on: not recorded.
 pub(crate) const USUAL_COLUMNS: (usize, usize) = (5, 10);
 
-/// Columns of a basis beyond those for each natural frequency up to the highest. Kind: tuned; 2.0 to 2.4 on chains of 1,500 and 3,000
+/// Columns of a basis beyond those for each natural frequency up to the highest.
+/// Kind: tuned; measured on: 2.0 to 2.4 on chains of 1,500 and 3,000
 /// masses and grids of 1,444 and 2,916 with 1 to 30 contacts.
 const OF_RESONANCE: usize = 2;
 
-/// Work of a basis over the cube of its columns, and of complex LU factors over the entries of L, in that of n⁻¹ entries². Kind: tuned; by
-/// times of the same models.
+/// Work of a basis over the cube of its columns, and of complex LU factors over the entries of L, in that of n⁻¹ entries².
+/// Kind: tuned; measured on: times of the same models.
 const OF_COLUMNS: f64 = 2.5;
 const OF_ENTRIES: f64 = 6.0;
 
-/// Work of all modes over n³, in the same. Kind: tuned; by times of grids of 608 to 2,000.
+/// Work of all modes over n³, in the same.
+/// Kind: tuned; measured on: times of grids of 608 to 2,000.
 const WORK_OF_ALL_MODES: f64 = 0.2;
 
-/// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency. Kind: tuned; usual sweeps have 30 to 300.
+/// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency. Usual sweeps have 30 to 300.
+/// Kind: tuned; measured on: not recorded.
 const ALONG_RANGE: f64 = 600.0;
 const AT_ONE: f64 = 5.0;
 
-/// Whether a basis for `inputs` forces and others `beside` them in the first block, of `most` columns at most, is larger than its first blocks with gain: its columns suffice, and take
+/// Whether a basis for `inputs` forces and others `beside` them in the first block, of `most` columns at most, is larger than its
+/// first blocks with gain: its columns suffice, and take
 /// less time than the factors. `true` where the natural frequencies cannot be counted.
 ///
 /// # Errors

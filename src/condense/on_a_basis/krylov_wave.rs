@@ -23,38 +23,50 @@ const CONTEXT: &str = "the reduced structure";
 
 /// Motions of the lowest frequencies whose products are computed in twice the precision. Rounding counts by the ratio of the
 /// largest stiffness to that of a motion, which is far smaller in the others.
+/// Kind: tuned; measured on: not recorded.
 const SOFTEST: usize = 16;
 
 /// Those among them by which the rounding of solutions is measured.
+/// Kind: tuned; measured on: not recorded.
 const PROBES: usize = 3;
 
 /// Shift σ over the square of the lowest frequency of the sweep. It makes a structure that can move freely definite, and is
 /// so small that the basis finds the modes near the sweep first.
+/// Kind: tuned; measured on: not recorded.
 const SHIFT: f64 = 0.01;
 
 /// The same over the typical stiffness per mass, for a wave that is needed at rest only.
-const SMALL: f64 = 1e-7;
+/// Kind: tuned; measured on: not recorded.
+const KRYLOV_WAVE_SMALL: f64 = 1e-7;
 
 /// Factor between shifts of an indefinite stiffness, and the number that are tried.
+/// Kind: tuned; measured on: not recorded.
 const RAISED: f64 = 100.0;
-const ATTEMPTS: usize = 5;
+/// Shifts of an indefinite stiffness that are tried.
+/// Kind: cap.
+const KRYLOV_WAVE_ATTEMPTS: usize = 5;
 
 /// Most columns of a basis, and most blocks where one block has many.
+/// Kind: cap.
 pub(crate) const MOST_COLUMNS: usize = 600;
 pub(crate) const MOST_BLOCKS: usize = 12;
 
 /// Columns of a basis over those that are added before its next certificate, which costs as much as some of its factorisations.
+/// Kind: tuned; measured on: not recorded.
 const GROWTH_OF_BASIS: usize = 5;
 
 /// Candidates of a block from which it takes those alone that the residuals need, and the order of the basis over the columns that it takes
 /// at least, since the residuals of one frequency are known.
+/// Kind: tuned; measured on: not recorded.
 const CHOSEN_FROM: usize = 32;
 const LEAST_GROWTH: usize = 16;
 
 /// Ratio of certificates from which the candidates of the next block are chosen by residuals.
+/// Kind: tuned; measured on: not recorded.
 const LEAST_GAIN: f64 = 3.0;
 
 /// Blocks that memory is counted and reserved for.
+/// Kind: tuned; measured on: not recorded.
 const USUAL_BLOCKS: usize = 7;
 
 /// Prepares a wave for `inputs` until its certificate is below `limit` or the basis has `most` columns; `None` where it has no definite
@@ -265,7 +277,7 @@ fn started<T: Entry>(
 ) -> Result<Option<(BlockKrylov<T>, Prepared)>> {
     let mut next = Some(assembled);
     let mut shift = SHIFT * matrices.frequency * matrices.frequency;
-    for _ in 0..ATTEMPTS {
+    for _ in 0..KRYLOV_WAVE_ATTEMPTS {
         let ready = match next.take() {
             Some(ready) => Some(ready),
             None => matrices.assembled(interrupt)?,
@@ -285,7 +297,7 @@ fn started<T: Entry>(
             return Ok(None);
         }
         if shift <= 0.0 {
-            shift = SMALL * trace(&stiffness).abs() / heavy;
+            shift = KRYLOV_WAVE_SMALL * trace(&stiffness).abs() / heavy;
         }
         let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
         let operators = Operators::<T>::new([stiffness, mass], interrupt)?;

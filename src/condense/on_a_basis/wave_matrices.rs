@@ -12,7 +12,8 @@ use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 
 /// Relative deviation from a Hermitian matrix that is rounding.
-const HERMITIAN: f64 = 1e-10;
+/// Kind: rounding.
+const WAVE_MATRICES_HERMITIAN: f64 = 1e-10;
 
 /// The matrices of a wave and the reason for which they are reduced.
 pub(crate) struct WaveMatrices<'a> {
@@ -71,7 +72,7 @@ impl WaveMatrices<'_> {
         let mass = self.matrix(MatrixKind::Mass)?;
         for a in [&stiffness, &mass] {
             interrupt.check()?;
-            if worst_pair(a, Symmetry::Hermitian).2 > HERMITIAN * a.max_abs() {
+            if worst_pair(a, Symmetry::Hermitian).2 > WAVE_MATRICES_HERMITIAN * a.max_abs() {
                 return Ok(None);
             }
         }

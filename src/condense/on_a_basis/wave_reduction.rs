@@ -28,32 +28,40 @@ use std::sync::Arc;
 const CONTEXT: &str = "the reduced structure";
 
 /// Degrees of freedom up to which results have all digits: a basis errs by its certificate.
+/// Kind: tuned; measured on: not recorded.
 const EXACT_UP_TO: usize = 100;
 
 /// Certificate of a basis in place of all modes: the error that is allowed to a sum over these.
+/// Kind: rounding.
 const OF_ALL_MODES: f64 = 1e-11;
 
 /// Degrees of freedom over columns of the first block, below which the usual basis is larger than it may be.
-const SHARE: usize = SHARE_OF_BASIS * USUAL_COLUMNS.0;
+/// Kind: tuned; measured on: not recorded.
+const WAVE_REDUCTION_SHARE: usize = SHARE_OF_BASIS * USUAL_COLUMNS.0;
 
 /// The same over all columns: a sweep past more resonances than that is left to all modes, or to factors.
+/// Kind: tuned; measured on: not recorded.
 const SHARE_OF_BASIS: usize = 3;
 
 /// Work of all modes over n³, and of a basis over the harmonics and the cube of its usual columns, in flops of one speed: by times of
 /// chains of 101 to 600 degrees of freedom with 1 to 10 contacts.
+/// Kind: tuned; measured on: times of chains.
 const OF_MODES: f64 = 20.0;
 const OF_POLES: f64 = 200.0;
 const OF_BASIS: f64 = 480.0;
 
 /// Degrees of freedom up to which a structure whose basis does not hold is treated directly.
-const DIRECT_UP_TO: usize = 20_000;
+/// Kind: tuned; measured on: not recorded.
+const WAVE_REDUCTION_DIRECT_UP_TO: usize = 20_000;
 
 /// Error with rounding, as the certificate tells it, beyond which a basis is not used in place of factors, and beyond which it is not used
 /// at all: stiffness of a penalty is lost in the soft motions of the basis, while factors keep them.
+/// Kind: rounding.
 const ROUNDED_BASIS: f64 = 1e-5;
 const USELESS_BASIS: f64 = 1e-2;
 
 /// Forces on more degrees of freedom than this in one harmonic count as one vector.
+/// Kind: tuned; measured on: not recorded.
 const SEPARATE_FORCES: usize = 8;
 
 /// The model and the motions that a reduction must represent.
@@ -110,7 +118,7 @@ pub(crate) fn reduced_blocks(
     {
         return declined(forced);
     }
-    let most = if forced { usize::MAX } else { n / SHARE };
+    let most = if forced { usize::MAX } else { n / WAVE_REDUCTION_SHARE };
     let Some(groups) = groups(request, most, interrupt)? else {
         return Ok(None);
     };
@@ -120,7 +128,7 @@ pub(crate) fn reduced_blocks(
     let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
     let mut worst = Certificate::default();
     for group in &groups {
-        let is_optional = !forced && n <= DIRECT_UP_TO;
+        let is_optional = !forced && n <= WAVE_REDUCTION_DIRECT_UP_TO;
         let (wave, error) = match wave_of(request, group, &kappa, interrupt) {
             Ok(Some(found)) => found,
             Ok(None) => return declined(forced),
@@ -285,7 +293,7 @@ fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
 /// The factors that the basis of a wave is an alternative to: in between all modes and a size where these are too dear.
 fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
     let n = request.ndof();
-    if request.is_forced() || n <= ALL_UP_TO || n > DIRECT_UP_TO {
+    if request.is_forced() || n <= ALL_UP_TO || n > WAVE_REDUCTION_DIRECT_UP_TO {
         return None;
     }
     let numbers = group.members.iter().map(|&(i, _)| request.numbers[i]);

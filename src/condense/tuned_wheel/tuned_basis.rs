@@ -14,13 +14,16 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the tuned wheel";
 
-/// Part of a product beyond the basis, over the largest one, that is rounding. Kind: rounding.
+/// Part of a product beyond the basis, over the largest one, that is rounding.
+/// Kind: rounding.
 const FELT: f64 = 1e-12;
 
 /// Random vectors in a row that add nothing until the basis is complete.
+/// Kind: tuned; measured on: not recorded.
 const CONVINCED: usize = 2;
 
-/// Unknowns of all low-rank terms up to which these take less time than factors of the wheel. Kind: cap; their matrix is full.
+/// Unknowns of all low-rank terms up to which these take less time than factors of the wheel.
+/// Kind: cap; their matrix is full.
 const MOST_TUNED_TERMS: usize = 1_500;
 
 /// Orthonormal motions of each wave, as many in each.
@@ -150,6 +153,7 @@ impl TunedBasis {
 }
 
 /// Columns that pass through a matrix together: its entries come from memory once for all of them.
+/// Kind: block.
 const FEW: usize = 8;
 
 /// A row of so many columns.

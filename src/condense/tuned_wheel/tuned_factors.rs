@@ -21,6 +21,7 @@ use std::sync::Arc;
 const CONTEXT: &str = "the factors of a tuned wheel";
 
 /// Right sides that are transformed at a time.
+/// Kind: block.
 const RIGHT_SIDES: usize = 8;
 
 /// Factors of one harmonic at a time.

@@ -21,17 +21,21 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the tuned wheel";
 
-/// Difference of entries around the ring, over the stiffness of their degrees of freedom, that is rounding. Kind: rounding.
+/// Difference of entries around the ring, over the stiffness of their degrees of freedom, that is rounding.
+/// Kind: rounding.
 const ALIKE_AROUND_RING: f64 = 1e-14;
 
 /// Gap of yᵀAx and xᵀAy, over the root of the sum of squares of A, up to which waves that travel the other way have the transposed
-/// matrices. Kind: rounding.
+/// matrices.
+/// Kind: rounding.
 const MIRRORED: f64 = 1e-13;
 
-/// Largest gap of two matrices that are proportional, over the largest entry. Kind: rounding.
+/// Largest gap of two matrices that are proportional, over the largest entry.
+/// Kind: rounding.
 const PROPORTIONAL_DIFFERENCES: f64 = 1e-13;
 
 /// Matrices of which that of a harmonic is a sum.
+/// Kind: fixed.
 pub const TUNED_TERMS: usize = 6;
 
 /// A wheel whose differences have low rank.

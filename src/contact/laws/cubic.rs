@@ -12,7 +12,7 @@ use crate::contact::constants::{Constants, Role};
 use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Spectral};
 use crate::contact::laws::polynomial::Polynomial;
-use crate::contact::linearisation::{Range, SMALL};
+use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
@@ -110,7 +110,7 @@ impl Law for Cubic {
 
     /// From this scale on the cubic term is small against `reference`.
     fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
-        ranges[0].size() * (self.cubic.abs() / (SMALL * reference)).sqrt()
+        ranges[0].size() * (self.cubic.abs() / (LINEARISATION_SMALL * reference)).sqrt()
     }
 }
 

@@ -24,10 +24,12 @@ pub struct Iwan {
 }
 
 /// Elements that one joint may have.
+/// Kind: cap.
 pub const MAX_ELEMENTS: usize = 10_000;
 
 /// Smallest interval of φ over φ_max: below that displacement nothing slips.
-const SMALLEST: f64 = 1e-5;
+/// Kind: rounding.
+const IWAN_SMALLEST: f64 = 1e-5;
 
 impl Iwan {
     /// Checks the parameters.
@@ -93,7 +95,7 @@ impl Iwan {
         let largest = self.largest_displacement();
         let bound = |i: usize| match i {
             0 => 0.0,
-            i => largest * SMALLEST.powf((intervals - i) as f64 / intervals as f64),
+            i => largest * IWAN_SMALLEST.powf((intervals - i) as f64 / intervals as f64),
         };
         let (r, p) = (self.density(), self.chi + 1.0);
         let mut contacts = Vec::new();

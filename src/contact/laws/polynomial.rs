@@ -11,7 +11,7 @@ mod polynomial_terms;
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::laws::polynomial::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
-use crate::contact::linearisation::{Range, SMALL};
+use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
 use crate::contact::samples::Samples;
 use crate::error::{Result, fail, try_push};
 use std::sync::Arc;
@@ -257,8 +257,8 @@ impl Law for Polynomial {
             let factors = &self.content.factors[term.first..term.first + term.count];
             let whole = term.coefficient.abs() * power(self.length, term.degree - 1);
             let force = factors.iter().fold(whole, |p, f| p * power(size(f.variable), f.power));
-            // c·(x/s)ⁿ against SMALL·reference·x/s
-            let share = force / (SMALL * reference * largest);
+            // c·(x/s)ⁿ against LINEARISATION_SMALL·reference·x/s
+            let share = force / (LINEARISATION_SMALL * reference * largest);
             if share > 0.0 {
                 factor = factor.max(share.powf(1.0 / f64::from(term.degree - 1)));
             }

@@ -8,13 +8,14 @@
 use crate::contact::constants::{Constants, Role};
 use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
-use crate::contact::linearisation::{Range, SMALL};
+use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
 use crate::contact::samples::{Samples, automatic_samples};
 use crate::error::{Result, fail};
 use std::sync::Arc;
 
 /// Finer sampling than that of a law of unknown form, for the steep passage through v = 0.
-const REFINEMENT: usize = 4;
+/// Kind: tuned; measured on: not recorded.
+const REGULARISED_REFINEMENT: usize = 4;
 
 /// Regularised friction of the caller.
 #[derive(Clone, Copy, Debug)]
@@ -173,7 +174,7 @@ impl Law for TanhFriction {
 
     /// tanh r = r − r³/3 + …
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
-        ranges[0].speed / (self.velocity * (3.0 * SMALL).sqrt())
+        ranges[0].speed / (self.velocity * (3.0 * LINEARISATION_SMALL).sqrt())
     }
 }
 
@@ -184,7 +185,7 @@ impl Memoryless for TanhFriction {
 
     fn samples(&self, highest: usize, requested: usize) -> usize {
         match requested {
-            0 => automatic_samples(highest).saturating_mul(REFINEMENT),
+            0 => automatic_samples(highest).saturating_mul(REGULARISED_REFINEMENT),
             n => n,
         }
     }

@@ -21,6 +21,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Share of the sizes that are subtracted up to which a difference counts as rounding.
+/// Kind: rounding.
 const TABLE_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A line f = slope·x + offset, from the displacement `from` on.

@@ -13,12 +13,15 @@
 use core::array::from_fn;
 
 /// Margin of the bounds.
+/// Kind: tuned; measured on: not recorded.
 const CONTRACTION_MARGIN: f64 = 100.0;
 
 /// Largest residual over the tolerance from which the end is foreseen.
+/// Kind: tuned; measured on: not recorded.
 const CONTRACTION_LARGEST: f64 = 100.0;
 
 /// Ends in a row that are foreseen, after which the contraction is measured again.
+/// Kind: tuned; measured on: not recorded.
 const MOST_FORESEEN: usize = 20;
 
 /// Relative residual, and length of the step from there over the motion.

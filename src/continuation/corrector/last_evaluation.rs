@@ -14,12 +14,15 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Largest change of a tangent by the first round, over its size: of a larger one the matrices differ too much.
+/// Kind: tuned; measured on: not recorded.
 const LARGEST_CHANGE: f64 = 1e-3;
 
 /// Largest Newton step to the point, over the motion: after a longer one the matrices may differ too much.
+/// Kind: tuned; measured on: not recorded.
 const LAST_EVALUATION_SMALL: f64 = 1e-5;
 
 /// Rounds that take less time than new factors.
+/// Kind: tuned; measured on: not recorded.
 const LAST_EVALUATION_MOST_ROUNDS: usize = 3;
 
 impl Corrector {

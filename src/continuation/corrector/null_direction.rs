@@ -12,10 +12,14 @@ use crate::linalg::{dot, norm};
 use crate::problem::Problem;
 
 /// Largest number of iterations, and the sine of the angle between the last two directions that ends them.
+/// Kind: cap.
 const NULL_DIRECTION_MAX_ITERATIONS: usize = 40;
+/// Sine of the angle between the last two directions that ends the iterations.
+/// Kind: rounding.
 const CONVERGED: f64 = 1e-9;
 
 /// Relative shift of the motion where the matrix is singular to rounding.
+/// Kind: rounding.
 const NULL_DIRECTION_SHIFT: f64 = 1e-9;
 
 impl Corrector {

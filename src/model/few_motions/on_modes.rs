@@ -20,7 +20,8 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Deviation from a Hermitian matrix, relative to its largest entry, that is rounding.
-const HERMITIAN: f64 = 1e-12;
+/// Kind: rounding.
+const ON_MODES_HERMITIAN: f64 = 1e-12;
 
 const CONTEXT: &str = "the model on modes";
 
@@ -286,7 +287,7 @@ impl OnModes {
 /// Adds the matrices of the other senses, which are the conjugates, where a matrix is not Hermitian: it could be taken for
 /// that of a loss, whose other sense is the transpose.
 fn add_other_senses(diameters: &mut Vec<Option<KeptMatrix>>, sectors: usize) -> Result<()> {
-    let has_symmetry = |a: &KeptMatrix| a.worst_pair(Symmetry::Hermitian).2 <= HERMITIAN * a.max_abs();
+    let has_symmetry = |a: &KeptMatrix| a.worst_pair(Symmetry::Hermitian).2 <= ON_MODES_HERMITIAN * a.max_abs();
     if diameters.iter().flatten().all(has_symmetry) {
         return Ok(());
     }

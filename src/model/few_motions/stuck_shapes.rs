@@ -24,9 +24,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the modes of the stuck structure";
 
 /// Norm of a mode without what shapes before it have in common with it, below which it is no new shape.
-const DEPENDENT: f64 = 1e-6;
+/// Kind: rounding.
+const STUCK_SHAPES_DEPENDENT: f64 = 1e-6;
 
 /// Shift of the static shapes of a structure that no stiffness holds, relative to its stiffness per mass.
+/// Kind: tuned; measured on: not recorded.
 const STUCK_SHAPES_SHIFT: f64 = 1e-7;
 
 /// Shapes of one nodal diameter, column after column.
@@ -186,7 +188,7 @@ impl StuckShapes {
         }
         // Modes have norm 1.
         let norm = inner(&x, &self.mass.times(&x, CONTEXT)?).re.max(0.0).sqrt();
-        if norm > DEPENDENT {
+        if norm > STUCK_SHAPES_DEPENDENT {
             for z in x {
                 try_push(&mut self.modal, z / norm, CONTEXT)?;
             }

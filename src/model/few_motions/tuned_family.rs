@@ -17,6 +17,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the tuned modes of a wheel";
 
 /// Length of a part of a standing wave, relative to the wave, below which it is rounding or a motion that is there already.
+/// Kind: rounding.
 const PART_IS_ROUNDING: f64 = 1e-6;
 
 /// A mode of a wave as one or two motions of the wheel: the part of scale · e^{−2πi·d·s/N} φ in sector s.

@@ -11,9 +11,11 @@ use num_complex::Complex64;
 use std::borrow::Cow;
 
 /// Deviation from a symmetry, relative to the largest entry, that is rounding.
+/// Kind: rounding.
 const COMPLEX_STIFFNESS_ROUNDING: f64 = 1e-10;
 
 /// The same of the loss of a stiffness from one loss factor.
+/// Kind: rounding.
 const PROPORTIONAL_LOSS: f64 = 1e-12;
 
 /// Factors c of (A + Bᴴ)/2 and (A − Bᴴ)/2i as cA + (cB)ᴴ.

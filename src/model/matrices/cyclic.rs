@@ -16,7 +16,8 @@ use crate::model::matrices::wave::Wave;
 use num_complex::Complex64;
 
 /// Relative deviation from a Hermitian matrix that is rounding.
-const HERMITIAN: f64 = 1e-10;
+/// Kind: rounding.
+const CYCLIC_HERMITIAN: f64 = 1e-10;
 
 /// Terms of a speed Ω = pω, which Z_h = … + ω² p²K₁ + ihω² pG contains.
 #[derive(Clone, Debug)]
@@ -96,7 +97,8 @@ impl Structure {
     }
 
     /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh and modal damping, ΩG at a fixed
-    /// speed and aerodynamic forces per velocity, the structural matrix ηK; the mean has the real part of complex matrices, and no structural damping.
+    /// speed and aerodynamic forces per velocity, the structural matrix ηK; the mean has the real part of complex matrices, and no
+    /// structural damping.
     ///
     /// # Errors
     /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.
@@ -322,7 +324,8 @@ impl Structure {
         let which = match which {
             MatrixKind::Structural if self.loss_of_stiffness => MatrixKind::Stiffness,
             MatrixKind::Stiffness | MatrixKind::StiffnessSpeed2
-                if !matrix.is_real() && matrix.worst_pair(Symmetry::Hermitian).2 > HERMITIAN * matrix.max_abs() =>
+                if !matrix.is_real()
+                    && matrix.worst_pair(Symmetry::Hermitian).2 > CYCLIC_HERMITIAN * matrix.max_abs() =>
             {
                 which
             }

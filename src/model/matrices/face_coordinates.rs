@@ -6,12 +6,15 @@ use crate::error::{Result, fail};
 pub type Positions<'a> = &'a [[f64; 3]];
 
 /// Distance from the axis, over the size of the sector, below which a node lies on it.
+/// Kind: rounding.
 const ON_AXIS: f64 = 1e-9;
 
 /// Largest deviation of an angle or a position, over that between the sectors: meshes and their files are rounded.
+/// Kind: rounding.
 const ROUNDED: f64 = 1e-3;
 
 /// Rounding of a position in a file, over the size of the sector.
+/// Kind: rounding.
 const DIGITS: f64 = 1e-6;
 
 /// Compares the positions of all pairs with the sense and the number of sectors.

@@ -22,6 +22,7 @@ pub enum AeroForm {
 }
 
 /// Number of forms.
+/// Kind: fixed.
 pub(crate) const FORMS: usize = 2;
 
 /// Influence coefficients as they were given, checked.

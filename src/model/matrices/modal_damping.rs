@@ -12,9 +12,11 @@ use crate::model::natural_modes::linear_modes::ContactState;
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which the matrix, which has no zero entries, is affordable.
+/// Kind: cap.
 const MODAL_DAMPING_MOST: usize = 2000;
 
 /// Entries of the matrix below this share of those on the diagonal of their row and column are rounding.
+/// Kind: rounding.
 const MODAL_DAMPING_ROUNDING: f64 = 1e-16;
 
 const CONTEXT: &str = "the modal damping";

@@ -25,6 +25,7 @@ pub struct Term {
 }
 
 /// Most terms of a relative motion.
+/// Kind: fixed.
 pub const MOTION_TERMS: usize = TERMS_A + TERMS_B;
 
 /// Relative motion side a minus side b: at most six terms of side a and three of side b.
@@ -37,6 +38,7 @@ pub struct SectorMotion {
 pub type Key = [Option<(usize, i64, u64)>; MOTION_TERMS];
 
 /// Coefficients below this share of 1 are rounding.
+/// Kind: rounding.
 const SECTOR_MOTION_ROUNDING: f64 = 1e-12;
 
 impl SectorMotion {

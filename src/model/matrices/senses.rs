@@ -11,6 +11,7 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Difference of conjugate matrices of a diameter, relative to their largest entry, that is rounding.
+/// Kind: rounding.
 const CONJUGATE: f64 = 1e-13;
 
 impl Structure {

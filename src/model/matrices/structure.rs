@@ -17,9 +17,11 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Largest accepted number of degrees of freedom.
+/// Kind: cap.
 pub const MAX_DOF: usize = 1 << 31;
 
 /// Largest accepted number of sectors.
+/// Kind: cap.
 pub const MAX_SECTORS: usize = 1 << 20;
 
 /// A matrix of the structure.
@@ -40,6 +42,7 @@ pub enum MatrixKind {
 }
 
 /// Number of kinds of matrices.
+/// Kind: fixed.
 pub(crate) const KINDS: usize = 6;
 
 impl MatrixKind {

@@ -29,12 +29,15 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the modes of the contacts";
 
 /// Norm of a shape without what shapes before it have in common with it, below which it is no new one.
+/// Kind: rounding.
 const CONTACT_MODES_DEPENDENT: f64 = 1e-6;
 
 /// Iterations of the eigensolver, far above what converging cases need.
+/// Kind: cap.
 const CONTACT_MODES_ITERATIONS: usize = 100_000;
 
 /// Shapes up to which the eigensolver of nalgebra is so quick that nobody needs to interrupt it.
+/// Kind: tuned; measured on: not recorded.
 const CONTACT_MODES_SMALL: usize = 100;
 
 /// A force of one harmonic on all independent degrees of freedom.

@@ -6,7 +6,7 @@ use crate::contact::Role;
 use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::dense::eigen::{self, Pairs};
-use crate::linalg::exact_sums::quadratic::{ROUNDING, form, quadratic, terms};
+use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, form, quadratic, terms};
 use crate::linalg::iterative::lanczos;
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
@@ -44,22 +44,28 @@ pub struct LinearModes {
 
 /// Degrees of freedom up to which all modes are found by dense algebra. Its rounding is relative to the highest
 /// frequency, which on finer meshes is too inaccurate for the lowest frequencies.
+/// Kind: tuned; measured on: not recorded.
 const LINEAR_MODES_DENSE_UP_TO: usize = 100;
 
 /// Rigid-body modes of a body in space.
+/// Kind: fixed.
 const RIGID_MODES: usize = 6;
 
 /// Largest ω² of a rigid motion, relative to that of the stiffest degree of freedom alone.
+/// Kind: rounding.
 const RIGID: f64 = 1e-10;
 
 /// 1/ω² relative to the largest, below which a motion has no inertia.
+/// Kind: rounding.
 const LINEAR_MODES_MASSLESS: f64 = 1e-13;
 
 /// Real part of an eigenvalue, relative to its modulus, beyond which an undamped motion grows.
+/// Kind: rounding.
 const LINEAR_MODES_GROWS: f64 = 1e-6;
 
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
-const EIGEN_COPIES: usize = 8;
+/// Kind: fixed.
+const LINEAR_MODES_EIGEN_COPIES: usize = 8;
 
 const CONTEXT: &str = "the natural modes";
 
@@ -108,7 +114,8 @@ impl Model {
 
     /// All undamped natural modes of the signed nodal diameter `diameter`, modulo N (0 for a plain structure): the wave in
     /// which sector s + 1 lags by 2π·diameter/N. With gyroscopic forces or complex blocks the wave of −`diameter` has other
-    /// modes; else it has the same frequencies and the conjugate shapes. Motion without mass has no mode, so that a singular mass matrix gives fewer modes than degrees
+    /// modes; else it has the same frequencies and the conjugate shapes. Motion without mass has no mode, so that a singular mass
+    /// matrix gives fewer modes than degrees
     /// of freedom. Dense algebra is meant for up to a few hundred degrees of freedom; [`Self::lowest_modes`] serves
     /// larger structures.
     ///
@@ -140,7 +147,8 @@ impl Model {
         Ok((signed, false))
     }
 
-    /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be had, as where K or M is not Hermitian.
+    /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be had, as where K or M
+    /// is not Hermitian.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -344,7 +352,7 @@ impl Pencil {
     /// Rate √(−φᴴKφ / φᴴMφ) at which a motion of negative stiffness grows; 0 where that is rounding.
     fn growth(&self, shape: &[Complex64]) -> f64 {
         let energy = quadratic(&self.stiffness, shape);
-        if energy >= -ROUNDING * terms(&self.stiffness, shape) {
+        if energy >= -QUADRATIC_ROUNDING * terms(&self.stiffness, shape) {
             return 0.0;
         }
         (-energy / quadratic(&self.mass, shape)).sqrt()
@@ -362,7 +370,7 @@ impl Pencil {
             return self.gyroscopic_modes(gyroscopic, n, interrupt);
         }
         // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
-        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(LINEAR_MODES_EIGEN_COPIES), CONTEXT)?;
         let dense = |a: &Csc| {
             let mut d = DMatrix::<Complex64>::zeros(n, n);
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());

@@ -3,7 +3,7 @@
 
 use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::exact_sums::quadratic::{ROUNDING, quadratic, terms};
+use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::definite;
 use crate::model::Model;
@@ -36,9 +36,11 @@ pub struct SelectedMode {
 }
 
 /// Frequencies that differ by no more than this, relative, count as equal.
+/// Kind: rounding.
 const MODE_SELECTION_EQUAL: f64 = 1e-8;
 
 /// Number of modes of a large structure with which a given shape is compared.
+/// Kind: tuned; measured on: not recorded.
 const COMPARED: usize = 40;
 
 const CONTEXT: &str = "the start mode";
@@ -256,7 +258,7 @@ impl<'a> KnownModes<'a> {
         let shape = &self.modes.shapes[index * n..(index + 1) * n];
         let k = &self.pencil.stiffness;
         let energy = quadratic(k, shape);
-        let rounding = ROUNDING * terms(k, shape);
+        let rounding = QUADRATIC_ROUNDING * terms(k, shape);
         if energy < -rounding {
             return fail!(
                 Argument,

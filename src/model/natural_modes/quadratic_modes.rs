@@ -13,30 +13,37 @@ use crate::linalg::exact_sums::quadratic::quadratic;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
-use crate::model::natural_modes::quadratic_problem::{Pair, Quadratic, REAL, is_one};
+use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which all modes are found by dense algebra: 0.1 s for a mode or for all; the search takes less above.
+/// Kind: tuned; measured on: not recorded.
 const QUADRATIC_MODES_DENSE_UP_TO: usize = 100;
 
 /// Degrees of freedom for each mode that is requested, below which dense algebra is used as well.
+/// Kind: tuned; measured on: not recorded.
 const FEW_FOR_EACH: usize = 4;
 
 /// Iterations of Schur's form for each eigenvalue.
+/// Kind: cap.
 const QUADRATIC_MODES_ITERATIONS: usize = 200;
 
 /// Relative distance of the shift from an eigenvalue in its correction.
+/// Kind: tuned; measured on: not recorded.
 const QUADRATIC_MODES_OFFSET: f64 = 1e-7;
 
 /// Largest number of corrections of an eigenvalue.
+/// Kind: cap.
 const QUADRATIC_MODES_CORRECTIONS: usize = 20;
 
 /// Change of an eigenvalue by its correction, relative to it and to the distance of the next one, beyond which it has become another.
+/// Kind: tuned; measured on: not recorded.
 const BECOMES_OTHER: (f64, f64) = (1e-7, 0.1);
 
 /// Square matrices of the order 2r that Schur's form holds at a time.
+/// Kind: fixed.
 const QUADRATIC_MODES_COPIES: usize = 6;
 
 const CONTEXT: &str = "the damped modes";
@@ -156,8 +163,9 @@ impl Quadratic<'_> {
         let mut pairs = Vec::new();
         for j in 0..2 * r {
             let value = t[(j, j)];
-            let oscillates = value.im > REAL * value.norm().max(f64::EPSILON.sqrt() * REAL * size);
-            let may_grow = value.re > 0.0 && value.im.abs() <= REAL * value.norm();
+            let oscillates = value.im
+                > QUADRATIC_PROBLEM_REAL * value.norm().max(f64::EPSILON.sqrt() * QUADRATIC_PROBLEM_REAL * size);
+            let may_grow = value.re > 0.0 && value.im.abs() <= QUADRATIC_PROBLEM_REAL * value.norm();
             if !(oscillates || may_grow) {
                 continue;
             }

@@ -1,15 +1,17 @@
 //! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
 
 use crate::error::Result;
-use crate::linalg::exact_sums::quadratic::{ROUNDING, quadratic, terms};
+use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use num_complex::Complex64;
 
 /// Imaginary part over the modulus below which an eigenvalue is no vibration.
-pub const REAL: f64 = 1e-9;
+/// Kind: rounding.
+pub const QUADRATIC_PROBLEM_REAL: f64 = 1e-9;
 
 /// Relative distance of eigenvalues, and the square of the sine between their vectors, below which two are one.
+/// Kind: rounding.
 pub const ONE_VALUE: f64 = 1e-7;
 const ONE_VECTOR: f64 = 1e-4;
 
@@ -50,10 +52,10 @@ impl Quadratic<'_> {
     /// beyond vibration.
     #[must_use]
     pub fn as_mode(&self, mut eigenvalue: Complex64, shape: &[Complex64]) -> Option<Complex64> {
-        if eigenvalue.im > REAL * eigenvalue.norm() {
+        if eigenvalue.im > QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
             return (!self.is_rigid(eigenvalue, shape)).then_some(eigenvalue);
         }
-        if eigenvalue.re <= 0.0 || eigenvalue.im < -REAL * eigenvalue.norm() {
+        if eigenvalue.re <= 0.0 || eigenvalue.im < -QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
             return None;
         }
         eigenvalue.im = 0.0;
@@ -63,14 +65,14 @@ impl Quadratic<'_> {
     /// Whether a motion of a real eigenvalue λ > 0 is no rigid one up to rounding: xᴴ(K + λC)x, which is −λ² xᴴMx.
     fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
         let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
-        force < -ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
+        force < -QUADRATIC_ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
     }
 
     /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below that of the forces. The two eigenvalues zero of a motion
     /// that nothing holds lie apart by the root of rounding, in any direction.
     fn is_rigid(&self, eigenvalue: Complex64, x: &[Complex64]) -> bool {
         let forces = terms(self.stiffness, x) + eigenvalue.norm() * terms(self.damping, x);
-        eigenvalue.norm_sqr() * quadratic(self.mass, x) <= ROUNDING * forces
+        eigenvalue.norm_sqr() * quadratic(self.mass, x) <= QUADRATIC_ROUNDING * forces
     }
 
     /// λ²M + λC + K

@@ -26,6 +26,7 @@ pub struct Resonance {
 }
 
 /// Half width relative to the frequency below which a resonance is undamped up to rounding.
+/// Kind: rounding.
 const RESONANCES_UNDAMPED: f64 = 1e-13;
 
 impl Resonance {
@@ -37,31 +38,40 @@ impl Resonance {
 }
 
 /// Degrees of freedom up to which all modes are found by dense algebra.
+/// Kind: tuned; measured on: not recorded.
 const RESONANCES_DENSE_UP_TO: usize = 100;
 
 /// The same where a range has too many modes for a search.
+/// Kind: tuned; measured on: not recorded.
 const DENSE_IF_MANY: usize = 600;
 
 /// Number of the lowest modes of a large structure that are found before those of the range.
+/// Kind: tuned; measured on: not recorded.
 const FIRST_MODES: usize = 24;
 
 /// ω² relative to that of the upper end by which a search reaches beyond both ends.
+/// Kind: rounding.
 const AT_END: f64 = 1e-9;
 
 /// Largest number of modes of a search in the range.
+/// Kind: cap.
 const RESONANCES_MOST_MODES: usize = 500;
 
-/// The same with gyroscopic forces, counted from zero. A cap: the work of the search grows with the square of the number.
+/// The same with gyroscopic forces, counted from zero.
+/// Kind: cap; the work of the search grows with the square of the number.
 const RESONANCES_MOST_GYROSCOPIC: usize = 90;
 
 /// Largest number of square matrices that the dense eigensolver holds at a time.
-const EIGEN_COPIES: usize = 8;
+/// Kind: fixed.
+const RESONANCES_EIGEN_COPIES: usize = 8;
 
 /// Coupling of two modes by damping, relative to the distance of their frequencies, up to which each has its own
 /// half width.
+/// Kind: tuned; measured on: not recorded.
 const COUPLED: f64 = 0.1;
 
 /// Most iterations of the eigenvalues of coupled modes.
+/// Kind: cap.
 const RESONANCES_MAX_ITERATIONS: usize = 10_000;
 
 const CONTEXT: &str = "the resonances";
@@ -268,7 +278,7 @@ fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt
         }
     }
     // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
-    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
+    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(RESONANCES_EIGEN_COPIES), CONTEXT)?;
     let dense = |a: &Csc| {
         let mut d = DMatrix::<Complex64>::zeros(n, n);
         a.add_to_dense(Complex64::ONE, d.as_mut_slice());
@@ -328,7 +338,10 @@ impl Widths {
             let at = if damped > 0.0 { damped } else { *omega };
             return add(Complex64::new(at, sigma));
         }
-        check_memory::<Complex64>(count.saturating_mul(count).saturating_mul(EIGEN_COPIES), CONTEXT)?;
+        check_memory::<Complex64>(
+            count.saturating_mul(count).saturating_mul(RESONANCES_EIGEN_COPIES),
+            CONTEXT,
+        )?;
         let mut matrix = DMatrix::<Complex64>::zeros(count, count);
         for i in 0..count {
             for j in 0..count {

@@ -43,15 +43,19 @@ pub struct Resonance {
 }
 
 /// Relative distance of the shift from the squared frequency.
+/// Kind: tuned; measured on: not recorded.
 const SLIP_CAPACITY_SHIFT: f64 = 1e-8;
 
 /// Number of steps of the inverse iteration, each of which gains the digits of [`SLIP_CAPACITY_SHIFT`].
+/// Kind: cap.
 const SLIP_CAPACITY_MAX_STEPS: usize = 6;
 
 /// Rounding of the force and of the capacity, relative to the sizes of their terms.
+/// Kind: rounding.
 const SLIP_CAPACITY_ROUNDING: f64 = 1e-12;
 
 /// Growth beyond which no motion is possible: it would require more digits of frequency and stiffness than exist.
+/// Kind: cap.
 const UNBOUNDED_GROWTH: f64 = 1e10;
 
 const CONTEXT: &str = "the resonance";

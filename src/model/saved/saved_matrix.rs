@@ -9,8 +9,9 @@ use num_complex::Complex64;
 const CONTEXT: &str = "a loaded matrix";
 
 /// Marks of a matrix: none, one of real entries, one of complex entries.
+/// Kind: fixed.
 const NONE: u8 = 0;
-const REAL: u8 = 1;
+const SAVED_MATRIX_REAL: u8 = 1;
 const COMPLEX: u8 = 2;
 
 /// Writes a matrix, or that there is none.
@@ -20,7 +21,7 @@ pub(crate) fn save(matrix: Option<&KeptMatrix>, out: &mut ByteWriter<'_>) {
         return;
     };
     let real = a.real_values();
-    out.u8(if real.is_some() { REAL } else { COMPLEX });
+    out.u8(if real.is_some() { SAVED_MATRIX_REAL } else { COMPLEX });
     out.count(a.stored());
     for length in a.lengths() {
         out.u32(length as u32);
@@ -44,7 +45,7 @@ pub(crate) fn save(matrix: Option<&KeptMatrix>, out: &mut ByteWriter<'_>) {
 pub(crate) fn load(n: usize, input: &mut ByteReader<'_>) -> Result<Option<KeptMatrix>> {
     let real = match input.u8()? {
         NONE => return Ok(None),
-        REAL => true,
+        SAVED_MATRIX_REAL => true,
         COMPLEX => false,
         _ => return Err(input.damaged("a matrix is neither real nor complex")),
     };

@@ -20,12 +20,15 @@ use num_complex::Complex64;
 const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
+/// Kind: fixed.
 const VERSION: u32 = 5;
 
 /// Bytes before the model.
+/// Kind: fixed.
 const HEAD: usize = 24;
 
 /// Bytes after it.
+/// Kind: fixed.
 const TAIL: usize = 8;
 
 const CONTEXT: &str = "a loaded model";

@@ -13,7 +13,8 @@ use std::sync::Arc;
 const CONTEXT: &str = "a loaded structure";
 
 /// Largest deviation of the length of the axis from 1.
-const UNIT: f64 = 1e-9;
+/// Kind: rounding.
+const SAVED_STRUCTURE_UNIT: f64 = 1e-9;
 
 impl Structure {
     /// Writes the structure.
@@ -149,7 +150,7 @@ fn load_faces(structure: &Structure, (ndof, sectors): (usize, usize), input: &mu
     let forward = input.bool()?;
     let axis = [input.finite()?, input.finite()?, input.finite()?];
     // As it was stored, not made to a unit vector again: that could change its last bit.
-    if (axis.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() > UNIT {
+    if (axis.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() > SAVED_STRUCTURE_UNIT {
         return Err(input.damaged("the axis is no unit vector"));
     }
     let count = input.entries(16)?;

@@ -14,9 +14,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the modes of a blade";
 
 /// Length of a real or imaginary part of a mode of unit mass below which it is rounding, or a mode that is there already.
+/// Kind: rounding.
 const BLADE_PART_IS_ROUNDING: f64 = 1e-6;
 
 /// Difference of mirrored entries, relative to the largest, that is rounding.
+/// Kind: rounding.
 const BLADE_MIRROR_ROUNDING: f64 = 1e-10;
 
 /// x_b = D (x_r, q).

@@ -16,9 +16,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the matrices of the wheel";
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
+/// Kind: rounding.
 const FULL_WHEEL_ROUNDING: f64 = 1e-14;
 
 /// Operations, about, that an entry takes until it is placed and sorted.
+/// Kind: block.
 const FULL_WHEEL_OF_ONE_ENTRY: u64 = 20;
 
 impl Structure {

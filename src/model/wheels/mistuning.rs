@@ -22,9 +22,11 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the mistuning";
 
 /// Numbers of the matrix K_bb⁻¹ K_br that are affordable.
+/// Kind: cap.
 const LARGEST_ATTACHMENT: usize = 4_000_000;
 
 /// Difference of mirrored entries of a stiffness, relative to the largest, that is rounding.
+/// Kind: rounding.
 const MIRROR_ROUNDING: f64 = 1e-10;
 
 /// A property of the blades.

@@ -23,6 +23,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the wheel";
 
 /// Difference of mirrored entries, relative to the largest, that a transform over diameters leaves.
+/// Kind: rounding.
 const TRANSFORM_ROUNDING: f64 = 1e-12;
 
 const KINDS: [MatrixKind; 6] = [

@@ -13,10 +13,12 @@ use pulp::{Simd, WithSimd};
 /// Term added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact does not
 /// resist a mean motion; where nothing else does, as for a ring free to turn, the mean is indeterminate and the
 /// matrix singular. With the floor it keeps its initial value.
+/// Kind: rounding.
 const MEAN_FLOOR: f64 = 1e-8;
 
 /// Columns of a Jacobian between two checks of the interrupt.
-const BETWEEN_CHECKS: usize = 16;
+/// Kind: block.
+const COUPLING_BETWEEN_CHECKS: usize = 16;
 
 impl ContactForces<'_> {
     /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the contact:
@@ -237,9 +239,9 @@ impl ContactForces<'_> {
                     Complex64::ZERO
                 }
             };
-            for (first, columns) in columns.chunks_mut(BETWEEN_CHECKS * n).enumerate() {
+            for (first, columns) in columns.chunks_mut(COUPLING_BETWEEN_CHECKS * n).enumerate() {
                 self.interrupt.check()?;
-                let first = first * BETWEEN_CHECKS;
+                let first = first * COUPLING_BETWEEN_CHECKS;
                 let block = (&block[first * m..], first);
                 self.arch.dispatch(Coupling {
                     mean,

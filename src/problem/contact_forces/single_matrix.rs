@@ -9,7 +9,8 @@ use num_complex::Complex64;
 use pulp::{Simd, WithSimd};
 
 /// Numbers of the matrix that are written between two checks.
-const NUMBERS_TOGETHER: usize = 1 << 16;
+/// Kind: block.
+const SINGLE_MATRIX_NUMBERS_TOGETHER: usize = 1 << 16;
 
 impl ContactForces<'_> {
     /// Fills in the matrix, with memory for G of all harmonics; `false` where there are several motions or a mean.
@@ -29,7 +30,7 @@ impl ContactForces<'_> {
         }
         let (m, g) = (set.packed_len(), &memory[..tables.len()]);
         // An even number of columns, those of whole harmonics.
-        let together = (NUMBERS_TOGETHER / m).max(2) & !1;
+        let together = (SINGLE_MATRIX_NUMBERS_TOGETHER / m).max(2) & !1;
         let blocks = matrix.chunks_mut(together * m).zip(jacobian.chunks(together * m));
         for (k, (matrix, jacobian)) in blocks.enumerate() {
             self.interrupt.check()?;

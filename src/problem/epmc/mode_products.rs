@@ -21,6 +21,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the products of the nonlinear mode";
 
 /// Unknowns of frequency and damping ratio.
+/// Kind: fixed.
 const BEHIND: usize = 2;
 
 /// Memory of products, made by the first of them.

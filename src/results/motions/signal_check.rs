@@ -5,6 +5,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
 /// Times between two checks of a stop, and operations of a harmonic at one time.
+/// Kind: block.
 const SIGNAL_CHECK_BETWEEN_CHECKS: usize = 256;
 const OF_ONE_JET: usize = 10;
 

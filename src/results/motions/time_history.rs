@@ -14,6 +14,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Largest number of times of a loop or a history.
+/// Kind: cap.
 pub const MOST_TIMES: usize = 1 << 24;
 
 const LOOP: &str = "the loop of a contact";
@@ -34,6 +35,7 @@ pub struct ContactLoop {
 }
 
 /// Number of directions in a summary; laws of more directions have the others in [`ContactLoop`] only.
+/// Kind: fixed.
 pub const SUMMARISED: usize = 3;
 
 /// Numbers of one contact over one period, in the caller's units.

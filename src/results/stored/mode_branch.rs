@@ -85,6 +85,7 @@ pub(crate) struct ModeData {
 }
 
 /// Number of fields of a [`ModePoint`].
+/// Kind: fixed.
 const FIELDS: usize = 8;
 
 impl ModeData {

@@ -3,7 +3,7 @@
 use crate::contact::time_piece::Grazing;
 use crate::error::Status;
 use crate::results::verdicts::floquet_multiplier::{Multiplier, MultiplierClass};
-use crate::results::verdicts::verdict::UNIT;
+use crate::results::verdicts::verdict::VERDICT_UNIT;
 use num_complex::Complex64;
 
 /// Stability of a periodic motion.
@@ -72,7 +72,7 @@ impl Floquet {
         Self {
             status: Status::Ok,
             radius: if grazing.is_some() { f64::NAN } else { radius },
-            unstable: ordinary().filter(|m| m.value.norm() > UNIT).count(),
+            unstable: ordinary().filter(|m| m.value.norm() > VERDICT_UNIT).count(),
             neutral: multipliers.iter().filter(neutral).count(),
             multipliers,
             omega: 0.0,

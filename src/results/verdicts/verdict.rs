@@ -7,10 +7,12 @@
 use num_complex::Complex64;
 
 /// Modulus up to which rounding may carry the multipliers of a motion that neither grows nor decays.
-pub const UNIT: f64 = 1.0 + 1e-9;
+/// Kind: rounding.
+pub const VERDICT_UNIT: f64 = 1.0 + 1e-9;
 
 /// Share of a multiplier that an imaginary part may be by rounding.
-const REAL: f64 = 1e-6;
+/// Kind: rounding.
+const VERDICT_REAL: f64 = 1e-6;
 
 /// Stability of one motion.
 #[derive(Clone, Debug, Default)]
@@ -36,7 +38,7 @@ impl Verdict {
 
     /// Number of multipliers outside the unit circle that are not positive real numbers.
     pub fn oscillating(&self) -> usize {
-        let outside = self.multipliers.iter().filter(|m| m.norm() > UNIT);
+        let outside = self.multipliers.iter().filter(|m| m.norm() > VERDICT_UNIT);
         outside.filter(|m| !is_positive(m)).count()
     }
 
@@ -56,7 +58,7 @@ impl Verdict {
 }
 
 fn is_positive(m: &Complex64) -> bool {
-    m.re > 0.0 && m.im.abs() <= REAL * m.re
+    m.re > 0.0 && m.im.abs() <= VERDICT_REAL * m.re
 }
 
 /// Kind of a bifurcation.

@@ -7,6 +7,7 @@ use crate::results::stored::branch::Branch;
 use crate::results::watched::response_series::ResponseSeries;
 
 /// Relative size of a response that is rounding.
+/// Kind: rounding.
 const ROUNDING_OF_RESPONSES: f64 = 1e-12;
 
 impl Branch {

@@ -13,20 +13,25 @@ use crate::studies::fit::predicted_data::{Predicted, Predictor};
 const CONTEXT: &str = "the search of a fit";
 
 /// Damping of the first step; its factors after a success and a failure, and its bounds.
+/// Kind: tuned; measured on: not recorded.
 const FIT_DAMPING: (f64, f64, f64) = (1e-3, 0.1, 5.0);
 const FIT_DAMPING_BOUNDS: (f64, f64) = (1e-12, 1e12);
 
 /// Largest change of the logarithm of an unknown by one step.
+/// Kind: cap.
 const FIT_LARGEST_LOG_STEP: f64 = 1.2;
 
 /// Foretold fall of the loss below which a step that fails is rounding of the model.
+/// Kind: rounding.
 const FIT_ROUNDING: f64 = 1e-5;
 
 /// Step, in standard deviations, along which the model is linear: what is left out is of the order of its square.
+/// Kind: tuned; measured on: not recorded.
 const FIT_LINEAR_STEP: f64 = 1e-4;
 
 /// Error in standard deviations at which a search on many data ends, whose evaluations are dear: on a sector of finite elements steps of
 /// that size are rounding of the solutions.
+/// Kind: tuned; measured on: not recorded.
 const FIT_DEAR_STEP: f64 = 1e-5;
 
 /// Values of the unknowns with the loss there.

@@ -8,9 +8,11 @@ use crate::studies::fit::fit_search::{Search, State};
 const CONTEXT: &str = "further starts of a fit";
 
 /// Logarithms of the factors on friction and loads of the starts beside the given one: towards sliding, and towards sticking.
+/// Kind: tuned; measured on: not recorded.
 const FIT_LIMITS: [f64; 6] = [-1.15, 1.15, -2.3, 2.3, -4.6, 4.6];
 
 /// Half of the width of the logarithm within which further starts lie, where there are no bounds.
+/// Kind: tuned; measured on: not recorded.
 const FIT_SPREAD: f64 = 1.15;
 
 /// Further points to begin from, the best ones of those that are tried.
@@ -73,6 +75,7 @@ pub(super) fn further_starts(search: &Search<'_>, first: &State, poor: bool) -> 
 /// A number of the sequence of Halton (1960, doi:10.1007/BF01386213), within 0 .. 1.
 fn halton(number: usize, dimension: usize) -> f64 {
     /// Bases of the dimensions, the first primes.
+    /// Kind: fixed.
     const PRIMES: [usize; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
     let base = PRIMES[dimension % PRIMES.len()];
     let (mut rest, mut share, mut found) = (number, 1.0, 0.0);

@@ -11,12 +11,15 @@ use num_complex::Complex64;
 const CONTEXT: &str = "what the data tell";
 
 /// Information on an unknown, over the square of its value, below which no datum sees it.
+/// Kind: rounding.
 const FIT_UNSEEN: f64 = 1e-10;
 
 /// Smallest eigenvalue of the matrix with unit diagonal below which only combinations are seen.
+/// Kind: rounding.
 const FIT_COMBINED: f64 = 1e-11;
 
 /// Share of an eigenvector from which an unknown belongs to a combination.
+/// Kind: tuned; measured on: not recorded.
 const FIT_SHARE: f64 = 0.1;
 
 /// Largest over smallest eigenvalue of the matrix H with unit diagonal.

@@ -7,6 +7,7 @@ use crate::linalg::factors::lu::Lu;
 const CONTEXT: &str = "a step of a fit";
 
 /// Least diagonal entry over the largest one: unknowns that no datum sees stay where they are.
+/// Kind: rounding.
 const STEP_FLOOR: f64 = 1e-14;
 
 /// The step; 0 where `moves` is false.

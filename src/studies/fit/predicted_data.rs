@@ -24,12 +24,15 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the predicted data";
 
 /// Distance in log₁₀ of the second end of a range of one amplitude.
+/// Kind: tuned; measured on: not recorded.
 const FIT_NEXT_AMPLITUDE: f64 = 1e-3;
 
 /// log₁₀ of the first modal amplitude of a linear mode, and the distance that it keeps from the onset of slip.
+/// Kind: tuned; measured on: not recorded.
 const LINEAR_AMPLITUDE: (f64, f64) = (-6.0, 1.0);
 
 /// Share of the period above which a contact slips.
+/// Kind: rounding.
 const FIT_SLIPS: f64 = 1e-9;
 
 /// Predicted numbers, two for each datum, set after set.

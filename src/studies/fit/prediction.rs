@@ -17,6 +17,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "a prediction";
 
 /// Variance of a direction, over the largest one, below which it is rounding.
+/// Kind: rounding.
 const PREDICTION_ROUNDING: f64 = 1e-14;
 
 /// Predicted numbers, two for each x of the set.

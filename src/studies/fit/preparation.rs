@@ -11,6 +11,7 @@ use crate::studies::fit::predicted_data::Predictor;
 use crate::studies::fit::prediction::check_parameters;
 
 /// Share of the standard deviations of the data that errors by harmonics may have.
+/// Kind: tuned; measured on: not recorded.
 const FIT_SHARE_OF_SIGMA: f64 = 1.0 / 3.0;
 
 /// Checks options, parameters and data.

@@ -12,9 +12,11 @@ const CONTEXT: &str = "the searches of a fit";
 
 /// Limit of the robust loss of the search that begins where the fit is poor: points that another branch of the model is nearest to do not
 /// lead it.
+/// Kind: tuned; measured on: not recorded.
 const FIT_ROBUST: f64 = 1.345;
 
 /// Fall of the loss from which a state with slip is preferred to one without: three standard deviations.
+/// Kind: tuned; measured on: not recorded.
 const FIT_TELLS: f64 = 9.0;
 
 /// End of the searches of a fit.

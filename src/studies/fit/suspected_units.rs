@@ -8,10 +8,14 @@ use std::f64::consts::TAU;
 const CONTEXT: &str = "the units of the data";
 
 /// Factors of units, and the distance in log₁₀ within which a factor is suspected.
+/// Kind: fixed.
 const UNIT_FACTORS: [f64; 4] = [1e-6, 1e-3, 1e3, 1e6];
+/// Distance in log₁₀ within which a factor of units is suspected.
+/// Kind: tuned; measured on: not recorded.
 const UNIT_DISTANCE: f64 = 0.5;
 
 /// Agreement of shapes of data and model above which another unit of the frequency is suspected, and its gain.
+/// Kind: tuned; measured on: not recorded.
 const UNIT_AGREEMENT: (f64, f64) = (0.4, 0.2);
 
 /// A suspected unit.

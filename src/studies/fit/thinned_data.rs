@@ -12,10 +12,12 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the first search of a fit";
 
 /// Data points of the share for each unknown, and the most points of which one is kept.
+/// Kind: tuned; measured on: not recorded.
 const FIT_THINNED_POINTS: usize = 10;
 const FIT_THINNED_MOST: usize = 8;
 
 /// Step in standard deviations of the share at which the first search ends: all data move the end by more than one of their own.
+/// Kind: tuned; measured on: not recorded.
 const FIT_THINNED_STEP: f64 = 0.3;
 
 /// Data of a set in memory of their own.

@@ -27,32 +27,41 @@ use std::f64::consts::TAU;
 
 /// Exponent by which a perturbation decays in the first lead. Tuned: a shorter one does not see the contraction, each doubling costs its
 /// turns; chosen, not measured.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const RUN_UP_LEAD: f64 = 3.0;
 
 /// Sum of the two changes over three leads, relative, at which leads end: a cap on work, not an accuracy of the result,
 /// whose error is told.
+/// Kind: cap.
 const RUN_UP_LEADS_AGREE: f64 = 1e-5;
 
 /// Amplitude of the slow flow below its largest, relative, at which turns are integrated, too. The slow flow must be right to half of it
-/// there; otherwise the whole run-up is integrated. A cap on work.
+/// there; otherwise the whole run-up is integrated.
+/// Kind: cap.
 const RUN_UP_AROUND: f64 = 0.1;
 
-/// Error of the integration itself, relative. Rounding: it is the tolerance of smooth laws, and runs with friction keep 1e-9 against
+/// Error of the integration itself, relative.
+/// Kind: rounding; it is the tolerance of smooth laws, and runs with friction keep 1e-9 against
 /// stored ones.
 const RUN_UP_INTEGRATION: f64 = 1e-9;
 
-/// Distance of a slider that does not move in both directions from its place at the begin of the run-up, relative to the largest displacement, which is added
-/// to the error told; a larger one is that of another history. A cap.
+/// Distance of a slider that does not move in both directions from its place at the begin of the run-up, relative to the largest
+/// displacement, which is added
+/// to the error told; a larger one is that of another history.
+/// Kind: cap.
 const RUN_UP_SAME_PLACE: f64 = 1e-6;
 
-/// Amplitude before a lead, relative to that at its begin, which may have moved a slider that rests there. A cap: beats of the begin of
+/// Amplitude before a lead, relative to that at its begin, which may have moved a slider that rests there.
+/// Kind: cap; beats of the begin of
 /// the run-up stay below.
 const RUN_UP_LARGER_BEFORE: f64 = 1.1;
 
-/// Most operations of all leads together. A cap: some ten seconds.
+/// Most operations of all leads together.
+/// Kind: cap; some ten seconds.
 const RUN_UP_INTEGRATED_WORK: u64 = 20_000_000_000;
 
-/// Change of the amplitude, relative, over which the decay of its perturbations is read. Rounding of a difference.
+/// Change of the amplitude, relative, over which the decay of its perturbations is read.
+/// Kind: rounding; of a difference.
 const RUN_UP_PERTURBED: f64 = 0.01;
 
 const CONTEXT: &str = "the integrated part of a run-up";
@@ -236,7 +245,8 @@ impl Leads<'_> {
         }
     }
 
-    /// Integrates the first turn of the run-up, and gives the places of the sliders that rest there to the model of leads; whether it was found.
+    /// Integrates the first turn of the run-up, and gives the places of the sliders that rest there to the model of leads; whether
+    /// it was found.
     fn know_begin(&mut self) -> Result<bool> {
         if self.first.is_none() {
             let Some(first) = self.sweep(0, (0, 0))? else {

@@ -19,15 +19,19 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Times per turn at which sliders are moved. Chosen, not measured by itself; turning points between them are exact.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const SLIDER_MEMORY_SAMPLES: usize = 64;
 
-/// Most times of a run-up at which the memory is evaluated. A cap.
+/// Most times of a run-up at which the memory is evaluated.
+/// Kind: cap.
 const SLIDER_MEMORY_MOST_TIMES: usize = 1000;
 
 /// Evaluations of the memory per turn where there are few turns. Chosen, not measured by itself.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const SLIDER_MEMORY_TIMES_PER_TURN: f64 = 6.0;
 
-/// Change of the amplitude within two turns, relative, below which nothing is remembered. Rounding.
+/// Change of the amplitude within two turns, relative, below which nothing is remembered.
+/// Kind: rounding.
 const SLIDER_MEMORY_STEADY: f64 = 1e-9;
 
 const CONTEXT: &str = "the memory of sliders";
@@ -53,6 +57,7 @@ impl Defect {
 }
 
 /// The three motions that pass through a slider: that of the slow flow, and the steady ones.
+/// Kind: fixed.
 const PASSED: usize = 3;
 
 /// Evaluates the memory along paths.

@@ -8,6 +8,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Displacements that are looked at in a period. Chosen: the parabola through three of them finds a maximum of ten harmonics to 1e-5.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const STEADY_MOTION_LOOKS: usize = 256;
 
 /// Largest displacement within a period of the steady motion at a resonance, with the mean, all harmonics of the mode and the other modes;

@@ -17,24 +17,31 @@ use crate::studies::wear::worn_state::{WornState, WornStates};
 const CONTEXT: &str = "the life";
 
 /// Share of the tolerance by which the straight step across an event may err. Chosen: a twentieth does not add to the error.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_EVENT: f64 = 0.05;
 
 /// Share of the length across an event that the step before it leaves. Chosen: the path ahead errs by less than the rest of that length.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_APPROACH: f64 = 0.7;
 
-/// Vibrations that are looked at to find an event. A cap: two or three on the chains of the tests.
+/// Vibrations that are looked at to find an event.
+/// Kind: cap; two or three on the chains of the tests.
 const LIFE_EVENT_TRIES: usize = 12;
 
 /// Error of a step over the tolerance. Chosen: errors of some steps add up to less than the tolerance where they do not grow.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_SHARE: f64 = 0.5;
 
 /// Half of the change of depths over the tolerance within which a jump is located. Chosen: rates that jump by their own size err by less.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_JUMP: f64 = 0.15;
 
-/// Steps in turn that may be refused. A cap: halves of a life down to the length of a jump are 60.
+/// Steps in turn that may be refused.
+/// Kind: cap; halves of a life down to the length of a jump are 60.
 const LIFE_TRIES: usize = 200;
 
-/// Halvings of a step that fails. A cap.
+/// Halvings of a step that fails.
+/// Kind: cap.
 const LIFE_HALVINGS: usize = 40;
 
 /// Change of a contact, or of the amplitude.
@@ -50,7 +57,8 @@ pub enum LifeEventKind {
     Pressed,
     /// The amplitude passes the limit.
     Limit,
-    /// The motion that was followed ends, as at a fold, or where a peak meets a minimum: amplitude and works jump, and the life goes on with
+    /// The motion that was followed ends, as at a fold, or where a peak meets a minimum: amplitude and works jump, and the life
+    /// goes on with
     /// the motion that is found there.
     Jumps,
 }
@@ -316,7 +324,8 @@ impl Walk<'_> {
         (length <= self.length_of_jump(at)).then_some((at.n + length, Doubt::None))
     }
 
-    /// The state at cycles at which the motion is another one, so near that rates are constant up to there. Where a still shorter step shows
+    /// The state at cycles at which the motion is another one, so near that rates are constant up to there. Where a still shorter
+    /// step shows
     /// that the motion goes on, there is no event.
     fn jump(&mut self, at: &LifeState, n: f64, hooks: &mut Hooks<'_>) -> Result<LifeState> {
         let mut depths = try_copy(&at.depths, CONTEXT)?;

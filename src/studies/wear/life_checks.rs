@@ -4,10 +4,12 @@ use crate::error::{Result, fail, try_copy};
 use crate::model::Model;
 use crate::options::{LifeFollow, LifeOptions, MOST_WORN};
 
-/// Difference of an entry of the static stiffness from its mirrored one, relative to the largest entry. Rounding of condensed stiffnesses.
+/// Difference of an entry of the static stiffness from its mirrored one, relative to the largest entry.
+/// Kind: rounding; of condensed stiffnesses.
 const LIFE_SYMMETRY: f64 = 1e-6;
 
-/// Pivot over its diagonal entry that is taken for zero. Rounding: some hundred contacts lose six digits.
+/// Pivot over its diagonal entry that is taken for zero.
+/// Kind: rounding; some hundred contacts lose six digits.
 const LIFE_SEMIDEFINITE: f64 = 1e-9;
 
 impl LifeOptions<'_> {
@@ -178,7 +180,8 @@ impl LifeOptions<'_> {
     }
 }
 
-/// The first pivot of a symmetric matrix without exchange, and its value, that is negative beyond rounding; a pivot of zero whose row is not
+/// The first pivot of a symmetric matrix without exchange, and its value, that is negative beyond rounding; a pivot of zero whose
+/// row is not
 /// zero counts as negative. None where the matrix is positive semidefinite.
 fn negative_pivot(matrix: &[f64], n: usize) -> Result<Option<(usize, f64)>> {
     let mut a = try_copy(matrix, "the static stiffness of a life")?;

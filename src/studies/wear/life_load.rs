@@ -11,12 +11,15 @@ use crate::options::{LifeOptions, SolverOptions};
 use crate::studies::wear::life::{Life, life};
 
 /// Lives over the range of factors that find the neighbourhood of the minimum.
+/// Kind: tuned; measured on: not recorded.
 const SCANNED_LIVES: usize = 9;
 
 /// Most lives after that.
+/// Kind: cap.
 const LIVES_TO_CLOSE: usize = 60;
 
 /// Relative accuracy of the factor.
+/// Kind: rounding.
 const FACTOR_ACCURACY: f64 = 1e-7;
 
 /// The best loads for a life.

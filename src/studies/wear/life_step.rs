@@ -17,37 +17,47 @@ use crate::studies::wear::worn_state::{WornState, WornStates};
 
 const CONTEXT: &str = "the steps of a life";
 
-/// Newton iterations of a step. A cap: one or two on the chains of the tests.
+/// Newton iterations of a step.
+/// Kind: cap; one or two on the chains of the tests.
 const LIFE_STEP_ITERATIONS: usize = 8;
 
 /// Share of the tolerance below which the equations of a step may be left. Chosen: a twentieth does not add to the error of a step.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_RESIDUAL: f64 = 0.05;
 
 /// Share of the tolerance by which the rates of a state may be uncertain that is corrected by its derivatives, not solved again. Chosen:
 /// the secant of the derivatives takes about half of it away, which leaves the residual above.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_CORRECTED: f64 = 0.1;
 
 /// Error over the tolerance from which a step is refused at its first vibration. Chosen: iterations change the estimate by less.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_HOPELESS: f64 = 3.0;
 
 /// Part of the change of the amplitude, or of a work, that derivatives at both ends may leave within one motion. Chosen: it is the square
 /// of the relative change over 12 where that is exponential, and a jump leaves all of it.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_BREAK: f64 = 0.2;
 
 /// Error over the tolerance that a broken step has at least, as long as its error is above the tolerance: its length is quartered.
+/// Kind: tuned; measured on: not recorded.
 const LIFE_STEP_BROKEN: f64 = 1e3;
 
 /// Smallest part, relative, that counts as a break, over the square root of the tolerance: 1e-3 by default. Chosen: what a kink that is no
 /// event leaves in a step of the wanted error is below.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_BREAK_FLOOR: f64 = 0.1;
 
 /// Size of a last correction over the tolerance that may not meet the begin of slip: it is told that much too late. Chosen.
+/// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_STEP_UNSEEN: f64 = 3.0;
 
 /// Terms of the series by which a part of a step is predicted, in which rates change at most by their own size: the next one is 3e-6.
+/// Kind: tuned; measured on: not recorded.
 const LIFE_STEP_TERMS: usize = 8;
 
-/// Most parts of a predicted step. A cap on work.
+/// Most parts of a predicted step.
+/// Kind: cap.
 const LIFE_STEP_PARTS: usize = 64;
 
 /// A state at a number of cycles.

@@ -5,10 +5,12 @@
 //! over a width w, where M bounds |f⁗| (Birkhoff & Priver, J. Math. Phys. 46 (1967) 440–447, doi:10.1002/sapm1967461440).
 
 /// Factors of M w⁴ and M w³.
+/// Kind: fixed.
 const OF_VALUES: f64 = 1.0 / 384.0;
 const CUBIC_CELL_OF_SLOPES: f64 = 0.008_018_753_738_744_8;
 
 /// Steps of Newton's method towards the root of the cubic: a guess.
+/// Kind: tuned; measured on: not recorded.
 const CUBIC_CELL_STEPS: usize = 2;
 
 /// The cubic by the ordinates of its control points, between which it lies (Bernstein).

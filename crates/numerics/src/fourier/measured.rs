@@ -16,6 +16,7 @@ use std::f64::consts::{PI, TAU};
 const CONTEXT: &str = "a response";
 
 /// Relative difference of extremes that rounding makes.
+/// Kind: rounding.
 const SAME_SIZE: f64 = 1e-12;
 
 /// The number that is read from a gauge over a period.

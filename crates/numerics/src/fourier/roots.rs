@@ -2,12 +2,15 @@
 
 /// Width below which another Newton step no longer matters: the force is continuous at every
 /// event, so an event misplaced by ε changes the Fourier integrals by O(ε²).
+/// Kind: rounding.
 const EVENT_TOLERANCE: f64 = 1e-9;
 
 /// Values of a function up to which a root is sought.
+/// Kind: cap.
 const MOST_VALUES: usize = 100;
 
 /// Largest error that the curvature leaves after the last step of Halley's method.
+/// Kind: rounding.
 const LAST_ERROR: f64 = 1e-17;
 
 /// Two times between which a function changes its sign.

@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Products (samples times harmonics) up to which a table is quicker than a transform, as measured.
+/// Kind: tuned; measured on: not recorded.
 const TRANSFORM_TABLE_LIMIT: usize = 1 << 12;
 
 /// Relation of the second half of a turn to the first, where only the first is stored.

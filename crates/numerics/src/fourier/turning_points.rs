@@ -21,12 +21,15 @@ pub struct Extremum {
 }
 
 /// Values of the series that a root takes, about.
+/// Kind: tuned; measured on: not recorded.
 const VALUES_OF_A_ROOT: usize = 8;
 
 /// Grid points per period of the highest harmonic.
+/// Kind: tuned; measured on: not recorded.
 const TURNING_POINTS_POINTS_PER_WAVE: usize = 8;
 
 /// Highest reduced harmonic up to which a table of sines is quicker than a transform.
+/// Kind: tuned; measured on: not recorded.
 const TURNING_POINTS_TABLE_LIMIT: usize = 40;
 
 /// Finds every turning point of motions with one harmonic set: x′ and x″ on a grid, then roots of x′ in its cells, where it is
@@ -245,6 +248,7 @@ impl TurningPoints {
 }
 
 /// Cells that are judged together.
+/// Kind: block.
 const TURNING_POINTS_BLOCK: usize = 4;
 
 /// Whether a value and all that follow are farther from zero than `far`, on the same side.

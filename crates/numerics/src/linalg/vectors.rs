@@ -38,6 +38,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Sum of squares above which those that are lost below the smallest number are rounding.
+/// Kind: rounding.
 pub const SAFE_SQUARES: f64 = 1e-280;
 
 /// Euclidean norm that neither overflows nor underflows.
@@ -73,6 +74,7 @@ pub fn power_of_two(x: f64) -> f64 {
 
 /// Multiplications up to which a product with the transpose of a matrix is one of plain loops. faer copies the matrix then, and
 /// takes 128 KiB of stack for the copy.
+/// Kind: tuned; measured on: not recorded.
 pub const COPIED_UP_TO: usize = 16 * 16 * 16;
 
 /// A product of matrices so large that the memory for packing them, which a thread keeps, is there afterwards.
@@ -82,6 +84,7 @@ pub const COPIED_UP_TO: usize = 16 * 16 * 16;
 #[inline]
 pub fn first_product() -> Result<()> {
     /// Order of the matrices, above which products keep memory.
+    /// Kind: tuned; measured on: not recorded.
     const ORDER: usize = 40;
     let mut out = try_vec(ORDER * ORDER, 0.0_f64, "a product")?;
     let one = try_vec(ORDER * ORDER, 1.0_f64, "a product")?;

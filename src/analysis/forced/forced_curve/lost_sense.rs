@@ -1,15 +1,15 @@
 //! A branch whose sense is lost on purpose at a change of harmonics: it is turned round, or ends with the reason.
 
 use super::follow;
-use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
-use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced::forced_discretised::ForcedDiscretised;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::contact::Contact;
 use crate::continuation::Point;
 use crate::continuation::step_control::Detail;
 use crate::error::{Result, Status};
-use crate::error_estimate::Estimate;
+use crate::harmonics::Estimate;
+use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;

@@ -76,6 +76,7 @@ impl Play {
 }
 
 /// Direction in which each bound drags the slider.
+/// Kind: fixed.
 const SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// Phase of the slider since the time `piece.start` or `start`.

@@ -9,40 +9,51 @@
 //! whose turn stays finite.
 
 use crate::contact::laws::friction_3d::friction_3d_slip::{
-    ROUNDING, Solved, along_motion, first_zero, solve, turn_rate,
+    FRICTION_3D_SLIP_ROUNDING, Solved, along_motion, first_zero, solve, turn_rate,
 };
 use crate::contact::plane_path::{CONTEXT, PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
-use crate::contact::radau::{POINTS, STAGES};
+use crate::contact::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::error::{Error, Result, Status, try_push};
 use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 /// Largest neglected part of a panel's turn, weighted by its limit against the largest limit.
+/// Kind: tuned; measured on: not recorded.
 const TURN_TOLERANCE: f64 = 3e-5;
 
 /// Share of the tolerance below which the next panel is twice as long.
+/// Kind: tuned; measured on: not recorded.
 const EASY: f64 = 1e-3;
 
 /// Share of the time to an opening by which slip proceeds in one panel.
+/// Kind: tuned; measured on: not recorded.
 const TOWARDS_OPENING: f64 = 0.8;
 
 /// Impulse of the force before an opening, against the largest limit times the turn, that is neglected.
+/// Kind: rounding.
 const NEGLECTED_IMPULSE: f64 = 1e-14;
 
 /// Solutions up to the end of slip: the last two correct its time.
+/// Kind: tuned; measured on: not recorded.
 const FRICTION_3D_PATH_CORRECTIONS: usize = 3;
 
 /// Shortest panel, against the turn.
+/// Kind: rounding.
 const FRICTION_3D_PATH_SHORTEST: f64 = 1e-13;
 
 /// Rounding of the margin of a stick, over the motion against the largest limit.
+/// Kind: rounding.
 const PULL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Pieces per panel of the turn beyond which a path is given up.
+/// Kind: cap.
 const MOST_PIECES: usize = 200;
 
 /// The same for a whole path, and pieces per panel that it may have all the same: with their list growing some 100 MB.
+/// Kind: cap.
 const MOST_OF_A_PATH: usize = 1 << 18;
+/// Pieces per panel that a path may have all the same: with their list growing some 100 MB.
+/// Kind: tuned; measured on: not recorded.
 const ALLOWED_PIECES: usize = 8;
 
 /// The force while the sides touch.
@@ -192,11 +203,11 @@ impl<'a> Walk<'a> {
     }
 
     /// The motion at the nodes of [from, end]; from the grid where that is its panel.
-    fn nodes(&self, from: f64, end: f64, panel: Option<usize>) -> [PlaneInstant; STAGES] {
+    fn nodes(&self, from: f64, end: f64, panel: Option<usize>) -> [PlaneInstant; RADAU_STAGES] {
         // Past half a turn an odd motion returns with opposite sign.
         match panel {
             Some(k) if from < self.path.turn || self.path.turn >= TAU => {
-                core::array::from_fn(|j| self.path.grid[k * STAGES + j])
+                core::array::from_fn(|j| self.path.grid[k * RADAU_STAGES + j])
             }
             _ => core::array::from_fn(|j| self.path.at(from + (end - from) * self.path.tables.nodes[j])),
         }
@@ -205,7 +216,7 @@ impl<'a> Walk<'a> {
     /// Rounding of the margin of a stick. The force is a difference of motions, which may be far larger: where a body that friction
     /// holds has gone a long way.
     fn rounding(&self, at: &PlaneInstant) -> f64 {
-        ROUNDING.max(PULL_ROUNDING * at.pull[0].hypot(at.pull[1]) / self.size)
+        FRICTION_3D_SLIP_ROUNDING.max(PULL_ROUNDING * at.pull[0].hypot(at.pull[1]) / self.size)
     }
 
     /// Sticks up to an onset of slip or to the end. After slip the force begins at the limit, and rounding must not take it beyond.
@@ -240,7 +251,7 @@ impl<'a> Walk<'a> {
             let nodes = self.nodes(tau, end, panel);
             let first = if tau > from { self.path.at(tau) } else { start };
             let length = end - tau;
-            let values: [f64; POINTS] = core::array::from_fn(|i| match i {
+            let values: [f64; RADAU_POINTS] = core::array::from_fn(|i| match i {
                 0 => margin(&first, tau).0,
                 _ => margin(&nodes[i - 1], tau + length * self.path.tables.nodes[i - 1]).0,
             });
@@ -343,7 +354,7 @@ impl<'a> Walk<'a> {
                     &part.panel,
                     &nodes,
                     stop - from,
-                    1.0 - self.path.tables.nodes[STAGES - 2],
+                    1.0 - self.path.tables.nodes[RADAU_STAGES - 2],
                 );
                 if round + 1 < FRICTION_3D_PATH_CORRECTIONS && step.abs() < 0.01 * (stop - from) {
                     stop += step;
@@ -360,7 +371,12 @@ impl<'a> Walk<'a> {
     }
 
     /// The time in a panel of slip at which e·u′ − R′ falls below zero.
-    fn stick_begins(&self, (from, end): (f64, f64), panel: &SlipPanel, nodes: &[PlaneInstant; STAGES]) -> Option<f64> {
+    fn stick_begins(
+        &self,
+        (from, end): (f64, f64),
+        panel: &SlipPanel,
+        nodes: &[PlaneInstant; RADAU_STAGES],
+    ) -> Option<f64> {
         let tables = &self.path.tables;
         let start = self.path.at(from);
         let rate = |at: &PlaneInstant, angle: f64| {
@@ -370,13 +386,13 @@ impl<'a> Walk<'a> {
         let scale = nodes.iter().fold(0.0_f64, |m, at| {
             m.max(at.rate[0].abs()).max(at.rate[1].abs()).max(at.limit_rate.abs())
         });
-        let mut values = [rate(&start, panel.angle) / scale; POINTS];
+        let mut values = [rate(&start, panel.angle) / scale; RADAU_POINTS];
         for (value, (along, at)) in values[1..].iter_mut().zip(panel.along.iter().zip(nodes)) {
             *value = (along - at.limit_rate) / scale;
         }
         let angles = panel.points();
         let slopes = tables.derivatives(&values);
-        let share = first_zero(tables, &values, (false, ROUNDING), |share| {
+        let share = first_zero(tables, &values, (false, FRICTION_3D_SLIP_ROUNDING), |share| {
             let at = self.path.at(from + (end - from) * share);
             let value = rate(&at, tables.interpolate(&angles, share)) / scale;
             (value, tables.interpolate(&slopes, share))
@@ -410,9 +426,9 @@ fn along_rate(at: &PlaneInstant) -> Phase {
 }
 
 /// The step of the secant to the zero of e·u′ − R′, from the end of a panel of slip and the node before it.
-fn correction(panel: &SlipPanel, nodes: &[PlaneInstant; STAGES], length: f64, before: f64) -> f64 {
+fn correction(panel: &SlipPanel, nodes: &[PlaneInstant; RADAU_STAGES], length: f64, before: f64) -> f64 {
     let margin = |j: usize| panel.along[j] - nodes[j].limit_rate;
-    let (last, next) = (margin(STAGES - 1), margin(STAGES - 2));
+    let (last, next) = (margin(RADAU_STAGES - 1), margin(RADAU_STAGES - 2));
     let step = -last * before * length / (last - next);
     if step.is_finite() { step } else { 0.0 }
 }

@@ -8,40 +8,50 @@ use crate::contact::laws::friction_3d::friction_3d_path::{Phase, Walk};
 use crate::contact::laws::friction_3d::friction_3d_stuck::{Disc, StuckSlider, stuck_slider};
 use crate::contact::piece::Piece;
 use crate::contact::plane_path::{CONTEXT, Drift, Hold, PlaneForce, PlaneInstant, PlanePath, PlanePiece, Repetition};
-use crate::contact::radau::{POINTS, STAGES};
+use crate::contact::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::error::{Error, Result, Status, try_push};
 use crate::fourier::{jet, safe_newton};
 use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 /// Turns that are followed at most.
+/// Kind: cap.
 const TURNS: usize = 120;
 
 /// Turns after which a force that returns to [`FRICTION_3D_PERIOD_ENOUGH`] is taken.
+/// Kind: tuned; measured on: not recorded.
 const FRICTION_3D_PERIOD_PATIENCE: usize = 40;
 
 /// Difference of a force that returns, against the largest limit.
+/// Kind: rounding.
 const RETURNS: f64 = 1e-13;
 
 /// Difference that a step of Newton's method takes to [`RETURNS`].
+/// Kind: rounding.
 const SQUARE_RETURNS: f64 = 1e-7;
 
 /// The same where the difference before promised more, or after [`FRICTION_3D_PERIOD_PATIENCE`] turns.
+/// Kind: rounding.
 const FRICTION_3D_PERIOD_ENOUGH: f64 = 1e-10;
 
 /// Searches of the times that hold a slider at rest.
+/// Kind: cap.
 const FRICTION_3D_PERIOD_ROUNDS: usize = 8;
 
 /// Change of the slider's place, against the largest motion, that is rounding.
+/// Kind: rounding.
 const FRICTION_3D_PERIOD_SETTLED: f64 = 1e-15;
 
 /// Distance beyond a limit, against the largest motion, that is rounding.
+/// Kind: rounding.
 const FRICTION_3D_PERIOD_ROUNDING: f64 = 1e-13;
 
 /// Times closer than this, against a panel, are the same time found more exactly.
+/// Kind: tuned; measured on: not recorded.
 const NEIGHBOURS: f64 = 0.2;
 
 /// Depth inside the limit, against the largest limit, at which a time is not looked at more closely.
+/// Kind: tuned; measured on: not recorded.
 const DEEP: f64 = 0.1;
 
 /// Finds the path over one turn of the loaded motion. `normal` has the pieces of the normal force, none under a
@@ -98,7 +108,7 @@ fn disc(at: &PlaneInstant) -> Disc {
 
 /// Time of the j-th node of the grid.
 fn grid_time(path: &PlanePath, j: usize) -> f64 {
-    path.spacing() * ((j / STAGES) as f64 + path.tables.nodes[j % STAGES])
+    path.spacing() * ((j / RADAU_STAGES) as f64 + path.tables.nodes[j % RADAU_STAGES])
 }
 
 /// The slider at rest by the times at which circles hold it, or midway between two circles that are apart: `moments` of
@@ -216,8 +226,8 @@ fn look_closer(path: &mut PlanePath, place: [f64; 2]) -> Result<()> {
         let start = path.spacing() * k as f64;
         let first = path.at(start);
         // The end of the last panel is the begin of the first, to the last bit.
-        let closing = (path.panels - 1) * STAGES + STAGES - 1;
-        let node = |i: usize| match k * STAGES + i {
+        let closing = (path.panels - 1) * RADAU_STAGES + RADAU_STAGES - 1;
+        let node = |i: usize| match k * RADAU_STAGES + i {
             _ if i == 0 => first,
             at if at == closing + 1 => origin,
             at => path.grid[at - 1],
@@ -231,9 +241,9 @@ fn look_closer(path: &mut PlanePath, place: [f64; 2]) -> Result<()> {
                 (f[0] * at.rate[0] + f[1] * at.rate[1]) / length - at.limit_rate
             }
         };
-        let rates: [f64; POINTS] = core::array::from_fn(|i| rate(&node(i)));
+        let rates: [f64; RADAU_POINTS] = core::array::from_fn(|i| rate(&node(i)));
         let slopes = path.tables.derivatives(&rates);
-        for i in 0..STAGES {
+        for i in 0..RADAU_STAGES {
             let near = |i: usize| {
                 let at = node(i);
                 at.limit - margin(&at).0 < DEEP * size

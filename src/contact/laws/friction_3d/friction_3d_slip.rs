@@ -4,28 +4,34 @@
 //! kt·γ = e·u′ − R′ ≥ 0.
 
 use crate::contact::plane_path::{PlaneInstant, SlipPanel};
-use crate::contact::radau::{POINTS, RadauTables, STAGES};
+use crate::contact::radau::{RADAU_POINTS, RADAU_STAGES, RadauTables};
 use crate::fourier::safe_newton;
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 
 /// Newton iterations of a panel, after which it is halved.
+/// Kind: cap.
 const FRICTION_3D_SLIP_ITERATIONS: usize = 12;
 
 /// A step of Newton's method after which the next would be rounding.
+/// Kind: rounding.
 const FRICTION_3D_SLIP_LAST_STEP: f64 = 1e-8;
 
 /// Largest turn of the first guess.
+/// Kind: tuned; measured on: not recorded.
 const LARGEST_GUESS: f64 = 0.3;
 
 /// Largest turn between two nodes.
+/// Kind: tuned; measured on: not recorded.
 const LARGEST_TURN: f64 = 1.0;
 
 /// A margin this small, against its scale, is zero up to rounding, unless rounding of the motion is larger.
-pub(crate) const ROUNDING: f64 = 1e-13;
+/// Kind: rounding.
+pub(crate) const FRICTION_3D_SLIP_ROUNDING: f64 = 1e-13;
 
 /// Halvings of the first interval in which a margin is sought that rises from zero before it falls. A shorter time of stick or slip is
 /// left out: its force matters by the third power of the time.
+/// Kind: cap.
 const FRICTION_3D_SLIP_HALVINGS: usize = 20;
 
 /// A solved panel.
@@ -42,20 +48,20 @@ pub(crate) fn solve(
     tables: &RadauTables,
     lu: &mut Lu<f64>,
     (h, angle, rate): (f64, f64, f64),
-    nodes: &[PlaneInstant; STAGES],
+    nodes: &[PlaneInstant; RADAU_STAGES],
 ) -> Option<Solved> {
     let mut panel = SlipPanel {
         angle,
         angles: tables
             .nodes
             .map(|c| angle + (c * h * rate).clamp(-LARGEST_GUESS, LARGEST_GUESS)),
-        directions: [[0.0; 2]; STAGES],
+        directions: [[0.0; 2]; RADAU_STAGES],
         limits: nodes.each_ref().map(|at| at.limit),
-        along: [0.0; STAGES],
-        across: [0.0; STAGES],
+        along: [0.0; RADAU_STAGES],
+        across: [0.0; RADAU_STAGES],
     };
-    let mut step = [f64::INFINITY; STAGES];
-    let mut rates = [0.0; STAGES];
+    let mut step = [f64::INFINITY; RADAU_STAGES];
+    let mut rates = [0.0; RADAU_STAGES];
     for _ in 0..FRICTION_3D_SLIP_ITERATIONS {
         turn(&mut panel, nodes);
         for (rate, (across, limit)) in rates.iter_mut().zip(panel.across.iter().zip(&panel.limits)) {
@@ -69,10 +75,10 @@ pub(crate) fn solve(
             *step = angle + h * sum - panel.angles[i];
         }
         let matrix = lu.matrix();
-        for j in 0..STAGES {
+        for j in 0..RADAU_STAGES {
             let slope = -h * panel.along[j] / panel.limits[j];
-            for i in 0..STAGES {
-                matrix[j * STAGES + i] = f64::from(u8::from(i == j)) - slope * tables.integrals[i][j];
+            for i in 0..RADAU_STAGES {
+                matrix[j * RADAU_STAGES + i] = f64::from(u8::from(i == j)) - slope * tables.integrals[i][j];
             }
         }
         // The order is fixed and small: there is nothing to interrupt.
@@ -96,12 +102,12 @@ pub(crate) fn solve(
         .iter()
         .map(|row| row.iter().zip(&rates).map(|(c, g)| c * g).sum::<f64>().abs())
         .sum::<f64>();
-    let mut ones = [1.0; STAGES];
+    let mut ones = [1.0; RADAU_STAGES];
     lu.solve(&mut ones);
     Some(Solved {
         panel,
         tail: h * tail,
-        by_start: ones[STAGES - 1],
+        by_start: ones[RADAU_STAGES - 1],
     })
 }
 
@@ -113,18 +119,18 @@ pub(crate) fn turn_rate(at: &PlaneInstant, angle: f64) -> f64 {
 }
 
 /// A panel, too short to matter, over which the force turns to the motion at once: the limit is nearly zero.
-pub(crate) fn along_motion(nodes: &[PlaneInstant; STAGES], angle: f64) -> Solved {
-    let last = nodes[STAGES - 1];
+pub(crate) fn along_motion(nodes: &[PlaneInstant; RADAU_STAGES], angle: f64) -> Solved {
+    let last = nodes[RADAU_STAGES - 1];
     let turned = last.rate[1].atan2(last.rate[0]);
     let (sin, cos) = turned.sin_cos();
     Solved {
         panel: SlipPanel {
             angle,
-            angles: [turned; STAGES],
-            directions: [[cos, sin]; STAGES],
+            angles: [turned; RADAU_STAGES],
+            directions: [[cos, sin]; RADAU_STAGES],
             limits: nodes.each_ref().map(|at| at.limit.max(f64::MIN_POSITIVE)),
             along: nodes.each_ref().map(|at| cos * at.rate[0] + sin * at.rate[1]),
-            across: [0.0; STAGES],
+            across: [0.0; RADAU_STAGES],
         },
         tail: 0.0,
         by_start: 0.0,
@@ -132,7 +138,7 @@ pub(crate) fn along_motion(nodes: &[PlaneInstant; STAGES], angle: f64) -> Solved
 }
 
 /// Directions at the angles, and the parts of u′ along and across them.
-fn turn(panel: &mut SlipPanel, nodes: &[PlaneInstant; STAGES]) {
+fn turn(panel: &mut SlipPanel, nodes: &[PlaneInstant; RADAU_STAGES]) {
     for (j, at) in nodes.iter().enumerate() {
         let (sin, cos) = panel.angles[j].sin_cos();
         panel.directions[j] = [cos, sin];
@@ -152,13 +158,13 @@ fn largest(values: &[f64]) -> f64 {
 /// event.
 pub(crate) fn first_zero(
     tables: &RadauTables,
-    values: &[f64; POINTS],
+    values: &[f64; RADAU_POINTS],
     (is_zero, rounding): (bool, f64),
     mut margin: impl FnMut(f64) -> (f64, f64),
 ) -> Option<f64> {
     let slopes = tables.derivatives(values);
     let bends = tables.derivatives(&slopes);
-    for i in 0..STAGES {
+    for i in 0..RADAU_STAGES {
         let (from, to) = (tables.point(i), tables.point(i + 1));
         let (before, after) = (values[i], values[i + 1]);
         let begins_at_zero = i == 0 && (is_zero || before <= rounding);

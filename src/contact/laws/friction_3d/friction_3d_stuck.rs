@@ -48,12 +48,15 @@ pub(crate) struct StuckSlider {
 }
 
 /// Violations below this, relative to the current lengths, are rounding.
+/// Kind: rounding.
 const FRICTION_3D_STUCK_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Gap between two discs, relative to the size of the motion, that is no rounding.
+/// Kind: rounding.
 const CLEARLY: f64 = 1e-6;
 
 /// Directions along which discs are compared, unit vectors at 0, 45, 90 and 135 degrees.
+/// Kind: fixed.
 const DIRECTIONS: [[f64; 2]; 4] = [
     [1.0, 0.0],
     [FRAC_1_SQRT_2, FRAC_1_SQRT_2],
@@ -62,6 +65,7 @@ const DIRECTIONS: [[f64; 2]; 4] = [
 ];
 
 /// Largest number of discs that are added; a few suffice but for a cycle by rounding.
+/// Kind: cap.
 const FRICTION_3D_STUCK_ROUNDS: usize = 200;
 
 impl Disc {

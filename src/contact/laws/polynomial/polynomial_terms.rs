@@ -3,6 +3,7 @@
 use crate::error::{Result, fail, try_push};
 
 /// Highest exponent of a single motion or velocity.
+/// Kind: cap.
 pub const HIGHEST_EXPONENT: u32 = 15;
 
 /// One product of powers, as the caller gives it.

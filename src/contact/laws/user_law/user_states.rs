@@ -10,7 +10,8 @@ use crate::contact::samples::automatic_samples;
 use crate::error::Result;
 
 /// Finer sampling than a law without memory gets: steps of states are of second order at best.
-const REFINEMENT: usize = 4;
+/// Kind: tuned; measured on: not recorded.
+const USER_STATES_REFINEMENT: usize = 4;
 
 impl Hysteretic for User {
     fn states(&self) -> usize {
@@ -22,7 +23,10 @@ impl Hysteretic for User {
     }
 
     fn samples(&self, highest: usize, requested: usize) -> usize {
-        self.samples_for(requested, automatic_samples(highest).saturating_mul(REFINEMENT))
+        self.samples_for(
+            requested,
+            automatic_samples(highest).saturating_mul(USER_STATES_REFINEMENT),
+        )
     }
 
     fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {

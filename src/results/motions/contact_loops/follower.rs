@@ -13,6 +13,7 @@ use crate::results::motions::contact_loops::two_motions::CoupledOrbit;
 use crate::results::motions::signal_check::check_time;
 
 /// Times of a slice.
+/// Kind: block.
 const SLICE: usize = 1 << 14;
 
 /// A contact under a periodic motion, its events located and its states found, at n times.

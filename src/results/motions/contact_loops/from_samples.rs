@@ -12,6 +12,7 @@ use crate::results::motions::contact_loops::period::{CONTEXT, PeriodicMotion, Ti
 use crate::results::motions::signal_check::check_time;
 
 /// Bytes that a march may take.
+/// Kind: cap.
 const MOST_OF_A_MARCH: usize = 500 << 20;
 
 /// A law without memory, called with some times at once.

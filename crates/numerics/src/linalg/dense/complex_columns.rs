@@ -11,6 +11,7 @@ use pulp::bytemuck::cast_slice;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Numbers of a column that are added at a time, each to a sum of its own.
+/// Kind: block.
 const LANES: usize = 8;
 
 /// out = A z for columns that begin `stride` apart; `memory` is as long as `out`.

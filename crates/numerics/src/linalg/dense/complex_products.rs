@@ -11,6 +11,7 @@ use pulp::bytemuck::cast_slice;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Rows up to which plain loops make a product.
+/// Kind: tuned; measured on: not recorded.
 const LOOPS_UP_TO: usize = 48;
 
 /// c ← A B for matrices A and C of so many rows.
@@ -44,6 +45,7 @@ struct Loops<'a> {
 }
 
 /// Rows whose sums are made at a time.
+/// Kind: block.
 const ROWS_AT_ONCE: usize = 8;
 
 impl WithSimd for Loops<'_> {

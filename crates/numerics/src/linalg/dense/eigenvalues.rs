@@ -11,9 +11,11 @@ use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Iterations for one eigenvalue; two or three suffice.
+/// Kind: cap.
 const EIGENVALUES_MOST_ITERATIONS: usize = 60;
 
 /// Iterations without success after which a shift is chosen otherwise.
+/// Kind: cap.
 const EXCEPTIONAL: usize = 10;
 
 /// The eigenvalues of the column-major matrix `a` of order n, which is overwritten, one after the other to `found`.
@@ -160,6 +162,7 @@ impl WithSimd for Reduce<'_> {
 }
 
 /// Rows to which a reflection is applied from the right at a time.
+/// Kind: block.
 const REFLECTED_ROWS: usize = 64;
 
 #[inline(always)]

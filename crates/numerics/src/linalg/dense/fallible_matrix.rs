@@ -9,9 +9,11 @@ use crate::linalg::factors::lu::Scalar;
 use nalgebra::{DMatrix, DVector};
 
 /// Operations between two checks of the interrupt, some milliseconds.
+/// Kind: block.
 const FALLIBLE_MATRIX_AT_ONCE: usize = 10_000_000;
 
 /// Least columns of a part of a product: with fewer the left factor would be brought into order for each of them.
+/// Kind: tuned; measured on: not recorded.
 const FALLIBLE_MATRIX_LEAST_COLUMNS: usize = 8;
 
 /// A matrix of zeros.
@@ -102,7 +104,8 @@ pub fn product<T: Scalar>(a: &DMatrix<T>, b: &DMatrix<T>, what: &str, interrupt:
     Ok(c)
 }
 
-/// Replaces a Hermitian matrix by its inverse, by Gauss's and Jordan's elimination without interchanges, which is stable where the matrix is
+/// Replaces a Hermitian matrix by its inverse, by Gauss's and Jordan's elimination without interchanges, which is stable where the
+/// matrix is
 /// positive definite (Higham, Accuracy and Stability of Numerical Algorithms, 2002, §14.4). `false`: it is not, and its entries are lost.
 ///
 /// # Errors

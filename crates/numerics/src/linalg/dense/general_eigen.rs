@@ -11,9 +11,11 @@ use faer::{MatMut, MatRef, Par, Spec};
 use num_complex::Complex64;
 
 /// Error of vectors, over the largest entry of the matrix, that is more than rounding.
+/// Kind: rounding.
 const WRONG_VECTORS: f64 = 1e-9;
 
 /// Order up to which a real matrix may be treated as a complex one.
+/// Kind: tuned; measured on: not recorded.
 const AS_COMPLEX_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";

@@ -18,11 +18,13 @@ use std::ops::Range;
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
 /// Rows of a triangular system up to which plain loops solve it, and its columns between two checks of the interrupt.
-const BLOCK: usize = 16;
-const AT_ONCE: usize = 64;
+/// Kind: block.
+const HERMITIAN_BLOCK: usize = 16;
+const HERMITIAN_AT_ONCE: usize = 64;
 
 /// Shares of the work in the reduction, the iteration and the vectors, for the progress.
-const REDUCED: f64 = 0.4;
+/// Kind: block.
+const HERMITIAN_REDUCED: f64 = 0.4;
 const ITERATED: f64 = 0.8;
 
 /// Eigenvalues in ascending order and orthonormal eigenvectors, column after column, of the Hermitian column-major
@@ -44,7 +46,7 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
         (&mut values, &mut beside),
         &mut z,
         interrupt,
-        between(REDUCED, ITERATED),
+        between(HERMITIAN_REDUCED, ITERATED),
     )?;
     let mut order = try_vec(n, 0, CONTEXT)?;
     for (i, o) in order.iter_mut().enumerate() {
@@ -79,7 +81,7 @@ fn tridiagonalise(
     ];
     for k in 0..n.saturating_sub(1) {
         let left = (n - k) as f64 / n as f64;
-        interrupt.phase(Phase::Modes, REDUCED * (1.0 - left * left * left))?;
+        interrupt.phase(Phase::Modes, HERMITIAN_REDUCED * (1.0 - left * left * left))?;
         interrupt.check_before((16 * (n - k) * (n - k)) as u64)?;
         let (done, rest) = a.split_at_mut((k + 1) * n);
         let v = &mut done[k * n + k + 1..];
@@ -180,7 +182,7 @@ pub fn solve_triangular(
         adjoint_in_place(&mut by_columns, n);
     }
     let triangle = if adjoint { &by_columns } else { l };
-    for b in b.chunks_mut(AT_ONCE * n.max(1)) {
+    for b in b.chunks_mut(HERMITIAN_AT_ONCE * n.max(1)) {
         interrupt.check_before((4 * n * b.len()) as u64)?;
         solve_rows((triangle, n), adjoint, 0..n, b);
     }
@@ -190,7 +192,7 @@ pub fn solve_triangular(
 /// Solves for some rows of B: the first half of them, their product with the triangle below them, and the other half; with an
 /// upper triangle from the last half on.
 fn solve_rows((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, b: &mut [Complex64]) {
-    if rows.len() <= BLOCK {
+    if rows.len() <= HERMITIAN_BLOCK {
         for x in b.chunks_exact_mut(n) {
             solve_column((a, n), upper, rows.clone(), x);
         }

@@ -16,6 +16,7 @@ use num_complex::Complex64;
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
 /// Residual of the pairs of a matrix over its largest entry and its order that is more than rounding.
+/// Kind: rounding.
 const WRONG: f64 = 1e-13;
 
 /// λ, rising, and φ with φᵀ M φ = 1, column after column.

@@ -12,9 +12,11 @@ use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 /// Reflections of a block.
-const BLOCK: usize = 32;
+/// Kind: block.
+const REFLECTIONS_BLOCK: usize = 32;
 
 /// Columns that are changed at a time, between two checks of the interrupt.
+/// Kind: block.
 const COLUMNS: usize = 64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
@@ -32,10 +34,14 @@ pub fn apply(
 ) -> Result<()> {
     let (count, columns) = (n.saturating_sub(1), x.len() / n.max(1));
     let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
-    let (mut v, mut adjoint, mut t) = (zeros(n * BLOCK)?, zeros(n * BLOCK)?, zeros(BLOCK * BLOCK)?);
-    let (mut along, mut turned) = (zeros(BLOCK * COLUMNS)?, zeros(BLOCK * COLUMNS)?);
-    for first in (0..count).step_by(BLOCK).rev() {
-        let width = BLOCK.min(count - first);
+    let (mut v, mut adjoint, mut t) = (
+        zeros(n * REFLECTIONS_BLOCK)?,
+        zeros(n * REFLECTIONS_BLOCK)?,
+        zeros(REFLECTIONS_BLOCK * REFLECTIONS_BLOCK)?,
+    );
+    let (mut along, mut turned) = (zeros(REFLECTIONS_BLOCK * COLUMNS)?, zeros(REFLECTIONS_BLOCK * COLUMNS)?);
+    for first in (0..count).step_by(REFLECTIONS_BLOCK).rev() {
+        let width = REFLECTIONS_BLOCK.min(count - first);
         let rows = n - first - 1;
         for (k, column) in v[..rows * width].chunks_exact_mut(rows).enumerate() {
             column[..k].fill(Complex64::ZERO);

@@ -11,9 +11,11 @@ use crate::interrupt::Interrupt;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Iterations for one eigenvalue; two or three suffice.
+/// Kind: cap.
 const MOST_ITERATIONS: usize = 60;
 
 /// Rows to which the rotations of an iteration are applied at a time.
+/// Kind: block.
 const ROWS: usize = 128;
 
 /// Eigenvalues in place of the diagonal d, with e beside it, the last number of which is memory; the rotations are applied to the

@@ -13,23 +13,28 @@ use std::collections::BinaryHeap;
 const CONTEXT: &str = "a separator";
 
 /// Vertices of a graph that is not merged further, and the share of them that is left where merging ends early.
+/// Kind: tuned; measured on: not recorded.
 const COARSEST: usize = 120;
 const STALLED: f64 = 0.95;
 
 /// Separators from which the best of the coarsest graph is taken.
+/// Kind: tuned; measured on: not recorded.
 const STARTS: usize = 5;
 
 /// Graphs with less than this share of the vertices are merged and separated more than once.
+/// Kind: tuned; measured on: not recorded.
 const REPEATED_BELOW: usize = 4;
 const TRIES: usize = 2;
 
 /// Largest share of the weight in one part, and weight of the parts' difference against that of the separator.
-const LARGEST: f64 = 0.6;
+/// Kind: tuned; measured on: not recorded.
+const SEPARATOR_LARGEST: f64 = 0.6;
 const BALANCE: f64 = 0.1;
 
 /// Passes over the separator in one graph, and moves without gain that end a pass.
+/// Kind: tuned; measured on: not recorded.
 const PASSES: u8 = 8;
-const PATIENCE: usize = 100;
+const SEPARATOR_PATIENCE: usize = 100;
 
 /// Part in which a vertex is: 0, 1, or the separator between them.
 pub type Part = u8;
@@ -159,7 +164,7 @@ impl<'a> Cut<'a> {
     /// Weight of the separator, more where the parts differ, far more where one is too large.
     fn cost(&self) -> f64 {
         let [a, b, cut] = self.weights.map(|w| w as f64);
-        let beyond = (a.max(b) - LARGEST * (a + b + cut)).max(0.0);
+        let beyond = (a.max(b) - SEPARATOR_LARGEST * (a + b + cut)).max(0.0);
         cut * (1.0 + BALANCE * (a - b).abs() / (a + b).max(1.0)) + beyond
     }
 
@@ -183,10 +188,10 @@ impl<'a> Cut<'a> {
                 self.offer(v)?;
             }
         }
-        let limit = (LARGEST * self.weights.iter().sum::<i64>() as f64) as i64;
+        let limit = (SEPARATOR_LARGEST * self.weights.iter().sum::<i64>() as f64) as i64;
         let first = self.cost();
         let (mut least, mut kept, mut without) = (first, 0, 0);
-        while without < PATIENCE {
+        while without < SEPARATOR_PATIENCE {
             let Some((v, part)) = self.next(limit, number) else {
                 break;
             };
@@ -315,7 +320,7 @@ mod tests {
             let graph = grid(side);
             let parts = separated(&graph, &Interrupt::none()).unwrap();
             let size = |part| (0..parts.len()).filter(|&v| parts[v] == part).count();
-            let largest = LARGEST * (side * side) as f64;
+            let largest = SEPARATOR_LARGEST * (side * side) as f64;
             assert!(
                 size(SEPARATOR) <= side + side / 4,
                 "{} of {side} vertices separate",

@@ -12,6 +12,7 @@ use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Operations of a product and its sum, relative to plain ones.
+/// Kind: block.
 const OPERATIONS: u64 = 8;
 
 /// Real and imaginary parts of the rows of Σ A x.

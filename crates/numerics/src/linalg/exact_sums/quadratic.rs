@@ -56,7 +56,8 @@ fn rounding_of(a: f64, b: f64, product: f64) -> f64 {
 }
 
 /// Quadratic form below zero, relative to the sum of the moduli of its terms, that is rounding.
-pub const ROUNDING: f64 = 1e-14;
+/// Kind: rounding.
+pub const QUADRATIC_ROUNDING: f64 = 1e-14;
 
 /// Sum of the moduli of the terms of xᴴ A x.
 #[must_use]
@@ -78,6 +79,7 @@ pub fn terms_of_moduli(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f
 }
 
 /// Terms of xᴴ A x over its value up to which plain sums have the digits of a size.
+/// Kind: tuned; measured on: not recorded.
 const CANCELLED: f64 = 1e4;
 
 /// xᴴ A x of a Hermitian matrix to a dozen digits, which costs a quarter of all of them where the terms do not cancel.
@@ -161,19 +163,20 @@ impl ComplexSum {
 }
 
 /// Entries of a column that are summed side by side.
-const LANES: usize = 4;
+/// Kind: block.
+const QUADRATIC_LANES: usize = 4;
 
 /// Sums with their rounding errors, side by side.
 #[derive(Clone, Copy, Default)]
 struct Lanes {
-    value: [f64; LANES],
-    error: [f64; LANES],
+    value: [f64; QUADRATIC_LANES],
+    error: [f64; QUADRATIC_LANES],
 }
 
 impl Lanes {
     #[inline(always)]
-    fn add_products<const FUSED: bool>(&mut self, a: &[f64; LANES], b: &[f64; LANES]) {
-        for k in 0..LANES {
+    fn add_products<const FUSED: bool>(&mut self, a: &[f64; QUADRATIC_LANES], b: &[f64; QUADRATIC_LANES]) {
+        for k in 0..QUADRATIC_LANES {
             let product = a[k] * b[k];
             // Both are exact; a fused operation that the processor has is far quicker.
             let lost = if FUSED {
@@ -240,12 +243,12 @@ impl Form<'_> {
             let column = pattern.col_ptr[j]..pattern.col_ptr[j + 1];
             let (entries, rows) = (&values[column.clone()], &pattern.row_idx[column]);
             let (mut re, mut im) = (Lanes::default(), Lanes::default());
-            for (entries, rows) in entries.chunks(LANES).zip(rows.chunks(LANES)) {
+            for (entries, rows) in entries.chunks(QUADRATIC_LANES).zip(rows.chunks(QUADRATIC_LANES)) {
                 // A pattern may hold several matrices; the mass matrix among them is often diagonal.
                 if entries.iter().all(|a| *a == Complex64::ZERO) {
                     continue;
                 }
-                let [mut a_re, mut a_im, mut b_re, mut b_im] = [[0.0; LANES]; 4];
+                let [mut a_re, mut a_im, mut b_re, mut b_im] = [[0.0; QUADRATIC_LANES]; 4];
                 for (k, (a, &row)) in entries.iter().zip(rows).enumerate() {
                     (a_re[k], a_im[k], b_re[k], b_im[k]) = (a.re, a.im, x[row].re, -x[row].im);
                 }

@@ -20,19 +20,24 @@ use num_complex::Complex64;
 const CONTEXT: &str = "a Cholesky factorisation";
 
 /// Right-hand sides that are solved between two checks of the interrupt.
-const AT_ONCE: usize = 8;
+/// Kind: block.
+const CHOLESKY_AT_ONCE: usize = 8;
 
 /// Operations per entry of the factors and right-hand side.
+/// Kind: block.
 const OF_ONE_ENTRY: u64 = 4;
 
 /// Entries of L by minimum degrees from which nested dissection is tried, too: below, either is a small part of the memory of
 /// a call.
+/// Kind: tuned; measured on: not recorded.
 const DISSECTED_FROM: usize = 10_000_000;
 
 /// Entries of L over those of the lower triangle from which it is tried: below, the factor costs less than the search.
+/// Kind: tuned; measured on: not recorded.
 const FILLED: usize = 4;
 
 /// Share of the entries by minimum degrees below which it is taken: a wide factor that saves little costs more operations.
+/// Kind: tuned; measured on: not recorded.
 const SAVED: f64 = 0.9;
 
 /// An order of elimination, and the shape of its factors.
@@ -180,7 +185,7 @@ impl<T: Entry> Cholesky<T> {
         if let Err(LltError::NonPositivePivot { index }) = factored {
             return Ok(Err(index));
         }
-        let need = symbolic.solve_in_place_scratch::<T>(AT_ONCE, Par::Seq);
+        let need = symbolic.solve_in_place_scratch::<T>(CHOLESKY_AT_ONCE, Par::Seq);
         let scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
         interrupt.check()?;
         Ok(Ok(Self {
@@ -197,7 +202,7 @@ impl<T: Entry> Cholesky<T> {
     /// `StoppedByCaller`.
     pub fn solve(&mut self, b: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
         let factors = LltRef::new(&self.symbolic, &self.values);
-        for b in b.chunks_mut(AT_ONCE * self.n) {
+        for b in b.chunks_mut(CHOLESKY_AT_ONCE * self.n) {
             let columns = b.len() / self.n;
             interrupt.check_before(OF_ONE_ENTRY * (columns * self.values.len()) as u64)?;
             let b = MatMut::from_column_major_slice_mut(b, self.n, columns);

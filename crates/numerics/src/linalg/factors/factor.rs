@@ -14,16 +14,20 @@ use faer::{Conj, MatMut, Par};
 use num_complex::Complex64;
 
 /// Order up to which a dense factorisation is quicker, whatever the pattern, and up to which the fill decides.
-const DENSE_UP_TO: usize = 24;
+/// Kind: tuned; measured on: not recorded.
+const FACTOR_DENSE_UP_TO: usize = 24;
 const BY_FILL_UP_TO: usize = 200;
 
 /// Share of the entries of a factor up to that order, or of the stored ones of a larger matrix, above which it is treated as dense.
+/// Kind: tuned; measured on: not recorded.
 const DENSE_FILL: f64 = 0.1;
 
 /// Right-hand sides of a sparse matrix that are solved between two checks of the interrupt.
-const BETWEEN_CHECKS: usize = 8;
+/// Kind: block.
+const FACTOR_BETWEEN_CHECKS: usize = 8;
 
 /// Operations per unknown of a solution with sparse factors, roughly.
+/// Kind: block.
 const OF_ONE_SOLUTION: u64 = 200;
 
 /// Factors of one matrix at a time, all matrices of the same order.
@@ -115,7 +119,7 @@ impl Factor {
         match &mut self.kind {
             Kind::Dense(lu) => lu.solve_columns(b, transposed, interrupt)?,
             Kind::Sparse(sparse) => {
-                for b in b.chunks_mut(BETWEEN_CHECKS * sparse.n) {
+                for b in b.chunks_mut(FACTOR_BETWEEN_CHECKS * sparse.n) {
                     interrupt.check_before(OF_ONE_SOLUTION * b.len() as u64)?;
                     sparse.solve(b, transposed)?;
                 }
@@ -134,7 +138,7 @@ impl Factor {
 /// `OutOfMemory`.
 pub fn is_dense(a: &Csc) -> Result<bool> {
     let most = DENSE_FILL * (a.rows as f64).powi(2);
-    if a.rows <= DENSE_UP_TO || a.values.len() as f64 > most {
+    if a.rows <= FACTOR_DENSE_UP_TO || a.values.len() as f64 > most {
         return Ok(true);
     }
     Ok(a.rows <= BY_FILL_UP_TO && cholesky::entries_by_degrees(a)? as f64 > most)

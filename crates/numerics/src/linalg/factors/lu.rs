@@ -21,15 +21,19 @@ use substitution::Substitution;
 pub use scalar::Scalar;
 
 /// Order above which the blocked kernels are quicker.
+/// Kind: tuned; measured on: not recorded.
 const BLOCKED_ABOVE: usize = 32;
 
 /// Order above which the factorisation can be interrupted between panels of columns.
+/// Kind: tuned; measured on: not recorded.
 const PANELS_ABOVE: usize = 384;
 
 /// Numbers of right-hand sides times unknowns squared between two checks of the interrupt in a solution.
-const BETWEEN_CHECKS: usize = 1 << 23;
+/// Kind: block.
+const LU_BETWEEN_CHECKS: usize = 1 << 23;
 
 /// Right sides from which small factors solve for all rows at once.
+/// Kind: tuned; measured on: not recorded.
 const COLUMNS_AT_ONCE: usize = 4;
 
 const CONTEXT: &str = "an LU factorisation";
@@ -240,7 +244,7 @@ impl<T: Scalar> Lu<T> {
         };
         let factors = MatRef::from_column_major_slice(&self.a[..n * n], n, n);
         let rows = PermRef::new_checked(&blocked.forward[..n], &blocked.backward[..n], n);
-        let at_once = (BETWEEN_CHECKS / (n * n)).max(1);
+        let at_once = (LU_BETWEEN_CHECKS / (n * n)).max(1);
         for b in b.chunks_mut(at_once * n) {
             let columns = b.len() / n;
             interrupt.check_before((2 * n * n * columns) as u64)?;

@@ -10,17 +10,20 @@ use crate::error::{Result, fail, try_vec};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Blocks of a column.
-const BLOCKS: usize = 8;
+/// Kind: block.
+const SMALL_LU_BLOCKS: usize = 8;
 
 /// Numbers of a block.
-const WIDTH: usize = 4;
+/// Kind: block.
+const SMALL_LU_WIDTH: usize = 4;
 
 /// Largest order of a matrix.
-pub const LARGEST: usize = BLOCKS * WIDTH;
+/// Kind: fixed.
+pub const SMALL_LU_LARGEST: usize = SMALL_LU_BLOCKS * SMALL_LU_WIDTH;
 
-type Column = [[f64; WIDTH]; BLOCKS];
+type Column = [[f64; SMALL_LU_WIDTH]; SMALL_LU_BLOCKS];
 
-const ZERO: Column = [[0.0; WIDTH]; BLOCKS];
+const ZERO: Column = [[0.0; SMALL_LU_WIDTH]; SMALL_LU_BLOCKS];
 
 /// Factors P A = L U.
 pub struct SmallLu {
@@ -30,11 +33,11 @@ pub struct SmallLu {
     upper: Vec<Column>,
     /// L without its diagonal.
     lower: Vec<Column>,
-    pivots: [usize; LARGEST],
+    pivots: [usize; SMALL_LU_LARGEST],
     /// Reciprocals of the diagonal of U.
-    inverses: [f64; LARGEST],
+    inverses: [f64; SMALL_LU_LARGEST],
     /// Row of A in each row of P A.
-    order: [usize; LARGEST],
+    order: [usize; SMALL_LU_LARGEST],
 }
 
 impl SmallLu {
@@ -47,18 +50,18 @@ impl SmallLu {
         Ok(Self {
             arch: Arch::new(),
             n: 0,
-            upper: try_vec(n.min(LARGEST), ZERO, CONTEXT)?,
-            lower: try_vec(n.min(LARGEST), ZERO, CONTEXT)?,
-            pivots: [0; LARGEST],
-            inverses: [0.0; LARGEST],
-            order: [0; LARGEST],
+            upper: try_vec(n.min(SMALL_LU_LARGEST), ZERO, CONTEXT)?,
+            lower: try_vec(n.min(SMALL_LU_LARGEST), ZERO, CONTEXT)?,
+            pivots: [0; SMALL_LU_LARGEST],
+            inverses: [0.0; SMALL_LU_LARGEST],
+            order: [0; SMALL_LU_LARGEST],
         })
     }
 
     /// Prepares a matrix of `n` rows, up to the order given to [`Self::new`], to be filled column by column.
     pub fn set_order(&mut self, n: usize) {
         self.n = n.min(self.upper.len());
-        let padded = self.n.next_multiple_of(WIDTH);
+        let padded = self.n.next_multiple_of(SMALL_LU_WIDTH);
         for column in &mut self.upper[..self.n] {
             for x in &mut column.as_flattened_mut()[self.n..padded] {
                 *x = 0.0;
@@ -86,7 +89,7 @@ impl SmallLu {
         let (upper, lower, pivots) = (&mut self.upper[..n], &mut self.lower[..n], &mut self.pivots[..n]);
         let inverses = &mut self.inverses[..n];
         let arch = self.arch;
-        let broken = match n.div_ceil(WIDTH) {
+        let broken = match n.div_ceil(SMALL_LU_WIDTH) {
             0 | 1 => arch.dispatch(Factor::<1>(upper, lower, pivots, inverses)),
             2 => arch.dispatch(Factor::<2>(upper, lower, pivots, inverses)),
             3 => arch.dispatch(Factor::<3>(upper, lower, pivots, inverses)),
@@ -120,7 +123,7 @@ impl SmallLu {
             (&self.order[..n], &self.inverses[..n]),
         );
         let arch = self.arch;
-        match n.div_ceil(WIDTH) {
+        match n.div_ceil(SMALL_LU_WIDTH) {
             0 | 1 => arch.dispatch(Solve::<1>(upper, lower, order, b)),
             2 => arch.dispatch(Solve::<2>(upper, lower, order, b)),
             3 => arch.dispatch(Solve::<3>(upper, lower, order, b)),
@@ -158,7 +161,7 @@ impl WithSimd for Fill<'_> {
                 Some(from) if j < n => (from, a),
                 _ => (column, b),
             };
-            let (blocks, rest) = from.as_chunks::<WIDTH>();
+            let (blocks, rest) = from.as_chunks::<SMALL_LU_WIDTH>();
             for (to, from) in to.iter_mut().zip(blocks) {
                 for (to, from) in to.iter_mut().zip(from) {
                     *to = factor * from;
@@ -202,15 +205,15 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
             inverses[k] = inverse;
             numbers.swap(k, pivot);
             // Blocks above the row of the pivot are not used.
-            let first = k / WIDTH;
-            let mut l = [[0.0; WIDTH]; B];
+            let first = k / SMALL_LU_WIDTH;
+            let mut l = [[0.0; SMALL_LU_WIDTH]; B];
             for (l, c) in l[first..].iter_mut().zip(&column[first..]) {
                 for (l, c) in l.iter_mut().zip(c) {
                     *l = c * inverse;
                 }
             }
             for (i, l) in l[first].iter_mut().enumerate() {
-                *l = if i <= k % WIDTH { 0.0 } else { *l };
+                *l = if i <= k % SMALL_LU_WIDTH { 0.0 } else { *l };
             }
             lower[k][..B].copy_from_slice(&l);
             if pivot != k {
@@ -242,14 +245,16 @@ impl<const B: usize> WithSimd for Solve<'_, B> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self(upper, lower, (order, inverses), b) = self;
-        let mut x = [[0.0; WIDTH]; B];
+        let mut x = [[0.0; SMALL_LU_WIDTH]; B];
         for (x, &row) in x.as_flattened_mut().iter_mut().zip(order) {
             *x = b[row];
         }
         // With places known to the compiler, the numbers stay in registers, each of which depends on the one before.
         for block in 0..B {
-            for k in 0..WIDTH {
-                let Some(l) = lower.get(block * WIDTH + k) else { break };
+            for k in 0..SMALL_LU_WIDTH {
+                let Some(l) = lower.get(block * SMALL_LU_WIDTH + k) else {
+                    break;
+                };
                 let value = x[block][k];
                 for i in block..B {
                     subtract(simd, &mut x[i], value, &l[i]);
@@ -258,13 +263,13 @@ impl<const B: usize> WithSimd for Solve<'_, B> {
         }
         for block in 0..B {
             let block = B - 1 - block;
-            for k in 0..WIDTH {
-                let k = WIDTH - 1 - k;
-                let Some(u) = upper.get(block * WIDTH + k) else {
+            for k in 0..SMALL_LU_WIDTH {
+                let k = SMALL_LU_WIDTH - 1 - k;
+                let Some(u) = upper.get(block * SMALL_LU_WIDTH + k) else {
                     continue;
                 };
-                let value = x[block][k] * inverses[block * WIDTH + k];
-                b[block * WIDTH + k] = value;
+                let value = x[block][k] * inverses[block * SMALL_LU_WIDTH + k];
+                b[block * SMALL_LU_WIDTH + k] = value;
                 for i in 0..B {
                     // This also changes rows from k on, which are not read again.
                     if i <= block {
@@ -278,7 +283,7 @@ impl<const B: usize> WithSimd for Solve<'_, B> {
 
 /// x −= factor·column
 #[inline(always)]
-fn subtract<S: Simd>(simd: S, x: &mut [f64; WIDTH], factor: f64, column: &[f64; WIDTH]) {
+fn subtract<S: Simd>(simd: S, x: &mut [f64; SMALL_LU_WIDTH], factor: f64, column: &[f64; SMALL_LU_WIDTH]) {
     let ((x, x_rest), (column, rest)) = (S::as_mut_simd_f64s(x), S::as_simd_f64s(column));
     let vector = simd.splat_f64s(factor);
     for (x, c) in x.iter_mut().zip(column) {
@@ -291,11 +296,11 @@ fn subtract<S: Simd>(simd: S, x: &mut [f64; WIDTH], factor: f64, column: &[f64; 
 
 /// Subtracts multiples of l, the column of pivot k, from the last R blocks of the columns beyond; from all where R is B.
 #[inline(always)]
-fn eliminate<S: Simd, const R: usize>(simd: S, columns: &mut [Column], l: &[[f64; WIDTH]], k: usize) {
+fn eliminate<S: Simd, const R: usize>(simd: S, columns: &mut [Column], l: &[[f64; SMALL_LU_WIDTH]], k: usize) {
     let first = l.len().saturating_sub(R);
     let Some(l) = l[first..].first_chunk::<R>() else { return };
     for column in columns {
-        let factor = column[k / WIDTH][k % WIDTH];
+        let factor = column[k / SMALL_LU_WIDTH][k % SMALL_LU_WIDTH];
         let Some(rows) = column[first..].first_chunk_mut::<R>() else {
             return;
         };
@@ -313,9 +318,9 @@ mod tests {
 
     #[test]
     fn factors_and_solutions_are_those_of_the_general_factorisation() {
-        for n in 1..=LARGEST {
+        for n in 1..=SMALL_LU_LARGEST {
             let entry = |i: usize, j: usize| ((i * i + 3 * j + i * j + 2) as f64 * 0.37).sin();
-            let mut small = SmallLu::new(LARGEST).unwrap();
+            let mut small = SmallLu::new(SMALL_LU_LARGEST).unwrap();
             let mut general = Lu::<f64>::new(n, 1).unwrap();
             // The second matrix finds the numbers of the first in its memory.
             for shift in [40, 0] {

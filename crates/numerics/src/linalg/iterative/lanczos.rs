@@ -19,19 +19,24 @@ use num_complex::Complex64;
 
 /// Relative residual of an eigenvalue of the operator that counts as converged, and of one of an interval; an eigenvalue errs by the
 /// square.
-const TOLERANCE: f64 = 1e-13;
+/// Kind: rounding.
+const LANCZOS_TOLERANCE: f64 = 1e-13;
 const OF_INTERVAL: f64 = 1e-9;
 
 /// The same of a vector that is kept.
+/// Kind: rounding.
 const VECTOR: f64 = 1e-8;
 
 /// Share of a vector outside the space of the others below which it is rounding only.
-const EXHAUSTED: f64 = 1e-12;
+/// Kind: rounding.
+const LANCZOS_EXHAUSTED: f64 = 1e-12;
 
 /// Value of the operator below zero, relative to the largest, that is no rounding.
+/// Kind: rounding.
 const NEGATIVE: f64 = 1e-12;
 
 /// Lanczos steps per search, besides twice the number of eigenvalues.
+/// Kind: tuned; measured on: not recorded.
 const EXTRA_STEPS: usize = 120;
 
 /// The `count` lowest eigenpairs of Hermitian K and positive semidefinite M, mass-normalised.
@@ -102,7 +107,10 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
 }
 
 /// Most moves of the shift, and growth of its distance from the lowest eigenvalue where that is estimated too high.
+/// Kind: cap.
 const MOVES: usize = 8;
+/// Growth of the distance of the shift from the lowest eigenvalue where that is estimated too high.
+/// Kind: tuned; measured on: not recorded.
 const BACK: f64 = 4.0;
 
 /// All eigenpairs with λ in an interval (low, high), mass-normalised and ascending; `None` if they are more than `most`.
@@ -147,6 +155,7 @@ pub fn within(
 }
 
 /// Place of the shift in an interval.
+/// Kind: tuned; measured on: not recorded.
 const INSIDE: f64 = 0.4873;
 
 /// The eigenvalues of the operator that a search is for.
@@ -159,15 +168,20 @@ enum Goal {
 }
 
 /// Order up to which dense algebra finds the modes of a stiffness that is negative in some direction.
+/// Kind: tuned; measured on: not recorded.
 const DENSE_IF_NEGATIVE: usize = 400;
 
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
-const EIGEN_COPIES: usize = 8;
+/// Kind: fixed.
+const LANCZOS_EIGEN_COPIES: usize = 8;
 
 /// The lowest of all pairs, by dense algebra.
 fn all_of(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     let n = k.rows;
-    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
+    check_memory::<Complex64>(
+        n.saturating_mul(n).saturating_mul(LANCZOS_EIGEN_COPIES),
+        "the natural modes",
+    )?;
     let dense = |a: &Csc| {
         let mut d = DMatrix::<Complex64>::zeros(n, n);
         a.add_to_dense(Complex64::ONE, d.as_mut_slice());
@@ -323,12 +337,12 @@ impl Search<'_> {
             self.orthogonalise(&mut v, &run);
             let mut mv = self.times_mass(&v)?;
             let square = inner(&v, &mv).re;
-            if square < -(EXHAUSTED * before).powi(2) {
+            if square < -(LANCZOS_EXHAUSTED * before).powi(2) {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive semidefinite");
             }
             let norm = square.max(0.0).sqrt();
             // A structure with few masses has few modes: the remaining vector is rounding then.
-            if norm <= EXHAUSTED * before || norm <= 1e-14 * run.beta.first().copied().unwrap_or(0.0) {
+            if norm <= LANCZOS_EXHAUSTED * before || norm <= 1e-14 * run.beta.first().copied().unwrap_or(0.0) {
                 break;
             }
             for x in v.iter_mut().chain(&mut mv) {
@@ -367,7 +381,7 @@ impl Search<'_> {
         Ok(match goal {
             Goal::Largest(count) => {
                 ritz.sort_by(|a, b| b.0.total_cmp(&a.0));
-                ritz.iter().take(count).all(|found| small(found, TOLERANCE))
+                ritz.iter().take(count).all(|found| small(found, LANCZOS_TOLERANCE))
             }
             // With one beyond, none is missed.
             Goal::Above(least, most) => {

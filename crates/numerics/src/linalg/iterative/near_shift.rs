@@ -18,27 +18,35 @@ use crate::linalg::{inner, remove};
 use num_complex::Complex64;
 
 /// Residual of an eigenvalue of the operator, relative to it, that counts as converged.
+/// Kind: rounding.
 const NEAR_SHIFT_CONVERGED: f64 = 1e-12;
 
 /// Multiple of the residual by which an eigenvalue that is not wanted must be away from those that are.
+/// Kind: tuned; measured on: not recorded.
 const CLEAR: f64 = 10.0;
 
 /// Part of a vector outside the space of the others below which it is rounding only.
+/// Kind: rounding.
 const NO_MORE: f64 = 1e-13;
 
 /// Part of the coefficients of an eigenvector outside those of the others below which it is no other vector.
-const DEPENDENT: f64 = 1e-6;
+/// Kind: rounding.
+const NEAR_SHIFT_DEPENDENT: f64 = 1e-6;
 
 /// Steps of a run beyond twice the number of eigenvalues that it is for.
+/// Kind: tuned; measured on: not recorded.
 const MORE_STEPS: usize = 50;
 
 /// Largest number of runs for a goal.
+/// Kind: cap.
 const RUNS: usize = 80;
 
 /// Two moduli that count as one, relatively.
+/// Kind: rounding.
 const NEAR_SHIFT_ALIKE: f64 = 1e-9;
 
 /// Error of an eigenvalue of the operator, relative to it, from which on those farther away do not count as found.
+/// Kind: rounding.
 const POOR: f64 = 1e-7;
 
 const CONTEXT: &str = "the damped modes";
@@ -267,7 +275,7 @@ impl<'a> NearShift<'a> {
                 }
             }
             let norm = size(&y);
-            if norm <= DEPENDENT {
+            if norm <= NEAR_SHIFT_DEPENDENT {
                 continue;
             }
             for z in &mut y {

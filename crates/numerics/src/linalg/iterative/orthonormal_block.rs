@@ -15,7 +15,8 @@ use pulp::{Arch, Simd, WithSimd};
 const CONTEXT: &str = "the reduced structure";
 
 /// Size of a new direction, relative to the image that it comes from, below which it is rounding.
-const EXHAUSTED: f64 = 1e-12;
+/// Kind: rounding.
+const ORTHONORMAL_BLOCK_EXHAUSTED: f64 = 1e-12;
 
 /// out = Vᴴ X for columns of n numbers.
 pub fn adjoint_product<T: Entry>(v: &[T], x: &[T], n: usize, out: &mut [T]) {
@@ -107,6 +108,7 @@ pub fn orthonormalise_again<T: Entry>(
 }
 
 /// Share of the square of a norm that is left, below which the square is computed anew.
+/// Kind: tuned; measured on: not recorded.
 const DOWNDATED: f64 = 1e-4;
 
 /// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns
@@ -138,7 +140,7 @@ pub fn orthonormalise<T: Entry>(
         // The largest share that is still new.
         let share = |j: usize| squares[j].0.sqrt() / sizes[j].max(f64::MIN_POSITIVE);
         let best = (k..columns).fold(k, |best, j| if share(j) > share(best) { j } else { best });
-        if share(best) <= EXHAUSTED {
+        if share(best) <= ORTHONORMAL_BLOCK_EXHAUSTED {
             return Ok(k);
         }
         if best != k {
@@ -152,7 +154,7 @@ pub fn orthonormalise<T: Entry>(
         let (u, later) = block[k * n..].split_at_mut(n);
         let (w, later_weighted) = weighted[k * n..].split_at_mut(n);
         let norm = dot(u, w).re.max(0.0).sqrt();
-        if norm <= EXHAUSTED * sizes[k] {
+        if norm <= ORTHONORMAL_BLOCK_EXHAUSTED * sizes[k] {
             return Ok(k);
         }
         for x in u.iter_mut().chain(w.iter_mut()) {
@@ -198,6 +200,7 @@ impl<T: Entry> WithSimd for Removal<'_, T> {
 }
 
 /// Sums of a product that are made side by side: registers of the processor.
+/// Kind: block.
 const PARTIAL_SUMS: usize = 8;
 
 /// uᴴ w by sums side by side.

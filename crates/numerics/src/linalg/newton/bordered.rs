@@ -36,7 +36,7 @@ enum Factors {
 impl Factors {
     /// Memory for matrices of up to `n` rows.
     fn new(n: usize) -> Result<Self> {
-        Ok(if n <= small_lu::LARGEST {
+        Ok(if n <= small_lu::SMALL_LU_LARGEST {
             Self::Small(boxed(|| SmallLu::new(n))?)
         } else {
             Self::Large(Lu::new(n, 1)?)

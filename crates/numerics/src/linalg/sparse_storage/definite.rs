@@ -9,7 +9,8 @@ use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
 use num_complex::Complex64;
 
 /// Relative addition to the diagonal, so that rounding does not make a singular matrix fail.
-const MARGIN: f64 = 1e-10;
+/// Kind: rounding.
+const DEFINITE_MARGIN: f64 = 1e-10;
 
 const CONTEXT: &str = "a Cholesky factorisation";
 
@@ -28,7 +29,7 @@ pub fn check_mass(m: &Csc, interrupt: &Interrupt<'_>) -> Result<()> {
             return negative(j);
         }
         // A row without mass is decoupled by a unit entry on the diagonal.
-        let added = if alone { 1.0 } else { MARGIN * diagonal };
+        let added = if alone { 1.0 } else { DEFINITE_MARGIN * diagonal };
         try_push(&mut margin, (j, j, added.into()), CONTEXT)?;
     }
     first_bad_pivot(m, margin, interrupt)?.map_or(Ok(()), negative)
@@ -43,7 +44,7 @@ pub fn check_mass(m: &Csc, interrupt: &Interrupt<'_>) -> Result<()> {
 pub fn resists_all_motion(k: &Csc, interrupt: &Interrupt<'_>) -> Result<bool> {
     let mut margin = Vec::new();
     for j in 0..k.rows {
-        try_push(&mut margin, (j, j, (-MARGIN * k.get(j, j).re).into()), CONTEXT)?;
+        try_push(&mut margin, (j, j, (-DEFINITE_MARGIN * k.get(j, j).re).into()), CONTEXT)?;
     }
     Ok(first_bad_pivot(k, margin, interrupt)?.is_none())
 }

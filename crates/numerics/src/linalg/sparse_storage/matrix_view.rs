@@ -121,6 +121,7 @@ pub struct MatrixView<'a> {
 }
 
 /// Deviations from symmetry up to this share of the largest entry are rounding and are removed by averaging.
+/// Kind: rounding.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
 impl<'a> MatrixView<'a> {

@@ -5,11 +5,12 @@ use crate::error::{Result, try_room};
 use num_complex::Complex64;
 
 /// Largest order.
-pub(crate) const LARGEST: usize = 16;
+/// Kind: fixed.
+pub(crate) const SMALL_SUM_LARGEST: usize = 16;
 
 const CONTEXT: &str = "a sum of sparse matrices";
 
-/// The sum of entries of square matrices of an order up to `N`, at most [`LARGEST`]. To clear room for the largest order takes
+/// The sum of entries of square matrices of an order up to `N`, at most [`SMALL_SUM_LARGEST`]. To clear room for the largest order takes
 /// longer than to add four rows.
 pub(crate) struct SmallSum<const N: usize> {
     columns: [[Complex64; N]; N],

@@ -114,6 +114,7 @@ fn transposed(a: &impl Columns) -> Result<Csc> {
 }
 
 /// Entries of the terms above which those of their sum are counted before memory for them.
+/// Kind: tuned; measured on: not recorded.
 const COUNTED_ABOVE: usize = 4096;
 
 /// How a matrix enters a sum.
@@ -252,8 +253,8 @@ impl Csc {
         if n <= 4 {
             return Self::small_sum::<4, A>(n, terms);
         }
-        if n <= small_sum::LARGEST {
-            return Self::small_sum::<{ small_sum::LARGEST }, A>(n, terms);
+        if n <= small_sum::SMALL_SUM_LARGEST {
+            return Self::small_sum::<{ small_sum::SMALL_SUM_LARGEST }, A>(n, terms);
         }
         let mut mirrored = Vec::new();
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
@@ -472,11 +473,11 @@ mod tests {
         };
         for count in 1..=forms.len() {
             for n in [4, 6] {
-                let (small, large) = (sum(n, n, count), sum(small_sum::LARGEST + 1, n, count));
+                let (small, large) = (sum(n, n, count), sum(small_sum::SMALL_SUM_LARGEST + 1, n, count));
                 assert_eq!(small.col_ptr[..], large.col_ptr[..=n]);
                 assert_eq!(
                     large.col_ptr[n..],
-                    vec![large.col_ptr[n]; small_sum::LARGEST + 2 - n][..]
+                    vec![large.col_ptr[n]; small_sum::SMALL_SUM_LARGEST + 2 - n][..]
                 );
                 assert_eq!((small.row_idx, small.values), (large.row_idx, large.values));
             }

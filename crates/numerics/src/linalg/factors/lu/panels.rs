@@ -12,9 +12,11 @@ use faer::linalg::{matmul, triangular_solve};
 use faer::{Accum, MatMut, MatRef, Par};
 
 /// Columns of a panel.
+/// Kind: tuned; measured on: not recorded.
 const PANEL: usize = 64;
 
 /// Columns that are updated between two checks.
+/// Kind: block.
 const CHUNK: usize = 192;
 
 /// Factors the n × n column-major matrix; the permutation is left in `blocked`, as the kernel for a whole matrix

@@ -8,14 +8,17 @@ use crate::linalg::newton::bordered::{Bordered, Parts, dot};
 use crate::linalg::{add_product, norm};
 
 /// Largest ratio of a change to the one before it.
+/// Kind: tuned; measured on: not recorded.
 const SHRINK: f64 = 0.2;
 
 /// Number of rounds beyond which new factors are quicker.
+/// Kind: tuned; measured on: not recorded.
 const MOST_ROUNDS: usize = 6;
 
 /// Smallest m²/n, for m active unknowns among n, at which a factorisation (m³) was measured to cost more than the
 /// rounds that replace it (n·m each).
-const LEAST: usize = 64;
+/// Kind: tuned; measured on: not recorded.
+const FACTOR_REUSE_LEAST: usize = 64;
 
 impl Bordered {
     /// Solves in place with the matrix `k` by the stored factors, to a relative error of `tolerance`. Returns
@@ -61,7 +64,7 @@ impl Bordered {
     fn is_reusable(&self, k: &Parts<'_>) -> bool {
         let (m, n) = (self.active.len(), self.n);
         let count = k.active.iter().filter(|a| **a).count();
-        m == count && self.active.iter().all(|&j| k.active[j]) && m * m >= LEAST * n
+        m == count && self.active.iter().all(|&j| k.active[j]) && m * m >= FACTOR_REUSE_LEAST * n
     }
 
     /// b − K x

@@ -11,22 +11,28 @@ use crate::linalg::newton::linear_system::krylov::{KrylovSystem, Lengths};
 use crate::linalg::newton::linear_system::{Border, Jacobian, LinearSystem};
 
 /// Columns up to which a direct solution is quicker.
-const DIRECT_UP_TO: usize = 240;
+/// Kind: tuned; measured on: not recorded.
+const AUTOMATIC_DIRECT_UP_TO: usize = 240;
 
 /// The same where the last numbers of a group couple as much as the first.
+/// Kind: tuned; measured on: not recorded.
 const DIRECT_IF_COUPLED: usize = 1200;
 
 /// Unknowns of the factored block, unless the first numbers of the groups are more.
-const BLOCK: usize = 200;
+/// Kind: tuned; measured on: not recorded.
+const AUTOMATIC_BLOCK: usize = 200;
 
 /// Most products of an iteration.
-const MOST_PRODUCTS: usize = 240;
+/// Kind: cap.
+const AUTOMATIC_MOST_PRODUCTS: usize = 240;
 
 /// Least relative residual that is asked of an iteration: a tangent of this error predicts as well.
+/// Kind: tuned; measured on: not recorded.
 const FINEST: f64 = 1e-10;
 
 /// Updates for which the solution is direct after an iteration that did not converge.
-const PATIENCE: usize = 16;
+/// Kind: tuned; measured on: not recorded.
+const AUTOMATIC_PATIENCE: usize = 16;
 
 /// A bordered system that is solved directly or by iteration.
 pub struct AutomaticSystem {
@@ -47,7 +53,7 @@ impl AutomaticSystem {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
-        let dense = if n <= DIRECT_UP_TO {
+        let dense = if n <= AUTOMATIC_DIRECT_UP_TO {
             Some(boxed(|| DenseSystem::new(n))?)
         } else {
             None
@@ -70,7 +76,7 @@ impl AutomaticSystem {
 
     /// Lengths of the groups and of their parts, where an iteration is quicker.
     fn lengths(&self, jacobian: &mut dyn Jacobian) -> Option<Lengths> {
-        if self.direct > 0 || self.n <= DIRECT_UP_TO {
+        if self.direct > 0 || self.n <= AUTOMATIC_DIRECT_UP_TO {
             return None;
         }
         let operator = jacobian.matrix_free()?;
@@ -78,7 +84,7 @@ impl AutomaticSystem {
         let direct_up_to = if operator.couples_all() {
             DIRECT_IF_COUPLED
         } else {
-            DIRECT_UP_TO
+            AUTOMATIC_DIRECT_UP_TO
         };
         if operator.ring().is_some() {
             return (operator.coupled() > direct_up_to).then_some(Lengths::of_ring(group));
@@ -87,7 +93,7 @@ impl AutomaticSystem {
         let first = group % 2 + 2;
         let behind = operator.behind();
         let groups = (self.n - behind) / group.max(1);
-        let pairs = (BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
+        let pairs = (AUTOMATIC_BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
         let part = first.max(group % 2 + 2 * pairs);
         let lengths = Lengths {
             group,
@@ -131,8 +137,8 @@ impl LinearSystem for AutomaticSystem {
             let operator = jacobian.matrix_free();
             let ring = operator.as_ref().and_then(|operator| operator.ring());
             self.krylov = Some(boxed(|| match ring {
-                Some(ring) => KrylovSystem::of_ring(self.n, (lengths.group, ring), MOST_PRODUCTS),
-                None => KrylovSystem::new(self.n, lengths, MOST_PRODUCTS),
+                Some(ring) => KrylovSystem::of_ring(self.n, (lengths.group, ring), AUTOMATIC_MOST_PRODUCTS),
+                None => KrylovSystem::new(self.n, lengths, AUTOMATIC_MOST_PRODUCTS),
             })?);
         }
         self.backend()?.update(jacobian, border, interrupt)
@@ -189,7 +195,7 @@ impl LinearSystem for AutomaticSystem {
         if !self.iterates {
             return false;
         }
-        self.direct = PATIENCE;
+        self.direct = AUTOMATIC_PATIENCE;
         true
     }
 

@@ -29,7 +29,7 @@ impl DenseSystem {
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
         const CONTEXT: &str = "the linear system";
-        let kept = if n < small_lu::LARGEST { n * (n + 1) } else { 0 };
+        let kept = if n < small_lu::SMALL_LU_LARGEST { n * (n + 1) } else { 0 };
         Ok(Self {
             factors: Bordered::new(n)?,
             matrix: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,

@@ -17,15 +17,18 @@ use crate::linalg::newton::linear_system::{Border, Forces};
 const CONTEXT: &str = "the linear system of low rank";
 
 /// Products that a matrix takes with waves where sectors differ in a share u of the contact Jacobian, for steps, tests of steps and
-/// tangents: this number over (1 − u)², at most so many. Tuned: for four digits wheels of 24 sectors take 6 products at 0.13, 13 at
-/// 0.4 and 80 at 0.8, for ten digits twice as many; a matrix has two or three solutions, of an estimate two.
+/// tangents: this number over (1 − u)², at most so many.
+/// Kind: tuned; measured on: wheels of 24 sectors, which take 6 products for four digits at 0.13, 13 at 0.4 and 80 at 0.8, for ten
+/// digits twice as many; a matrix has two or three solutions, of an estimate two.
 const PRODUCTS_OF_WAVES: f64 = 13.0;
 const MOST_PRODUCTS_OF_WAVES: f64 = 150.0;
 
 /// Vectors of a basis that such a product is made orthogonal to, on average.
+/// Kind: tuned; measured on: wheels of 24 sectors.
 const BASIS_OF_WAVES: usize = 40;
 
 /// Share of the contact Jacobian below which waves serve better, whatever the rank.
+/// Kind: tuned; measured on: wheels of 24 sectors.
 const ALIKE_SECTORS: f64 = 0.3;
 
 /// Factors of C, with memory.

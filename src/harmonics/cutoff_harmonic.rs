@@ -1,0 +1,403 @@
+//! Cut-off harmonic: largest h with ‖kt^½ G_h kt^½‖ ≥ ½, where the structure is compliant against the contact
+//! stiffness; G_h is the flexibility of the structure without its contacts. A contact whose force follows the velocity, as regularised
+//! friction, has the stiffness hω ∂f/∂v.
+//!
+//! Beyond it inertia keeps both sides of a contact at rest, and an extended harmonic hardly acts back on itself or on
+//! others. Above the highest natural frequency G falls with frequency, so that bisection brackets the cut-off; below,
+//! the harmonics are checked one by one from above. On large structures, whose highest natural frequency depends on
+//! the mesh, they are checked in geometric steps.
+
+use crate::condense::Condensed;
+use crate::condense::by_factors::flexibility::Workspace;
+use crate::error::{Result, Status, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::harmonics::estimate::CONTEXT;
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::eigen;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::inner;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Norm of kt^½ G kt^½ from which on the structure is compliant in a harmonic.
+/// Kind: tuned; measured on: not recorded.
+const COMPLIANT: f64 = 0.5;
+
+/// Degrees of freedom up to which every harmonic may be checked.
+/// Kind: tuned; measured on: not recorded.
+const CUTOFF_HARMONIC_SMALL_UP_TO: usize = 32;
+
+/// Harmonics up to which a model carries all waves: those of a thousand sectors. The memory of a wheel of more sectors
+/// than any machine has must not follow from their number.
+/// Kind: cap.
+const MOST_WAVES: usize = 2048;
+
+/// Ratio of neighbouring harmonics that are checked in a large structure.
+/// Kind: tuned; measured on: not recorded.
+const CUTOFF_HARMONIC_RATIO: f64 = 1.25;
+
+/// Relative distance within which the cut-off harmonic of a large structure is found.
+/// Kind: tuned; measured on: not recorded.
+const FINE: f64 = 0.03;
+
+/// Relative change of frequency up to which a cut-off, as a frequency, is reused where harmonics are different waves.
+/// Kind: tuned; measured on: not recorded.
+const CUTOFF_HARMONIC_NEAR: f64 = 0.01;
+
+/// Iterations for the norm of a matrix.
+/// Kind: cap.
+const NORM_ITERATIONS: usize = 8;
+
+/// Highest harmonic up to which a model has at most this many unknowns.
+pub(crate) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
+    let set = condensed.set();
+    let each = unknowns / condensed.coordinates().max(1);
+    let pairs = each.saturating_sub(usize::from(set.has_mean())) / 2;
+    set.base() * (1 + pairs.saturating_sub(1) * set.stride()) * usize::from(pairs > 0)
+}
+
+/// Harmonics that a condensed model must carry so that the waves of all higher ones are among its own.
+pub(super) fn all_waves(condensed: &Condensed) -> usize {
+    if condensed.ndof() > CUTOFF_HARMONIC_SMALL_UP_TO {
+        return 0;
+    }
+    let all = 2 * condensed.in_step() * condensed.set().base();
+    if all > MOST_WAVES { 0 } else { all }
+}
+
+/// Finds the cut-off harmonic of a model at one frequency after the other.
+pub(super) struct CutoffHarmonic {
+    condensed: Arc<Condensed>,
+    workspace: Workspace,
+    /// Highest natural frequency of the structure without its contacts, where it is known.
+    highest: Option<f64>,
+    /// Frequency of the last cut-off, the angular frequency at which it was found, and the harmonic the search began
+    /// from.
+    found: Option<(f64, f64, usize)>,
+    /// The same where the structure was compliant in the highest harmonic of the search.
+    beyond: Option<(f64, f64, usize)>,
+    matrix: Vec<Complex64>,
+    vectors: [Vec<Complex64>; 2],
+    lu: Lu<Complex64>,
+}
+
+impl CutoffHarmonic {
+    /// Memory for a condensed model.
+    pub fn new(condensed: Arc<Condensed>, interrupt: &Interrupt<'_>) -> Result<Self> {
+        let coordinates = condensed.coordinates();
+        Ok(Self {
+            workspace: Workspace::new(&condensed, None)?,
+            highest: highest_frequency(&condensed, interrupt)?,
+            vectors: [
+                try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
+                try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
+            ],
+            found: None,
+            beyond: None,
+            matrix: try_vec(coordinates.saturating_mul(coordinates), Complex64::ZERO, CONTEXT)?,
+            lu: Lu::new(coordinates, coordinates)?,
+            condensed,
+        })
+    }
+
+    /// The same without a bound, where it follows from the last one.
+    pub fn known(&self, omega: f64, from: usize) -> Option<usize> {
+        let found = self.found.filter(|found| self.serves(*found, omega, from));
+        found.map(|(frequency, ..)| (frequency / omega).round() as usize)
+    }
+
+    /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
+    /// ω; `from` where it is compliant in none.
+    pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
+        if let Some(known) = self.known(omega, from) {
+            return Ok(known.clamp(from, most.max(from)));
+        }
+        let reaches = |(frequency, ..): (f64, f64, usize)| most as f64 * omega <= (1.0 + FINE) * frequency;
+        if self
+            .beyond
+            .is_some_and(|found| reaches(found) && self.serves(found, omega, from))
+        {
+            return Ok(most.max(from));
+        }
+        let last = match self.highest {
+            Some(highest) => self.check_each(omega, highest, (from, most), interrupt)?,
+            None => self.check_some(omega, from, most, interrupt)?,
+        };
+        let found = Some((last as f64 * omega, omega, from));
+        if last < most {
+            self.found = found;
+        } else {
+            self.beyond = found;
+        }
+        Ok(last)
+    }
+
+    /// Whether what was found at a frequency serves at another one.
+    fn serves(&self, (_, near, searched_from): (f64, f64, usize), omega: f64, from: usize) -> bool {
+        // Where all harmonics are one wave, G depends on hω alone.
+        let one_wave = self.condensed.in_step() <= 1;
+        let width = if self.highest.is_some() {
+            CUTOFF_HARMONIC_NEAR
+        } else {
+            FINE
+        };
+        from >= searched_from && (one_wave || (omega / near - 1.0).abs() <= width)
+    }
+
+    fn check_each(
+        &mut self,
+        omega: f64,
+        highest: f64,
+        (from, most): (usize, usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<usize> {
+        let set = self.condensed.set();
+        let step = set.base() * set.stride();
+        let most = carried_to(set, most);
+        let mut above = carried_from(set, ((highest / omega) as usize + 1).max(from + 1));
+        let mut below = from;
+        while above < most && self.compliant(omega, above, interrupt)? {
+            (below, above) = (above, carried_from(self.condensed.set(), 2 * above));
+        }
+        above = above.min(most);
+        if below > from {
+            // The flexibility falls: the last compliant harmonic lies between.
+            while above > below + step {
+                let middle = carried_from(self.condensed.set(), below.midpoint(above));
+                let middle = middle.min(above - step);
+                if self.compliant(omega, middle, interrupt)? {
+                    below = middle;
+                } else {
+                    above = middle;
+                }
+            }
+            return Ok(above);
+        }
+        let mut h = above;
+        while h > from {
+            if self.compliant(omega, h, interrupt)? {
+                return Ok(h);
+            }
+            if h <= step {
+                break;
+            }
+            h -= step;
+        }
+        Ok(from)
+    }
+
+    fn check_some(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
+        let mut h = most;
+        let mut above = most;
+        while h > from {
+            if self.compliant(omega, h, interrupt)? {
+                // Nearer to the last one, but not to a single harmonic: each costs a factorisation.
+                while above - h > 1 + (FINE * h as f64) as usize {
+                    let middle = h.midpoint(above);
+                    if self.compliant(omega, middle, interrupt)? {
+                        h = middle;
+                    } else {
+                        above = middle;
+                    }
+                }
+                return Ok(above);
+            }
+            above = h;
+            h = ((h as f64 / CUTOFF_HARMONIC_RATIO) as usize).min(h - 1);
+        }
+        Ok(from)
+    }
+
+    /// Whether ‖kt^½ G kt^½‖ ≥ ½ in harmonic h.
+    fn compliant(&mut self, omega: f64, h: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+        interrupt.check()?;
+        let condensed = &self.condensed;
+        let Some(i) = block_of(condensed, h) else {
+            return Ok(false);
+        };
+        // The matrices of a wave are the same for all its harmonics.
+        let effective = omega * h as f64 / condensed.set().numbers()[i] as f64;
+        let n = condensed.coordinates();
+        let nu = omega * h as f64;
+        let table = &self
+            .workspace
+            .evaluate(condensed, i, effective, false, interrupt)?
+            .value;
+        // G = (1 − G_κ κ)⁻¹ G_κ, both sides times kt^½.
+        let a = self.lu.matrix();
+        for c in 0..n {
+            let stiffness = condensed.impedance(c, nu);
+            let root = stiffness.sqrt();
+            for r in 0..n {
+                let g = table[c * (n + 1) + r] * condensed.impedance(r, nu).sqrt() * root;
+                self.matrix[c * n + r] = g;
+                let share = condensed.kappa(c, i) / stiffness.max(f64::MIN_POSITIVE);
+                a[c * n + r] = Complex64::from(f64::from(u8::from(c == r))) - g * share;
+            }
+        }
+        // The matrix is singular at a resonance of the structure without contacts.
+        match self.lu.factor(interrupt) {
+            Err(e) if e.status == Status::Singular => return Ok(true),
+            factored => factored?,
+        }
+        self.lu.solve_columns(&mut self.matrix, false, interrupt)?;
+        Ok(spectral_norm(&self.matrix, &mut self.vectors) >= COMPLIANT)
+    }
+}
+
+/// A carried harmonic on the same wave as h, or on the nearest carried one.
+fn block_of(condensed: &Condensed, h: usize) -> Option<usize> {
+    let numbers = condensed.set().numbers();
+    let period = condensed.in_step().max(1);
+    let same = numbers.iter().position(|&k| k > 0 && k % period == h % period);
+    same.or_else(|| numbers.iter().rposition(|&k| k > 0))
+}
+
+/// Largest singular value of a column-major matrix by the power method on AᴴA: a lower bound, nearly always exact to
+/// a few per cent.
+fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
+    let size = |v: &[Complex64]| v.iter().fold(0.0, |s, z| f64::hypot(s, z.norm()));
+    let frobenius = size(a);
+    let n = x.len();
+    if n <= 1 || frobenius == 0.0 {
+        return frobenius;
+    }
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = Complex64::new(1.0 + (k as f64).sin(), (0.7 * k as f64).cos());
+    }
+    let mut largest = 0.0;
+    for _ in 0..NORM_ITERATIONS {
+        let length = size(x);
+        y.fill(Complex64::ZERO);
+        for (column, x) in a.chunks_exact(n).zip(&*x) {
+            for (y, a) in y.iter_mut().zip(column) {
+                *y += a * x / length;
+            }
+        }
+        for (x, column) in x.iter_mut().zip(a.chunks_exact(n)) {
+            *x = inner(column, y);
+        }
+        largest = size(x).sqrt();
+    }
+    largest
+}
+
+/// Highest natural frequency over the waves of a small structure without its contacts; `None` if it is not known.
+fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result<Option<f64>> {
+    let n = condensed.ndof();
+    if n > CUTOFF_HARMONIC_SMALL_UP_TO {
+        return Ok(None);
+    }
+    let mut highest = 0.0_f64;
+    for block in condensed.blocks().iter().take(2 * condensed.in_step() + 1) {
+        let mut k = DMatrix::<Complex64>::zeros(n, n);
+        let mut m = DMatrix::<Complex64>::zeros(n, n);
+        let pattern = &block.reference;
+        for j in 0..n {
+            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                k[(pattern.row_idx[at], j)] = block.stiffness[at];
+                m[(pattern.row_idx[at], j)] = block.mass[at];
+            }
+        }
+        if (&k - k.adjoint()).norm() > 1e-9 * k.norm() {
+            return Ok(None);
+        }
+        let pairs = match eigen::generalised(&k, &m, interrupt) {
+            Err(e) if e.status == Status::StoppedByCaller => return Err(e),
+            Err(_) => return Ok(None),
+            Ok(pairs) => pairs,
+        };
+        highest = pairs.values.iter().fold(highest, |w, x| w.max(x.max(0.0).sqrt()));
+    }
+    Ok(Some(highest))
+}
+
+/// The least harmonic to which a point of a response that carries a set is extended: with twice its harmonics, and two more of
+/// them at least. The
+/// change by the first that was left out may vanish by chance where that by the second does not.
+pub(super) fn least_extension(set: &HarmonicSet) -> usize {
+    let own = set.numbers().last().copied().unwrap_or(0);
+    let second = own + 2 * set.base() * set.stride();
+    carried_from(set, second.max(2 * own + 1))
+}
+
+/// The lowest harmonic number not below h that sets like `set` carry.
+pub(super) fn carried_from(set: &HarmonicSet, h: usize) -> usize {
+    let (base, step) = (set.base(), set.base() * set.stride());
+    base + h.saturating_sub(base).div_ceil(step) * step
+}
+
+/// The highest such number not above h, at least the base.
+fn carried_to(set: &HarmonicSet, h: usize) -> usize {
+    let (base, step) = (set.base(), set.base() * set.stride());
+    base + h.saturating_sub(base) / step * step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CutoffHarmonic, carried_from, carried_to, spectral_norm};
+    use crate::condense::Condensed;
+    use crate::contact::Contact;
+    use crate::fourier::HarmonicSet;
+    use crate::interrupt::Interrupt;
+    use crate::linalg::sparse_storage::matrix_view::MatrixView;
+    use crate::model::Model;
+    use crate::model::matrices::structure::MatrixKind;
+    use crate::options::SolverOptions;
+    use num_complex::Complex64;
+    use std::sync::Arc;
+
+    #[test]
+    fn the_norm_of_a_diagonal_matrix_is_its_largest_entry() {
+        let values = [0.3, -1.7, 0.9];
+        let a: Vec<Complex64> = (0..9)
+            .map(|k| {
+                if k % 4 == 0 {
+                    Complex64::new(0.0, values[k / 4])
+                } else {
+                    Complex64::ZERO
+                }
+            })
+            .collect();
+        let memory = || vec![Complex64::ZERO; 3];
+        assert!((spectral_norm(&a, &mut [memory(), memory()]) - 1.7).abs() < 1e-3);
+    }
+
+    #[test]
+    fn carried_numbers_are_found_on_both_sides() {
+        let set = HarmonicSet::excited(&[3], 15, true, true, false).unwrap();
+        assert_eq!(
+            (carried_from(&set, 1), carried_from(&set, 4), carried_from(&set, 9)),
+            (3, 9, 9)
+        );
+        assert_eq!((carried_to(&set, 14), carried_to(&set, 15)), (9, 15));
+    }
+
+    /// |kt G| = kt/(m Ω² − k) = 1/2 beyond the resonance.
+    #[test]
+    fn a_mass_is_compliant_up_to_the_frequency_of_its_inertia() {
+        for (mass, omega) in [(1.0, 0.5), (0.01, 0.7), (1e-4, 0.7)] {
+            let (k, kt) = (1.0, 3.0);
+            let mut model = Model::new(1).unwrap();
+            for (kind, value) in [
+                (MatrixKind::Mass, mass),
+                (MatrixKind::Damping, 1e-9),
+                (MatrixKind::Stiffness, k),
+            ] {
+                model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+            }
+            model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
+            model.add_force(0, 1, 1.0.into()).unwrap();
+            let condensed = Condensed::new(&model, &SolverOptions::default(), omega, &Interrupt::none()).unwrap();
+            let mut cutoff = CutoffHarmonic::new(Arc::new(condensed), &Interrupt::none()).unwrap();
+            let last = ((k + 2.0 * kt) / mass).sqrt() / omega;
+            let found = cutoff.at(omega, 1, 3001, &Interrupt::none()).unwrap();
+            assert!(
+                found as f64 >= last - 2.0 && found as f64 <= last + 2.0,
+                "{found} for {last}"
+            );
+            assert_eq!(found % 2, 1);
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Harmonics whose coupling the iterative linear system of an extended problem factors.
+
+use crate::harmonics::extended_system::Factored;
+use crate::harmonics::work::{Sizes, Work};
+
+/// Factorisations of the block for which the work must suffice.
+/// Kind: tuned; measured on: not recorded.
+const FACTORISATIONS: f64 = 5.0;
+
+/// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
+/// Kind: tuned; measured on: not recorded.
+const FACTORED_HARMONICS_BLOCK: f64 = 200.0;
+
+/// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
+/// each by itself.
+pub(super) fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
+    within(sizes, compliant, FACTORED_HARMONICS_BLOCK, work)
+}
+
+/// All harmonics in one block, if the work allows: where contacts are far stiffer than their reference stiffness, the
+/// compliant ones are not enough.
+pub(super) fn whole(sizes: &Sizes, work: &Work) -> Option<Factored> {
+    let all = sizes.harmonics();
+    Some(within(sizes, all, f64::INFINITY, work)).filter(|found| found.block == all)
+}
+
+/// The first of the compliant harmonics in one block of an order at most.
+fn within(sizes: &Sizes, compliant: usize, order: f64, work: &Work) -> Factored {
+    let fits = |block: usize| {
+        let packed = sizes.packed().min(2.0 * block as f64);
+        let pairs = (compliant - block) as f64;
+        sizes.order(packed) <= order
+            && FACTORISATIONS * sizes.factors(packed, pairs) <= work.left()
+            && work.fits(sizes.bytes(packed, pairs))
+    };
+    let block = (1..=compliant)
+        .rev()
+        .find(|&block| fits(block))
+        .unwrap_or(compliant.min(1));
+    Factored { block, each: compliant }
+}

@@ -1,0 +1,520 @@
+//! The error of a point of a forced response.
+
+use crate::condense::by_modes::modal_rows::ModalRows;
+use crate::condense::by_modes::modal_table::ModalTable;
+use crate::condense::by_modes::wave_cache::SharedWaves;
+use crate::condense::{Condensed, ModelCache, Resolution};
+use crate::contact::Contact;
+use crate::error::{Result, boxed, try_push};
+use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
+use crate::harmonics::doubling::Doubling;
+use crate::harmonics::estimate::{CONTEXT, ESTIMATE_MARGIN, extended_options, or_unknown, relative};
+use crate::harmonics::extended_newton::FirstStep;
+use crate::harmonics::extended_system::ExtendedSystem;
+use crate::harmonics::factored_harmonics::{factored, whole};
+use crate::harmonics::jump_error::{OF_HALF, OF_JUMPS};
+use crate::harmonics::kept_changes::KeptChanges;
+use crate::harmonics::kept_ratio::KeptRatio;
+use crate::harmonics::one_extension::{Extent, extend_once};
+use crate::harmonics::work::{OF_A_POINT, OF_A_START, Sizes, Work};
+use crate::harmonics::{Corrected, Estimate, Solved};
+use crate::interrupt::{Interrupt, Phase};
+use crate::model::Model;
+use crate::options::{Response, SolverOptions};
+use crate::problem::harmonic_balance::HarmonicBalance;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Evaluations, each with a product, for which the work must suffice.
+/// Kind: tuned; measured on: not recorded.
+const FORCED_RESPONSE_ERROR_EVALUATIONS: f64 = 6.0;
+
+/// Flexibility tables by factorisation of a full matrix after which all modes of a structure are expected to pay: they cost about
+/// 24 of them.
+/// Kind: tuned; measured on: not recorded.
+const FORCED_RESPONSE_ERROR_TABLES: usize = 4;
+
+/// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
+/// Kind: tuned; measured on: not recorded.
+const FORCED_RESPONSE_ERROR_SMALL: usize = 32;
+
+/// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
+/// Kind: tuned; measured on: not recorded.
+const SHARED: f64 = 0.5;
+
+/// Relative error of tables over the tolerance, and its range.
+/// Kind: tuned; measured on: not recorded.
+const OF_TABLES: f64 = 1e-3;
+const EXACTEST: (f64, f64) = (1e-7, 1e-5);
+
+/// Extended problems that are kept for the next point.
+/// Kind: tuned; measured on: not recorded.
+const FORCED_RESPONSE_ERROR_MOST_KEPT: usize = 3;
+
+/// Relative error of tables for an estimate whose tolerance is given.
+pub(super) fn tables_within(tolerance: f64) -> f64 {
+    (OF_TABLES * tolerance).clamp(EXACTEST.0, EXACTEST.1)
+}
+
+/// Estimates the errors of points of one model, one after the other.
+pub struct ForcedEstimator<'a> {
+    model: &'a Model,
+    options: SolverOptions,
+    response: usize,
+    cutoff: Option<CutoffHarmonic>,
+    models: &'a ModelCache,
+    interrupt: &'a Interrupt<'a>,
+    /// Whether all points have one frequency: no extended problem serves the next one.
+    single: bool,
+    /// Whether some estimate told nothing.
+    told_nothing: bool,
+    /// The problems extended last, with their slots in the cache.
+    extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
+    ratio: KeptRatio,
+    changes: KeptChanges,
+    /// Operations that the last estimate might take, and the most that the next one may.
+    allowed: f64,
+    most: f64,
+    /// Modes of the waves, and how many flexibility tables were made so far.
+    waves: &'a SharedWaves,
+    rows: Vec<Arc<ModalRows>>,
+    tables: usize,
+    /// Range of the frequencies of the points.
+    range: Option<(f64, f64)>,
+    /// The responses that were asked for.
+    responses: &'a [Response<'a>],
+}
+
+impl<'a> ForcedEstimator<'a> {
+    /// For solutions of `model` with these options, observing degree of freedom `response`.
+    #[must_use]
+    pub fn new(
+        model: &'a Model,
+        options: &SolverOptions,
+        response: usize,
+        (models, waves): (&'a ModelCache, &'a SharedWaves),
+        interrupt: &'a Interrupt<'a>,
+    ) -> Self {
+        Self {
+            model,
+            options: *options,
+            response,
+            cutoff: None,
+            models,
+            interrupt,
+            single: false,
+            told_nothing: false,
+            extended: Vec::new(),
+            ratio: KeptRatio::default(),
+            changes: KeptChanges::default(),
+            allowed: 0.0,
+            most: f64::INFINITY,
+            waves,
+            rows: Vec::new(),
+            tables: 0,
+            range: None,
+            responses: &[],
+        }
+    }
+
+    /// Watches responses: their errors count.
+    #[must_use]
+    pub fn watching(mut self, responses: &'a [Response<'a>]) -> Self {
+        self.responses = responses;
+        self
+    }
+
+    /// For points in a range of frequency; for one point at a single frequency, after which no extended problem is kept.
+    #[must_use]
+    pub fn over(mut self, range: (f64, f64)) -> Self {
+        self.single = range.0.to_bits() == range.1.to_bits();
+        self.range = (!self.single).then_some(range);
+        self
+    }
+
+    /// Bounds the next estimate by half of the work that the last one might take, which told nothing.
+    pub fn share_work(&mut self) {
+        self.most = SHARED * self.allowed;
+    }
+
+    /// The estimate at a solved point; not certified if it could not be made.
+    ///
+    /// # Errors
+    /// Those of callbacks that give up; `StoppedByCaller`.
+    pub fn at(&mut self, solved: &Solved<'_>) -> Result<Estimate> {
+        self.interrupt.phase(Phase::Estimate, 0.0)?;
+        if solved.is_linear(self.interrupt)? {
+            return solved.exact(0.0);
+        }
+        let sizes = Sizes::new(solved.condensed, self.options.samples);
+        let least = match (self.single, self.told_nothing) {
+            (false, _) => OF_A_START,
+            (true, false) => OF_A_POINT.0,
+            (true, true) => OF_A_POINT.1,
+        };
+        let mut work = Work::of_point(&sizes, solved.iterations.max(least), self.options.memory_limit);
+        work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
+        self.allowed = work.left();
+        let found = self.extend(solved, work);
+        let found = or_unknown(found, solved, 0.0)?;
+        self.told_nothing |= !found.certified;
+        Ok(found)
+    }
+
+    /// The harmonics to which a point is extended; `None` where the work does not suffice.
+    #[inline(never)]
+    fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
+        let set = solved.condensed.set();
+        let own = set.numbers().last().copied().unwrap_or(0);
+        let least = cutoff_harmonic::least_extension(set);
+        // How a law of the caller resists the velocity is not known: the cut-off, which counts stiffness alone, may come too early.
+        let reach = if self.model.contacts().iter().any(Contact::is_of_caller) {
+            cutoff_harmonic::carried_from(set, 2 * least + 1)
+        } else {
+            least
+        };
+        // With the cut-off known, bounds beyond it are not sought.
+        let known = self
+            .cutoff
+            .as_ref()
+            .and_then(|cutoff| cutoff.known(solved.omega, set.base()));
+        let enough = known.map_or(usize::MAX, |known| known.saturating_add(1).max(reach));
+        let most = self.affordable(solved, work, enough);
+        if least > most {
+            return Ok(None);
+        }
+        if self.cutoff.is_none() {
+            let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
+            let Some(resolution) = self.model_with(waves, solved)? else {
+                return Ok(None);
+            };
+            self.cutoff = Some(CutoffHarmonic::new(Arc::clone(&resolution.condensed), self.interrupt)?);
+        }
+        let Some(cutoff) = &mut self.cutoff else {
+            return Ok(None);
+        };
+        let mut core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
+        if solved.condensed.has_exchanges() {
+            // No harmonic is weak, and none beyond is left out of the estimate: see `jump_error`.
+            core = core.max(least).min(most);
+        }
+        Ok(Some(Extent {
+            core,
+            highest: core.max(if reach <= most { reach } else { least }),
+            least,
+            first_step: if core <= own {
+                FirstStep::Suffices
+            } else {
+                FirstStep::Checked
+            },
+            short: core >= most,
+            by_doubling: false,
+        }))
+    }
+
+    /// The highest harmonic to which the work suffices to extend a point; `enough` where that is no higher.
+    fn affordable(&self, solved: &Solved<'_>, work: &Work, enough: usize) -> usize {
+        work.highest(
+            (solved.condensed, enough),
+            &self.options,
+            FORCED_RESPONSE_ERROR_EVALUATIONS,
+            |sizes| sizes.evaluation() + sizes.product(0.0, sizes.packed()),
+        )
+    }
+
+    fn extend(&mut self, solved: &Solved<'_>, work: Work) -> Result<Option<Estimate>> {
+        let Some(extent) = self.extent(solved, &work)? else {
+            return solved.unknown(0.0, true).map(Some);
+        };
+        let samples = extended_options(&self.options, extent.core).samples;
+        let core = Sizes::extended(solved.condensed, extent.core, samples);
+        if extent.core > extent.least && !core.is_cheap(&work) {
+            return self.extend_by_doubling(solved, extent, work);
+        }
+        let (found, left) = self.extend_to(solved, None, extent, work)?;
+        match found {
+            Some(found) if solved.condensed.has_exchanges() => self.with_half(solved, found, left),
+            found => Ok(found),
+        }
+    }
+
+    /// The estimate of a point with exchanged motions, no less than its change from half the harmonics tells.
+    #[inline(never)]
+    fn with_half(&mut self, solved: &Solved<'_>, mut found: Estimate, work: Work) -> Result<Option<Estimate>> {
+        let tolerance = self.options.tolerance;
+        let own = solved.condensed.set().numbers().last().copied().unwrap_or(0);
+        let misses = tolerance > 0.0 && ESTIMATE_MARGIN * found.response > tolerance;
+        let excited = solved.condensed.blocks().iter().filter(|block| block.has_force());
+        let excited = excited.map(|block| block.number).max().unwrap_or(1);
+        let slot = self.models.slot_with((own / 2).max(excited));
+        if misses || !found.certified || slot >= self.models.slots() || self.models.highest(slot) >= own {
+            return Ok(Some(found));
+        }
+        let half = self.models.highest(slot);
+        let extent = Extent {
+            core: half,
+            highest: half,
+            least: half,
+            first_step: FirstStep::Checked,
+            short: false,
+            by_doubling: true,
+        };
+        let Some(of_half) = self
+            .extend_to(solved, None, extent, work)?
+            .0
+            .filter(|half| half.certified)
+        else {
+            return Ok(None);
+        };
+        let change = |estimate: &Estimate| (estimate.corrected.response - solved.response).norm();
+        let more = OF_HALF * change(&of_half) - OF_JUMPS * change(&found);
+        let more = relative(more.max(0.0), found.corrected.response);
+        found.response += more;
+        for error in &mut found.responses {
+            *error += more;
+        }
+        Ok(Some(found))
+    }
+
+    /// Extends to twice the harmonics, to four times, and on: up to the core, or until the next change of the response,
+    /// as the last two predict it, is a small share of the whole. Where the structure is compliant in many harmonics
+    /// the full core costs far more than the point, and the response needs few of them.
+    ///
+    /// The ratio of the whole change to that of the first extension changes little along a branch: it serves some of the
+    /// following estimates with the same harmonics, which then take one extension each.
+    #[inline(never)]
+    fn extend_by_doubling(&mut self, solved: &Solved<'_>, extent: Extent, mut work: Work) -> Result<Option<Estimate>> {
+        let mut highest = extent.least;
+        let mut series = Doubling::new(observed(&solved.response, solved.watched), solved.together)?;
+        let mut last: Option<Estimate> = None;
+        loop {
+            let stage = Extent {
+                core: extent.core.min(highest),
+                highest,
+                // The first two extensions tell the error, a further one whether much of it is missing.
+                first_step: if series.extensions() < 2 {
+                    FirstStep::Checked
+                } else {
+                    FirstStep::SufficesRoughly
+                },
+                short: false,
+                by_doubling: true,
+                ..extent
+            };
+            let from = last.as_ref().map(|estimate| &estimate.corrected);
+            let (found, left) = self.extend_to(solved, from, stage, work)?;
+            work = left;
+            let Some(mut found) = found.filter(|found| found.certified) else {
+                return Ok(last.filter(|_| series.suffices()).map(|last| series.completed(last)));
+            };
+            series.add(observed(&found.corrected.response, &found.corrected.watched));
+            found.steps += last.as_ref().map_or(0, |last| last.steps);
+            if highest >= extent.core && !extent.short {
+                return Ok(Some(found));
+            }
+            if let Some((ratio, sure)) = self.ratio.at(extent.least).filter(|_| last.is_none()) {
+                let scaled = series.scaled(ratio);
+                if scaled <= sure * self.options.tolerance {
+                    found.scale_response(scaled);
+                    return Ok(Some(found));
+                }
+            }
+            if series.is_harmless(self.options.tolerance) {
+                if let Some(ratio) = series.bounded_ratio() {
+                    self.ratio.note(extent.least, ratio);
+                }
+                return Ok(Some(series.bounded(found)));
+            }
+            let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
+            let next = if extent.short { next } else { next.min(extent.highest) };
+            let ends = next > self.affordable(solved, &work, next);
+            if series.has_settled() || (ends && series.suffices()) {
+                self.ratio.note(extent.least, series.ratio());
+                return Ok(Some(series.completed(found)));
+            }
+            if ends {
+                return solved.unknown(0.0, false).map(Some);
+            }
+            if series.misses(self.options.tolerance) {
+                return Ok(Some(series.completed(found)));
+            }
+            highest = next;
+            last = Some(found);
+        }
+    }
+
+    /// Whether modes are known, or so many tables were made that they pay.
+    fn modes_pay(&mut self, condensed: &Condensed) -> bool {
+        self.tables += condensed.set().numbers().len();
+        // Factors of a sparse matrix cost less, modes do not.
+        let n = condensed.ndof();
+        let stored = condensed
+            .blocks()
+            .first()
+            .map_or(1, |block| block.reference.values.len());
+        let pay = self.tables > FORCED_RESPONSE_ERROR_TABLES * (n * n / stored.max(1));
+        match self.waves.some_have_modes() {
+            // Few small factorisations cost no more.
+            Some(known) => known && (pay || condensed.ndof() > FORCED_RESPONSE_ERROR_SMALL),
+            None => pay,
+        }
+    }
+
+    /// The table of each harmonic from modes, where it has them, within a tolerance.
+    fn modal_tables(&mut self, condensed: &Condensed, tolerance: f64) -> Result<Vec<Option<ModalTable>>> {
+        let mut tables: Vec<Option<ModalTable>> = Vec::new();
+        let blocks = condensed.blocks();
+        for (i, block) in blocks.iter().enumerate() {
+            let known = blocks[..i].iter().position(|known| known.shares_matrices(block));
+            let of_earlier = || self.rows.iter().find(|rows| rows.are_of_block(block));
+            let rows = match known.and_then(|known| tables[known].as_ref()) {
+                Some(table) => Some(table.rows()),
+                None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
+                None => match self.waves.of(self.model, condensed, i, self.interrupt)? {
+                    Ok(modes) => {
+                        let rows = self.waves.rows((condensed, i, self.response), modes)?;
+                        if !self.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
+                            try_push(&mut self.rows, Arc::clone(&rows), CONTEXT)?;
+                        }
+                        Some(rows)
+                    }
+                    Err(_) => None,
+                },
+            };
+            let table = rows.map(|rows| ModalTable::new((condensed, i), rows, tolerance));
+            try_push(&mut tables, table.transpose()?, CONTEXT)?;
+        }
+        Ok(tables)
+    }
+
+    /// The model with harmonics up to one at least; `None` where there is none.
+    fn model_with(&self, highest: usize, solved: &Solved<'_>) -> Result<Option<&'a Resolution>> {
+        let slot = self.models.slot_with(highest);
+        if slot == self.models.slots() {
+            return Ok(None);
+        }
+        let resolution = self.models.model(slot, |highest| {
+            let options = extended_options(&self.options, highest);
+            // The model with the most harmonics below these shares most matrices.
+            let own = solved.condensed.set().numbers().len();
+            let below = self.models.below(slot).map(|below| &*below.condensed);
+            let fewer = below
+                .filter(|below| below.set().numbers().len() > own)
+                .unwrap_or(solved.condensed);
+            let shared = fewer.with_more_harmonics(self.model, &options, self.interrupt)?;
+            let condensed = if let Some(condensed) = shared {
+                condensed
+            } else {
+                // One scale for all points, so that they share tables of one unit.
+                let (start, stop) = self.range.unwrap_or((solved.omega, solved.omega));
+                // Exchanged motions are those of the whole range.
+                let stop = if solved.condensed.has_exchanges() { stop } else { start };
+                Condensed::new(self.model, &options, (start, stop), self.interrupt)?
+            };
+            let carried = condensed.set().numbers().last().copied().unwrap_or(0);
+            Ok(Resolution {
+                samples: extended_options(&self.options, carried).samples,
+                condensed: Arc::new(condensed),
+            })
+        })?;
+        Ok(Some(resolution))
+    }
+
+    /// Extends a point to the highest harmonic of an extent, from a solution with fewer of them or from the point itself.
+    /// Returns the work that is left.
+    fn extend_to(
+        &mut self,
+        solved: &Solved<'_>,
+        from: Option<&Corrected>,
+        extent: Extent,
+        mut work: Work,
+    ) -> Result<(Option<Estimate>, Work)> {
+        let (slot, omega) = (self.models.slot_with(extent.highest), solved.omega);
+        let Some(resolution) = self.model_with(extent.highest, solved)? else {
+            return Ok((Some(solved.unknown(0.0, true)?), work));
+        };
+        let condensed = &*resolution.condensed;
+        let set = condensed.set();
+        let by_modes = self.modes_pay(condensed);
+        let mut sizes = Sizes::new(condensed, resolution.samples);
+        if by_modes {
+            sizes = sizes.with_modes(condensed);
+        }
+        if !work.spend(sizes.flexibility()) {
+            return Ok((None, work));
+        }
+        let compliant = set.numbers().partition_point(|&h| h <= extent.core);
+        let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
+        let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
+        // All harmonics of an exchanged motion couple with each other.
+        let couples = stalled || condensed.has_exchanges();
+        let all = if couples { whole(&sizes, &work) } else { None };
+        let factored = all.unwrap_or_else(|| factored(&sizes, compliant, &work));
+        let packed = sizes.packed().min(2.0 * factored.block as f64);
+        let pairs = factored.each.saturating_sub(factored.block) as f64;
+        self.forget_beside(slot, sizes.bytes(packed, pairs), &work);
+        let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
+        let mut system = if let Some(kept) = kept {
+            let (_, mut system) = self.extended.swap_remove(kept);
+            system.set_point(omega, factored, work)?;
+            system
+        } else {
+            let range = (omega, omega);
+            let (response, samples, interrupt) = (self.response, resolution.samples, self.interrupt);
+            let mut problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
+            problem.watch((self.responses, response), samples)?;
+            boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
+        };
+        system.is_monotone = condensed.has_exchanges();
+        if by_modes && !system.problem.has_modes() {
+            let tolerance = tables_within(self.options.tolerance);
+            let modal = self.modal_tables(condensed, tolerance)?;
+            system.problem.set_modes(modal);
+        }
+        let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
+        let run = |system: &mut _, changes: &mut _| {
+            let kept = (changes, tolerance);
+            extend_once(system, condensed, (solved, from), (extent, slot), kept, interrupt)
+        };
+        let mut found = run(&mut system, &mut self.changes);
+        let mut left = system.work();
+        if system.stalled
+            && !stalled
+            && let Some(all) = whole(&sizes, &left)
+        {
+            self.forget_beside(slot, sizes.bytes(sizes.packed(), 0.0), &left);
+            system.set_point(omega, all, left)?;
+            found = run(&mut system, &mut self.changes);
+            left = system.work();
+        }
+        if self.extended.len() == FORCED_RESPONSE_ERROR_MOST_KEPT {
+            self.extended.remove(0);
+        }
+        try_push(&mut self.extended, (slot, system), CONTEXT)?;
+        Ok((found?, left))
+    }
+
+    /// Forgets the oldest of the extended problems that do not fit into the memory of an estimate beside that of a slot.
+    fn forget_beside(&mut self, slot: usize, of_slot: f64, work: &Work) {
+        if self.single {
+            self.extended.retain(|(kept, _)| *kept == slot);
+        }
+        let bytes = |(kept, system): &(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)| {
+            if *kept == slot { 0.0 } else { system.bytes() }
+        };
+        while !work.fits(of_slot + self.extended.iter().map(bytes).sum::<f64>())
+            && let Some(oldest) = self.extended.iter().position(|(kept, _)| *kept != slot)
+        {
+            self.extended.remove(oldest);
+        }
+    }
+}
+
+/// The numbers that doubling watches: the responses that were asked for, or the one that every point has.
+fn observed<'o>(response: &'o Complex64, watched: &'o [Complex64]) -> &'o [Complex64] {
+    if watched.is_empty() {
+        core::slice::from_ref(response)
+    } else {
+        watched
+    }
+}

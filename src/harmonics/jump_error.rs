@@ -1,0 +1,87 @@
+//! The error of a point with exchanged motions, see [`crate::condense::blocks::exchange`]: of forces that jump, and of sticks that ring.
+//!
+//! Where slip ends the force jumps, so that the response errs by about 1/H at least: twice its change with twice the harmonics. That
+//! change may be small by chance, so that half the change from half the harmonics counts, too.
+//!
+//! Where slip reverses the force takes a stick of a part of a ring, of angular frequency ω_r = √(k/m), from one limit fc to the other.
+//! With a structure that pushes by F ≥ fc it comes late by
+//!
+//! > ∫ (f + fc) dt = 2 fc g/ω_r,  g = ((r + 1) sin θ − (r − 1) θ)/2,  cos θ = (r − 1)/(r + 1),  r = F/fc,
+//!
+//! 0 < g ≤ 1, twice in a period, so that the fundamental 4 fc/π of the force changes by g/h_r of itself, h_r = ω_r/ω. Equations
+//! without the harmonic h_r know nothing of it, and neither does one extension of them. Their own forces come late, too, by about a half of
+//! that at H = h_r: the other half is counted, as a change of the slip limit by 1/(2 h_r). A ring is a filter of second order:
+//! beyond it the harmonics of the force fall by two powers more, and their sum with H as H^-3.
+
+use crate::condense::Condensed;
+use crate::error::{Result, try_vec};
+use crate::harmonics::estimate::CONTEXT;
+use crate::harmonics::extended_system::ExtendedSystem;
+use crate::interrupt::Interrupt;
+use crate::problem::Problem;
+use crate::problem::harmonic_balance::HarmonicBalance;
+
+/// Error of a point over its change with twice the harmonics, where it falls as 1/H.
+/// Kind: tuned; measured on: not recorded.
+pub(super) const OF_JUMPS: f64 = 2.0;
+
+/// Share of the change from half the harmonics that an error may be: where it falls as 1/H, it is a whole one.
+/// Kind: tuned; measured on: not recorded.
+pub(super) const OF_HALF: f64 = 0.5;
+
+/// Share of the lateness 1/h_r of the forces that their equations do not have.
+/// Kind: tuned; measured on: not recorded.
+const OF_RING: f64 = 0.5;
+
+/// Highest harmonic over that of a ring from which the lateness falls.
+/// Kind: tuned; measured on: not recorded.
+const BEYOND_RING: f64 = 2.0;
+
+/// The error of a point over its change, and what it errs besides, in the solver's unit: 1 and 0 without exchanged motions. `None` where
+/// it is not found. The system has its matrix factored, and `at` was evaluated last.
+pub(super) fn beyond_extension(
+    system: &mut ExtendedSystem<HarmonicBalance<'_>>,
+    condensed: &Condensed,
+    (at, omega): (&[f64], f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(f64, f64)>> {
+    if !condensed.has_exchanges() {
+        return Ok(Some((1.0, 0.0)));
+    }
+    let late = lateness(system, condensed, (at, omega), interrupt)?;
+    Ok(late.map(|late| (OF_JUMPS, late)))
+}
+
+/// Change of the observed response, in the solver's unit, with the lateness of all forces whose sticks ring; `None` where it is not
+/// found.
+fn lateness(
+    system: &mut ExtendedSystem<HarmonicBalance<'_>>,
+    condensed: &Condensed,
+    (at, omega): (&[f64], f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<f64>> {
+    let n = system.problem.unknowns();
+    let highest = condensed.set().numbers().last().copied().unwrap_or(0) as f64;
+    let mut load = try_vec(n, 0.0, CONTEXT)?;
+    let mut change = try_vec(n + 1, 0.0, CONTEXT)?;
+    let mut sum = 0.0;
+    for c in 0..condensed.coordinates() {
+        let Some(exchange) = condensed.exchange_of(c) else {
+            continue;
+        };
+        if !system.problem.by_slip_limit(c, &mut load) {
+            continue;
+        }
+        let of_ring = exchange.ring / omega;
+        let late = OF_RING / of_ring * (BEYOND_RING * of_ring / highest).min(1.0).powi(3);
+        if !system.solve_for(&load, &mut change[..n], interrupt)? {
+            return Ok(None);
+        }
+        for x in &mut change[..n] {
+            *x = -*x;
+        }
+        let (_, by_motion) = system.problem.observe(at, &change);
+        sum += late * (by_motion + system.problem.observed_by_slip_limit(c)).norm();
+    }
+    Ok(Some(sum))
+}

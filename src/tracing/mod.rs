@@ -1,0 +1,25 @@
+//! The steps of a point of a branch from its prediction to its storage.
+//!
+//! [`branch_tracer`] follows the branch: the continuation predicts and corrects a point; the controller of [`crate::harmonics`]
+//! estimates its error and refines it until it meets the tolerance; the analysis records it; peaks, folds and requested
+//! solutions between it and the point before are located; the controller selects the
+//! harmonics of the next step. Where every contact is linear, [`linear_stretch`] takes the place of the continuation, at the
+//! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. A
+//! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
+//! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`].
+//! [`branch_recorder`] stores points.
+
+mod bifurcations;
+mod branch_points;
+pub(crate) mod branch_recorder;
+mod branch_special_points;
+pub(crate) mod branch_tracer;
+mod cold_start;
+pub(crate) mod inner_ends;
+mod linear_stretch;
+mod requested_points;
+pub(crate) mod resonance_bands;
+pub(crate) mod resonance_grid;
+mod response_kinks;
+mod response_peaks;
+mod retracing;
