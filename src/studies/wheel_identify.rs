@@ -20,7 +20,8 @@ const MOST_IDENTIFICATION_STEPS: usize = 200;
 const IDENTIFIED_TO_SIGMA: f64 = 1e-6;
 const IDENTIFIED_TO: f64 = 1e-13;
 
-/// Excess of χ² over its mean, in its standard deviations, that noise does not explain. Kind: tuned; one of ten thousand is beyond 4.
+/// Excess of χ² over its mean, in its standard deviations, that noise does not explain. Kind: fixed; of noise, one of ten
+/// thousand is beyond 4.
 const CONTRADICTION: f64 = 4.0;
 
 /// Measured modes of a wheel.

@@ -193,8 +193,8 @@ impl Walk<'_> {
         let mut last: Option<LifeStep> = None;
         let mut delta = self.first_length(&at, end);
         let mut halvings = 0;
-        // Steps in turn that were not taken, and the number of those that were, when the first of them was tried.
-        let (mut tries, mut taken) = (0, 0);
+        // Steps that were taken when the last one was tried, and steps in turn that were refused since.
+        let mut refused = (0, 0);
         // The event that lies ahead, once a step has met it, and the cycles at which the motion seems another one.
         let mut met: Option<f64> = None;
         let mut broken: Option<(f64, Doubt)> = None;
@@ -203,23 +203,7 @@ impl Walk<'_> {
         let mut before: Option<(f64, f64)> = None;
         while at.n < end {
             hooks.interrupt().phase(Phase::Continuation, at.n / end)?;
-            if self.found.steps >= self.options.most_steps {
-                return Err(Error::new(
-                    Status::StoppedMaxPoints,
-                    format_args!("the life has {} steps at {} of {end} cycles", self.found.steps, at.n),
-                ));
-            }
-            tries = if self.found.steps == taken { tries + 1 } else { 0 };
-            taken = self.found.steps;
-            if tries > LIFE_TRIES {
-                return Err(Error::new(
-                    Status::StoppedStepTooSmall,
-                    format_args!(
-                        "the life does not go on at {} cycles after {LIFE_TRIES} steps that were refused",
-                        at.n
-                    ),
-                ));
-            }
+            self.may_go_on(&mut refused, at.n, end)?;
             let rest = end - at.n;
             if let Some(event) = met {
                 let (distance, across) = (event - at.n, self.length_across(&at, rest)?);
@@ -299,6 +283,25 @@ impl Walk<'_> {
             broken = broken.and_then(|(other, doubt)| doubt.after(other, step.to.n));
             at = step.to.clone();
             last = Some(step);
+        }
+        Ok(())
+    }
+
+    /// Whether another step may be tried at n cycles; counts those in turn that were refused.
+    fn may_go_on(&self, (taken, refused): &mut (usize, usize), n: f64, end: f64) -> Result<()> {
+        if self.found.steps >= self.options.most_steps {
+            return Err(Error::new(
+                Status::StoppedMaxPoints,
+                format_args!("the life has {} steps at {n} of {end} cycles", self.found.steps),
+            ));
+        }
+        *refused = if self.found.steps == *taken { *refused + 1 } else { 0 };
+        *taken = self.found.steps;
+        if *refused > LIFE_TRIES {
+            return Err(Error::new(
+                Status::StoppedStepTooSmall,
+                format_args!("the life does not go on at {n} cycles after {LIFE_TRIES} steps that were refused"),
+            ));
         }
         Ok(())
     }
