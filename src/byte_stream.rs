@@ -26,7 +26,6 @@ impl<'a> ByteWriter<'a> {
     }
 
     /// A writer that keeps a digest of what is written instead of the bytes.
-    #[must_use]
     pub fn digesting() -> Self {
         Self {
             out: &mut [],
@@ -36,13 +35,11 @@ impl<'a> ByteWriter<'a> {
     }
 
     /// The digest: equal for equal bytes, and by chance alone for others. It is not safe against those who seek them.
-    #[must_use]
     pub fn digest(&self) -> u64 {
         self.digest.unwrap_or(0)
     }
 
     /// Bytes written or counted.
-    #[must_use]
     pub fn position(&self) -> usize {
         self.at
     }
@@ -118,19 +115,16 @@ impl<'a> ByteReader<'a> {
     }
 
     /// Number of bytes read.
-    #[must_use]
     pub fn position(&self) -> usize {
         self.length - self.left.len()
     }
 
     /// Bytes that are left.
-    #[must_use]
     pub fn left(&self) -> usize {
         self.left.len()
     }
 
     /// The error of an entry that cannot have been written.
-    #[must_use]
     pub fn damaged(&self, what: &str) -> Error {
         Error::new(
             Status::Argument,
@@ -281,7 +275,6 @@ const REMAINDERS: [u64; 256] = {
 
 /// Cyclic redundancy check of 64 bits (ECMA-182 as in the format xz): it finds every change within 64 neighbouring bits,
 /// others but for a share of 2⁻⁶⁴.
-#[must_use]
 pub fn checksum(bytes: &[u8]) -> u64 {
     !bytes.iter().fold(!0, |remainder: u64, &byte| {
         (remainder >> 8) ^ REMAINDERS[((remainder ^ u64::from(byte)) & 0xFF) as usize]

@@ -281,7 +281,6 @@ impl Evaluator {
     }
 
     /// Whether sampling leaves an error in the force of `law`.
-    #[must_use]
     pub fn samples(&self, law: &dyn Law) -> bool {
         match law.form() {
             Form::PiecewiseLinear(_) => self.sampling.requested > 0,
@@ -293,7 +292,6 @@ impl Evaluator {
 
     /// Samples per period at which `law` is evaluated on harmonics up to the reduced number `highest`, of `requested`
     /// ones and with a factor of its own number; 0 where it is exact.
-    #[must_use]
     pub fn samples_of(law: &dyn Law, highest: usize, (requested, refinement): (usize, usize)) -> usize {
         let sampling = Sampling {
             requested,

@@ -102,7 +102,6 @@ impl HystereticEvaluator {
     }
 
     /// Whether the memory suits `law` at this number of samples.
-    #[must_use]
     pub fn suits(&self, law: &dyn Hysteretic, samples: usize) -> bool {
         self.signals.directions == law.directions()
             && self.states == law.states()

@@ -217,9 +217,6 @@ impl Sensitivity {
 
     /// Follows the states through the period, and with `sums` adds up the Fourier sums of the derivatives of the
     /// force.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub fn pass(
         &mut self,
         march: &March,

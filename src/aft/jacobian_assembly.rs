@@ -61,9 +61,6 @@ impl Assembly {
 
     /// Adds a piece with its transforms tₙ = (1/2π)∫ e^{−inτ} dτ for the n of the spectrum, and with its anchor at
     /// the time `anchor`. Without a Jacobian the motion at the anchor is a constant of the piece.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub(super) fn add(
         &mut self,
         (set, motion): (&HarmonicSet, &[f64]),
@@ -128,9 +125,6 @@ impl Assembly {
     }
 
     /// Writes the Jacobian, T(S) and the products, and the force.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub(super) fn finish(
         &mut self,
         set: &HarmonicSet,

@@ -109,7 +109,6 @@ impl MemorylessEvaluator {
     }
 
     /// Whether the memory suits `law` at this number of samples.
-    #[must_use]
     pub fn suits(&self, law: &dyn Memoryless, requested: usize) -> bool {
         self.directions == law.directions()
             && self.velocity == law.uses_velocity()

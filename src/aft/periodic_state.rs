@@ -59,9 +59,6 @@ impl ReturnMap {
     }
 
     /// Forms P, Π and the factors from the steps of a march.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub fn form(&mut self, march: &March, samples: usize, interrupt: &Interrupt<'_>) -> Result<()> {
         let s = self.states;
         let of_product = 2 * (s * s * s) as u64;

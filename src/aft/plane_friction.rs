@@ -81,7 +81,6 @@ impl PlaneFrictionEvaluator {
     }
 
     /// Whether the memory suits `law`.
-    #[must_use]
     pub fn suits(&self, law: &dyn PlaneFriction) -> bool {
         self.normal.is_some() == law.normal().is_some()
     }

@@ -180,9 +180,6 @@ impl SlipSession {
     }
 
     /// Adds the panels to a Jacobian over all motions, and returns λ of the first angle.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub fn add_to(&mut self, jacobian: &mut [f64], interrupt: &Interrupt<'_>) -> Result<&[f64]> {
         let (m, d) = (self.set.packed_len(), self.directions);
         self.behind.fill(0.0);

@@ -16,9 +16,6 @@ use crate::interrupt::Interrupt;
 
 impl Assembly {
     /// Evaluates a law without events.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub(super) fn spectral(
         &mut self,
         law: &dyn Spectral,

@@ -123,9 +123,6 @@ impl Toeplitz {
     }
 
     /// Adds T(S) x to a packed force, column by column, without a matrix.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub(super) fn add_product(&self, x: &[f64], force: &mut [f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let m = self.row.len();
         let together = (TOEPLITZ_NUMBERS_TOGETHER / m.max(1)).max(1);

@@ -149,7 +149,6 @@ impl FrequencyCache {
     }
 
     /// How the table of the lowest vibrating harmonic is made along a sweep, and why so.
-    #[must_use]
     pub fn flexibility_way(&self) -> FlexibilityWay {
         self.told
     }
@@ -178,25 +177,21 @@ impl FrequencyCache {
     }
 
     /// Whether tables are made from modes for an estimate.
-    #[must_use]
     pub fn has_modes(&self) -> bool {
         !self.modal_slopes
     }
 
     /// The tables made last.
-    #[must_use]
     pub fn current(&self) -> &[Table] {
         &self.current
     }
 
     /// Whether the table of some harmonic lacks slopes.
-    #[must_use]
     pub fn lacks_slopes(&self) -> bool {
         self.lacks_slopes.contains(&true)
     }
 
     /// Whether that of the i-th harmonic lacks those of the response too, which are then found along a motion with the others.
-    #[must_use]
     pub fn lacks_slopes_of_response(&self, i: usize) -> bool {
         self.lacks_slopes[i] && self.is_modal[i]
     }
@@ -226,7 +221,6 @@ impl FrequencyCache {
     }
 
     /// Their frequency; `None` before the first ones.
-    #[must_use]
     pub fn frequency(&self) -> Option<f64> {
         self.tabulated.map(|(omega, ..)| omega)
     }

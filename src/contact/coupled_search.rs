@@ -56,9 +56,6 @@ fn try_reserve<T>(count: usize) -> Result<Vec<T>> {
 }
 
 /// Empty lists with memory for the normal and tangential pieces of any motion of `set`.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub fn piece_lists(set: &HarmonicSet) -> Result<(Vec<Piece>, Vec<CoupledPiece>)> {
     let closings = most_closings(set);
     // One stick and one slip at most between neighbours of the turning points of both bounds and the ends of
@@ -70,9 +67,6 @@ pub fn piece_lists(set: &HarmonicSet) -> Result<(Vec<Piece>, Vec<CoupledPiece>)>
 }
 
 /// Turning points over a whole turn, also for sets of odd harmonics: a varying load has no such symmetry.
-///
-/// # Errors
-/// `StoppedByCaller`.
 pub(super) fn find(
     search: &mut TurningPoints,
     set: &HarmonicSet,

@@ -85,7 +85,6 @@ impl ForceDerivative {
     };
 
     /// The derivative of tangential forces alone.
-    #[must_use]
     pub fn tangential(tangential: Combination) -> Self {
         Self {
             tangential,
@@ -94,7 +93,6 @@ impl ForceDerivative {
     }
 
     /// The same by a constant that is a factor: `parts` over its value, on one side only where that is zero.
-    #[must_use]
     pub fn by_factor(value: f64, parts: Combination) -> Self {
         if value == 0.0 {
             return Self::ONE_SIDED;
@@ -104,7 +102,6 @@ impl ForceDerivative {
 
     /// The derivative of all forces of a contact whose normal load is max(N₀ − kn·(gap + y), 0), by N₀, kn or the gap:
     /// a change of the load is a change of the normal motion y.
-    #[must_use]
     pub fn of_normal_load(constant: Constant, kn: f64, gap: f64) -> Self {
         let parts = match constant {
             Constant::Preload => Combination {
@@ -168,7 +165,6 @@ impl Combination {
     };
 
     /// −J e: the derivative by the place of the slider along t1 (0) or t2 (1).
-    #[must_use]
     pub fn of_slider(k: usize) -> Self {
         let mut by_slider = [0.0; 2];
         by_slider[k.min(1)] = -1.0;
@@ -179,7 +175,6 @@ impl Combination {
     }
 
     /// The sum of two sets of numbers.
-    #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self {
             motion: self.motion + other.motion,
@@ -193,7 +188,6 @@ impl Combination {
     }
 
     /// Σ factor · part.
-    #[must_use]
     pub fn times(&self, parts: &Self) -> f64 {
         self.motion * parts.motion
             + self.by_tangential * parts.by_tangential

@@ -269,9 +269,6 @@ pub trait VaryingNormalLoad {
     /// Exact pieces of the normal force (slope −∂N/∂y) and of the tangential force over one turn. `motion` is
     /// the packed x, then the packed y. The tangential pieces begin anywhere in the turn and follow each
     /// other without a gap; without friction there are none.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     fn coupled_pieces(
         &self,
         set: &HarmonicSet,
@@ -384,7 +381,6 @@ pub enum TimePart {
 
 impl LawInTime {
     /// A law with events from its first motion on.
-    #[must_use]
     pub fn events(law: impl EventLaw + 'static) -> Self {
         Self {
             stiffness: 0.0,
@@ -394,7 +390,6 @@ impl LawInTime {
     }
 
     /// A smooth law of the form [`Form::Memoryless`].
-    #[must_use]
     pub fn smooth(law: Arc<dyn Law>) -> Self {
         Self {
             stiffness: 0.0,

@@ -42,7 +42,6 @@ impl Onset {
     };
 
     /// A unilateral spring whose closing over its clearance at rest is `pressed`, negative where it is open.
-    #[must_use]
     pub fn of_closing(pressed: f64, motion: Complex64) -> Self {
         let passes = first(pressed.abs(), motion.norm());
         Self {
@@ -54,7 +53,6 @@ impl Onset {
 
     /// The same law with a slider that is dragged from a factor on in one direction, and at another in the opposite
     /// one.
-    #[must_use]
     pub fn with_slider(self, [one, other]: [f64; 2]) -> Self {
         let dragged = one.min(other);
         let on_both_sides = (one - other).abs() <= BOTH * dragged;
@@ -66,7 +64,6 @@ impl Onset {
     }
 
     /// The onset of several laws.
-    #[must_use]
     pub fn earliest(self, other: Self) -> Self {
         Self {
             linear: self.linear.min(other.linear),
@@ -87,7 +84,6 @@ fn first(room: f64, motion: f64) -> f64 {
 
 /// Factors of f = μN and f = −μN for friction f = kt·x in one direction under the load N = N₀ − kn·y: at the static
 /// force `force` and limit μN₀, for a vibration of the force kt·X and of the limit −μkn·Y.
-#[must_use]
 pub fn slider_in_line(force: f64, limit: f64, of_force: Complex64, of_limit: Complex64) -> [f64; 2] {
     [
         first(limit - force, (of_force + of_limit).norm()),
@@ -97,7 +93,6 @@ pub fn slider_in_line(force: f64, limit: f64, of_force: Complex64, of_limit: Com
 
 /// The same in a plane: the least a over the period with |f₀ + a f(τ)| = μN₀ − a·μkn·y(τ), and that half a period
 /// later.
-#[must_use]
 pub fn slider_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of_limit: Complex64) -> [f64; 2] {
     let at = |tau: f64| {
         let turn = Complex64::cis(tau);

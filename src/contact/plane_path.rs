@@ -41,13 +41,11 @@ pub struct PlaneMotion {
 
 impl PlaneMotion {
     /// The harmonics of the signals.
-    #[must_use]
     pub fn set(&self) -> &HarmonicSet {
         &self.set
     }
 
     /// The i-th packed signal.
-    #[must_use]
     pub fn signal(&self, i: usize) -> &[f64] {
         let m = self.set.packed_len();
         &self.signals[i * m..(i + 1) * m]
@@ -270,19 +268,16 @@ impl PlanePath {
     }
 
     /// Length of a panel.
-    #[must_use]
     pub fn spacing(&self) -> f64 {
         self.turn / self.panels as f64
     }
 
     /// −1 where force and motion repeat with opposite sign after the turn, else 1.
-    #[must_use]
     pub fn sign(&self) -> f64 {
         if self.turn < TAU { -1.0 } else { 1.0 }
     }
 
     /// The largest limit at the nodes; 0 where the sides are apart at all of them.
-    #[must_use]
     pub fn largest_limit(&self) -> f64 {
         self.grid.iter().fold(0.0, |m, at| m.max(at.limit))
     }
@@ -330,7 +325,6 @@ impl SlipPanel {
     }
 
     /// Angle at the end.
-    #[must_use]
     pub fn end(&self) -> f64 {
         self.angles[RADAU_STAGES - 1]
     }

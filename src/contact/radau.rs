@@ -115,19 +115,16 @@ impl RadauTables {
     }
 
     /// The i-th point: 0, then the nodes.
-    #[must_use]
     pub fn point(&self, i: usize) -> f64 {
         if i == 0 { 0.0 } else { self.nodes[i - 1] }
     }
 
     /// Derivatives at the points of the polynomial with these values.
-    #[must_use]
     pub fn derivatives(&self, values: &[f64; RADAU_POINTS]) -> [f64; RADAU_POINTS] {
         core::array::from_fn(|i| self.slopes[i].iter().zip(values).map(|(d, v)| d * v).sum())
     }
 
     /// The polynomial with these values at the points, at `at` in [0, 1].
-    #[must_use]
     pub fn interpolate(&self, values: &[f64; RADAU_POINTS], at: f64) -> f64 {
         let (mut above, mut below) = (0.0, 0.0);
         for (i, (value, weight)) in values.iter().zip(&self.barycentric).enumerate() {

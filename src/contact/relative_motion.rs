@@ -93,13 +93,11 @@ impl Frame {
     }
 
     /// The axes t1, t2 and n.
-    #[must_use]
     pub(crate) fn axes(&self) -> &[[f64; 3]; 3] {
         &self.axes
     }
 
     /// The frame of three axes whose products differ by at most `accuracy` from those of orthogonal unit vectors.
-    #[must_use]
     pub(crate) fn of_axes(axes: [[f64; 3]; 3], accuracy: f64) -> Option<Self> {
         let near = |i: usize, j: usize| {
             let product = if i == j { 1.0 } else { 0.0 };
@@ -109,7 +107,6 @@ impl Frame {
     }
 
     /// The same directions in axes that are turned by an angle about the third one.
-    #[must_use]
     pub(crate) fn seen_from(&self, turn: f64) -> Self {
         if turn == 0.0 {
             return *self;

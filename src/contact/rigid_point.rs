@@ -17,7 +17,6 @@ pub struct RigidPoint {
 
 impl RigidPoint {
     /// Motion of the point along a direction of the frame, over the translations `dofs` and the rotations.
-    #[must_use]
     pub(super) fn side_a(&self, frame: &Frame, dofs: [Option<usize>; 3], direction: usize) -> Side {
         let mut side = frame.side(dofs, direction);
         let ([x, y, z], [a, b, c]) = (self.arm, frame.axes()[direction]);

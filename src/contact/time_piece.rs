@@ -20,7 +20,6 @@ pub enum Mode {
 
 impl Mode {
     /// Whether the slider moves.
-    #[must_use]
     pub fn moves_slider(self) -> bool {
         self != Self::Stick
     }
@@ -59,7 +58,6 @@ pub struct TimePiece {
 
 impl TimePiece {
     /// A line of `slope` along the first motion, with `force` at the motion.
-    #[must_use]
     pub fn line(slope: f64, force: f64, motion: [f64; 2]) -> Self {
         Self {
             slope: [[slope, 0.0], [0.0, 0.0]],
@@ -77,7 +75,6 @@ impl TimePiece {
     }
 
     /// Change of the forces by a change of the motion.
-    #[must_use]
     pub fn along(&self, change: [f64; 2]) -> [f64; 2] {
         self.slope.map(|s| s[0] * change[0] + s[1] * change[1])
     }

@@ -4,7 +4,6 @@ use crate::continuation::{Metric, Point};
 
 /// Length of the arc of a circle over a chord, from the cosine of the angle between the directions at its ends: a resonance is
 /// nearly a circle, and a chord in its place costs most of the accuracy.
-#[must_use]
 pub(super) fn arc_length(chord: f64, cosine: f64) -> f64 {
     // Half the angle over its sine.
     let sine = (0.5 * (1.0 - cosine)).clamp(0.0, 1.0).sqrt();

@@ -54,7 +54,6 @@ impl Bracket {
     }
 
     /// Its width.
-    #[must_use]
     pub fn width(&self) -> f64 {
         (self.last.0 - self.other.0).abs()
     }
@@ -66,13 +65,11 @@ impl Bracket {
 
     /// Whether the guess follows from interpolation and is so close to the end found last that its own error, far below its
     /// distance, is rounding. Beside a kink, where interpolation converges slowly, distances do not fall as fast.
-    #[must_use]
     pub fn is_last(&self) -> bool {
         self.is_last_within(BRACKET_CLOSE)
     }
 
     /// The same for another distance, whose power 1.8 is the error that counts as rounding.
-    #[must_use]
     pub fn is_last_within(&self, close: f64) -> bool {
         let guess = self.guess();
         let distance = (guess - self.last.0).abs();
@@ -81,7 +78,6 @@ impl Bracket {
     }
 
     /// The place where the root is expected.
-    #[must_use]
     pub fn guess(&self) -> f64 {
         let ((a, fa), (b, fb)) = (self.last, self.other);
         if let (None, Some(first)) = (self.before, self.first) {

@@ -40,7 +40,6 @@ pub struct Weights {
 impl<'p> Predictor<'p> {
     /// The point `here` and those before it, the newest one first, with their places by a circle of curvature, up to one that
     /// coincides with its neighbour or lies in another direction.
-    #[must_use]
     pub fn by_circle(here: &'p Point, before: &'p [Point], places: &[Option<Place>], metric: Metric) -> Self {
         let [Some((newest, scale)), others @ ..] = places else {
             return Self::alone(here, 1.0 / metric.norm(&here.tangent));
@@ -57,7 +56,6 @@ impl<'p> Predictor<'p> {
     }
 
     /// The same with places by arc length, each arc taken for that of a circle: enough for a few points, and quick.
-    #[must_use]
     pub fn by_arcs(here: &'p Point, before: &'p [Point], metric: Metric) -> Self {
         let mut predictor = Self::alone(here, 1.0 / metric.norm(&here.tangent));
         for point in before.iter().take(MOST_POINTS - 1) {

@@ -118,7 +118,6 @@ impl<'a> ForcedEstimator<'a> {
     }
 
     /// Watches responses: their errors count.
-    #[must_use]
     pub fn watching(mut self, responses: &'a [Response<'a>]) -> Self {
         self.responses = responses;
         self

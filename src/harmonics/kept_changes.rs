@@ -40,9 +40,6 @@ struct Change {
 
 impl KeptChanges {
     /// A packed motion with the guess for its change; `None` where none is known.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn guess(&self, extension: Extension, set: &HarmonicSet, motion: &[f64]) -> Result<Option<Vec<f64>>> {
         let Some(known) = self.changes.iter().find(|known| known.extension == extension) else {
             return Ok(None);
@@ -73,9 +70,6 @@ impl KeptChanges {
     }
 
     /// Keeps the change from one packed motion to another.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn keep(&mut self, extension: Extension, set: &HarmonicSet, (from, to): (&[f64], &[f64])) -> Result<()> {
         let Some(lowest) = lowest(set) else { return Ok(()) };
         let mut known = match self.changes.iter().position(|known| known.extension == extension) {

@@ -83,9 +83,6 @@ impl<'a, E> Resolutions<'a, E> {
     }
 
     /// A point of another resolution in the current harmonics, see [`transferred_point`].
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn transfer(&self, point: &Point, from: usize, others: usize, is_length: bool) -> Result<Point> {
         let (from, to) = (self.levels.at(from)?, self.levels.at(self.index)?);
         transferred_point(point, &from.condensed, &to.condensed, others, is_length)

@@ -6,9 +6,6 @@ use crate::error::{Result, try_vec};
 use num_complex::Complex64;
 
 /// Unknowns in other harmonics, with the `others` numbers after the motions; motions are multiplied by a factor.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn transferred(from: &Condensed, to: &Condensed, v: &[f64], others: usize, factor: f64) -> Result<Vec<f64>> {
     let motions = to.unknowns();
     let mut found = try_vec(motions + others, 0.0, "the harmonics")?;
@@ -20,9 +17,6 @@ pub(crate) fn transferred(from: &Condensed, to: &Condensed, v: &[f64], others: u
 
 /// A point in other harmonics; it need not be a solution there. `others` of its unknowns are no motions; the
 /// parameter counts among them. `is_length`: the observed amplitude is a length.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn transferred_point(
     point: &Point,
     from: &Condensed,

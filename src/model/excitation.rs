@@ -179,13 +179,11 @@ impl Excitation {
     }
 
     /// Whether a force grows with ω².
-    #[must_use]
     pub fn has_unbalance(&self) -> bool {
         self.forces.iter().any(|f| f.per_omega2 && f.value != Complex64::ZERO)
     }
 
     /// Whether one of a harmonic does.
-    #[must_use]
     pub fn has_unbalance_in(&self, harmonic: usize) -> bool {
         let mut own = self.forces.iter().filter(|f| f.harmonic == harmonic);
         own.any(|f| f.per_omega2 && f.value != Complex64::ZERO)
@@ -211,7 +209,6 @@ impl Excitation {
     }
 
     /// The forces in the order in which they were added.
-    #[must_use]
     pub fn forces(&self) -> &[Force] {
         &self.forces
     }

@@ -18,9 +18,6 @@ use num_complex::Complex64;
 const CONTACTS: &str = "the contacts";
 
 /// A copy, allocated fallibly.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
     Ok(Contact {
         kind: contact.kind.clone(),

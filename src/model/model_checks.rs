@@ -35,9 +35,6 @@ impl Model {
 
 impl Model {
     /// For each degree of freedom of the caller whether a contact acts on it.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn felt_by_contacts(&self) -> Result<Vec<bool>> {
         let mut felt = try_vec(self.ndof(), false, "the guess")?;
         for contact in self.contacts() {

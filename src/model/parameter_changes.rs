@@ -127,9 +127,6 @@ impl Model {
     }
 
     /// A copy that keeps bases of its own from now on: what a solve of it prepares, others do not see.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn separate_clone(&self) -> Result<Self> {
         let mut copy = self.try_clone()?;
         copy.kept = self.kept.separate()?;

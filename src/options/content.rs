@@ -21,7 +21,6 @@ pub struct Content {
 impl Content {
     /// The harmonics that count of a guess, harmonic after harmonic of a number for each degree of freedom, and the highest of
     /// them; `counts` tells the degrees of freedom whose motion has an effect, as has the real part of the mean.
-    #[must_use]
     pub fn of(guess: &[Complex64], counts: &[bool]) -> (Self, usize) {
         let size = |(h, row): (usize, &[Complex64])| {
             let felt = row.iter().zip(counts).filter(|(_, counts)| **counts);

@@ -45,7 +45,6 @@ pub struct ForcedOptions<'a> {
 
 impl ForcedOptions<'_> {
     /// Largest numbers of generations and of branches beside the response.
-    #[must_use]
     pub(crate) fn size_of_tree(&self) -> (usize, usize) {
         size_of_tree(self.branch_depth, self.most_branches)
     }

@@ -75,7 +75,6 @@ impl Response<'_> {
     }
 
     /// The response of a run that forces no fundamental: the root of the mean square of the response degree of freedom.
-    #[must_use]
     pub(crate) fn of_no_fundamental() -> Self {
         Self {
             measure: Measure::Rms,

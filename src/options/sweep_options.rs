@@ -45,7 +45,6 @@ impl Default for SweepOptions<'_> {
 
 impl<'a> SweepOptions<'a> {
     /// Those of the first periodic motion.
-    #[must_use]
     pub(crate) fn first(&self) -> TimeOptions<'a> {
         TimeOptions {
             omega: self.omega_start,

@@ -147,9 +147,6 @@ impl Blocks {
     }
 
     /// Copies all blocks.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn copy(&self, values: &mut Vec<f64>) -> Result<()> {
         values.clear();
         try_extend(values, &self.values, "the contact Jacobians")

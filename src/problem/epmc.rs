@@ -229,7 +229,6 @@ impl<'a> Epmc<'a> {
 
     /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
     /// evaluated, in the solver's units.
-    #[must_use]
     pub fn shape(&mut self) -> &[Complex64] {
         let n = self.condensed.ndof();
         let [of_modes, memory] = &mut self.harmonic;

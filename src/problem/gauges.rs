@@ -57,7 +57,6 @@ impl Gauge {
     }
 
     /// Whether the measure depends on a carried harmonic.
-    #[must_use]
     pub fn reads(&self, condensed: &Condensed, i: usize) -> bool {
         let set = condensed.set();
         match self.measure {
@@ -68,7 +67,6 @@ impl Gauge {
     }
 
     /// Σ w x in a harmonic.
-    #[must_use]
     pub fn along(&self, i: usize, x: &[Complex64]) -> Complex64 {
         self.rows[i].iter().map(|(weight, row)| weight * row.along(x)).sum()
     }
@@ -102,7 +100,6 @@ pub struct Seen {
 
 impl Seen {
     /// Amplitude and derivative as a problem observes them: complex where the measure is.
-    #[must_use]
     pub fn observed(&self) -> (Complex64, Complex64) {
         if self.reading.complex.re.is_nan() {
             (self.reading.value.into(), self.slope.into())
@@ -283,7 +280,6 @@ impl<'a> Gauges<'a> {
 
 impl Gauges<'_> {
     /// Position of the harmonic that a gauge measures; `None` where the motion does not have it.
-    #[must_use]
     pub fn harmonic(&self, r: usize) -> Option<usize> {
         let set = self.condensed.set();
         match self.all[r].measure {

@@ -151,7 +151,6 @@ impl HarmonicBalance<'_> {
 }
 
 /// Length of the packed form of the first carried harmonics.
-#[must_use]
 pub fn packed_up_to(set: &HarmonicSet, harmonics: usize) -> usize {
     if harmonics < set.numbers().len() {
         set.offset(harmonics)

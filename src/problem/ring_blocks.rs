@@ -193,9 +193,6 @@ impl RingBlocks {
     }
 
     /// B_p of the means, column-major.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn fill(&self, condensed: &Condensed, wave: usize, matrix: &mut [Complex64]) -> Result<()> {
         let (n, k, m) = (self.sectors, self.coordinates, self.m);
         let order = k * m;

@@ -147,7 +147,6 @@ impl ContactMotion {
 
 impl ContactProducts {
     /// The product with the derivative of the force by a constant.
-    #[must_use]
     pub fn with(&self, derivative: &ForceDerivative) -> f64 {
         self.tangential.times(&derivative.tangential) + self.normal.times(&derivative.normal)
     }

@@ -63,7 +63,6 @@ impl Parameter<'_> {
     }
 
     /// Whether a change of the parameter leaves the matrices of the structure as they are.
-    #[must_use]
     pub(crate) fn keeps_structure(&self) -> bool {
         matches!(self, Self::Force | Self::Contact { .. })
     }

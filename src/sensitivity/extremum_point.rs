@@ -21,9 +21,6 @@ use crate::sensitivity::forced_point::ForcedPoint;
 const EXTREMUM_POINT_STEP: f64 = 1e-4;
 
 /// The matrix B at the point evaluated last, column-major, for an unknown of which a change by 1 changes ω by `unit`.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn extremum_matrix(
     jacobian: &[f64],
     (by_omega, by_motion, slope): (&[f64], &[f64], f64),
@@ -105,9 +102,6 @@ impl ForcedPoint<'_> {
 
 impl Borders {
     /// The same in other harmonics, where the last number belongs to the frequency.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn transfer_with_frequency(&mut self, from: &HarmonicSet, to: &HarmonicSet, motions: usize) -> Result<()> {
         let last = [self.b.pop(), self.c.pop()];
         self.transfer(from, to, motions)?;

@@ -110,9 +110,6 @@ impl Borders {
     }
 
     /// Borders that follow the null vectors, in the sense of those before, so that the condition keeps its sign.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn follow(&mut self, at: &FoldCondition) -> Result<()> {
         // vᵀc = wᵀb = 1 in a fold: both senses are kept.
         self.b = try_copy(&at.w, CONTEXT)?;
@@ -123,9 +120,6 @@ impl Borders {
     }
 
     /// The same in other harmonics.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn transfer(&mut self, from: &HarmonicSet, to: &HarmonicSet, n: usize) -> Result<()> {
         for x in [&mut self.b, &mut self.c] {
             let mut moved = try_vec(n, 0.0, CONTEXT)?;

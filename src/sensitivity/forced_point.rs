@@ -105,15 +105,11 @@ impl<'a> ForcedPoint<'a> {
     }
 
     /// Whether these are the equations of another solution, too.
-    #[must_use]
     pub fn are_of(&self, condensed: &Condensed, samples: usize) -> bool {
         core::ptr::eq(self.condensed, condensed) && self.samples == samples
     }
 
     /// Differentiates a response instead of the amplitude; one without degrees of freedom has the `default` one.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn watching(mut self, (response, default): (&Response<'_>, usize), samples: usize) -> Result<Self> {
         let (condensed, interrupt) = (self.condensed, self.interrupt);
         let one = (core::slice::from_ref(response), default);
@@ -443,9 +439,6 @@ impl<'a> ForcedPoint<'a> {
     }
 
     /// Newton's step at the point of which the adjoint was made last.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn newton_step(&mut self) -> Result<Vec<f64>> {
         let mut step = try_copy(&self.at.values, CONTEXT)?;
         for x in &mut step {

@@ -117,9 +117,6 @@ pub(crate) struct WaveMatrices {
 
 impl WaveMatrices {
     /// The matrix of a harmonic, and those that are no part of it though the wave's matrix has them.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     fn of(&mut self, model: &Model, which: MatrixKind, number: usize) -> Result<&[Csc]> {
         let position = self.known.iter().position(|(a, b, _)| (*a, *b) == (which, number));
         let position = if let Some(position) = position {
@@ -144,9 +141,6 @@ impl WaveMatrices {
 }
 
 /// The product with the whole matrix, which a factor multiplies.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(super) fn with_whole(
     model: &Model,
     condensed: &Condensed,
@@ -167,9 +161,6 @@ pub(super) fn with_whole(
 }
 
 /// The product with the derivative of the matrices by a fixed speed Ω: 2ΩK₁ + ihωG.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(super) fn with_speed(
     model: &Model,
     condensed: &Condensed,

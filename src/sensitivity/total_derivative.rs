@@ -47,13 +47,11 @@ impl<'a> TotalDerivative<'a> {
     }
 
     /// The same with matrices that other results of the same model have made.
-    #[must_use]
     pub fn with_matrices(self, matrices: WaveMatrices) -> Self {
         Self { matrices, ..self }
     }
 
     /// The matrices, for further results of the model.
-    #[must_use]
     pub fn into_matrices(self) -> WaveMatrices {
         self.matrices
     }

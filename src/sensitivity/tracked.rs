@@ -105,9 +105,6 @@ impl Unknowns {
     }
 
     /// Changes their number; the values at the start are 0 then.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn resize(&mut self, n: usize) -> Result<()> {
         self.start = try_vec(n, 0.0, CONTEXT)?;
         self.matrix = square(n)?;

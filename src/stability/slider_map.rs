@@ -310,9 +310,6 @@ impl<'r, T: Number> SliderMap<'r, T> {
 
     /// The map from the states at the begin to those at the end, in which every sector takes the place of the one that it
     /// follows. Velocities are divided by `omega`, and places of sliders multiplied by `scale`; `factor` is that of a turn of the ring.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn matrix(
         &self,
         (omega, scale): (f64, f64),

@@ -51,9 +51,6 @@ pub(super) struct Lapse<'m, 'a> {
 
 impl<'m, 'a> Lapse<'m, 'a> {
     /// The memory, with all contacts sticking.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn stuck(motion: &'m SliderMotion<'a>) -> Result<Self> {
         let ring = motion.ring;
         let (order, all) = (ring.order(), ring.all());

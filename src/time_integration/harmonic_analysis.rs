@@ -137,9 +137,6 @@ impl HarmonicAnalysis {
     }
 
     /// Adds the part of a step up to θ.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub fn add(&mut self, step: &StepPolynomial, theta: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         if theta <= 0.0 {
             return Ok(());

@@ -82,9 +82,6 @@ pub(crate) fn solve_disturbed(
 
 impl TimeResponse {
     /// The response of a run that was stopped before a period was recorded: its harmonics and samples are NaN.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn stopped(model: &Model, options: &TimeOptions<'_>) -> Result<Self> {
         let ndof = model.ndof();
         let nothing = Complex64::new(f64::NAN, f64::NAN);

@@ -54,9 +54,6 @@ const FIRST_MARCH: usize = 8;
 
 /// Checks that memory is available for the largest arrays of shooting, the derivatives of the state and the equations made
 /// of them, before a structure of `order` degrees of freedom is unrolled for it. Stretches of sliders come on top.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn check_shooting(order: usize) -> Result<()> {
     let states = order.saturating_mul(2);
     check_memory::<f64>(states.saturating_mul(states).saturating_mul(2), "shooting in time")

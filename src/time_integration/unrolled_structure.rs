@@ -191,9 +191,6 @@ impl<'s> System<'s> {
     }
 
     /// Adds forces of a harmonic on all degrees of freedom of this sector; the others lag with the wave.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn add_forces(&mut self, structure: &Structure, harmonic: usize, force: &[Complex64]) -> Result<()> {
         for s in 0..self.sectors {
             self.interrupt.check_before(OF_ONE_SECTOR)?;
@@ -235,9 +232,6 @@ impl<'s> System<'s> {
 
     /// The same structure with half the sectors, for motions whose other half moves opposite to them; the number of
     /// sectors is even, forces have odd harmonics and laws are odd.
-    ///
-    /// # Errors
-    /// `OutOfMemory`, `StoppedByCaller`.
     pub fn folded(&self) -> Result<Self> {
         let half = self.sectors / 2;
         let n = half * self.ndof;

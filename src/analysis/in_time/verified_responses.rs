@@ -24,9 +24,6 @@ pub struct VerifiedResponse {
 }
 
 /// The responses of a stored point at ω in time, in the order of the branch.
-///
-/// # Errors
-/// `OutOfMemory`, `StoppedByCaller`.
 pub(crate) fn verified(
     (model, branch, point): (&Model, &Branch, usize),
     omega: f64,

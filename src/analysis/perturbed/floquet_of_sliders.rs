@@ -69,9 +69,6 @@ fn sliders_of(model: &Model) -> Result<Option<(Vec<&Contact>, Sliders)>> {
 }
 
 /// Whether a model can be computed on modes and sliders.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn are_sliders(model: &Model) -> Result<bool> {
     let structure = model.structure();
     let Some((contacts, _)) = sliders_of(model)? else {

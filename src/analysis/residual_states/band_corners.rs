@@ -30,9 +30,6 @@ pub(crate) const BAND_CORNERS_DISTANCES: [f64; 2] = [3.0, 10.0];
 ///
 /// `places` are contact and direction of each slider and whether it has a limit, in the order of the signs. `of_point` are the sliders
 /// that stick at the point, with the state there, where all contacts are linear; with others and many sliders there are no corners.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn corners(
     places: &[((usize, usize), bool)],
     of_point: Option<(&HeldState, &[StuckSlider])>,

@@ -158,9 +158,6 @@ impl<'a> Starts<'a> {
     }
 
     /// The corners of the sliders, see [`corners`].
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn corners(&self, of_point: Option<(&HeldState, &[StuckSlider])>, starts: usize) -> Result<Vec<Vec<f64>>> {
         let mut places = Vec::new();
         for slider in &self.sliders {

@@ -144,9 +144,6 @@ impl<'a> HeldSliders<'a> {
     }
 
     /// The distances over which sliders can be dragged: μN/kt.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn distances(&self, state: &HeldState) -> Result<Vec<f64>> {
         let mut units = try_vec(self.sliders.len(), 0.0, CONTEXT)?;
         for (unit, slider) in units.iter_mut().zip(&self.sliders) {

@@ -79,9 +79,6 @@ impl Signals<'_> {
 
 impl Held<'_> {
     /// The conditions of all contacts.
-    ///
-    /// # Errors
-    /// `OutOfMemory`, `StoppedByCaller`.
     pub fn margins(&self, interrupt: &Interrupt<'_>) -> Result<Vec<Margin>> {
         let mut margins = Vec::new();
         for of_contact in self.sliders.chunk_by(|a, b| a.contact == b.contact) {

@@ -111,9 +111,6 @@ pub struct Condensed {
 
 impl Condensed {
     /// The same model with other blocks, one for each harmonic of `set`.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn with_blocks(&self, set: HarmonicSet, blocks: Vec<HarmonicBlock>) -> Result<Self> {
         const CONTEXT: &str = "the matrices per harmonic";
         Ok(Self {
@@ -292,7 +289,6 @@ impl Condensed {
     }
 
     /// The wheel as a tuned one with differences of low rank, where its factors are made so.
-    #[must_use]
     pub(crate) fn tuned(&self) -> Option<&Arc<TunedPlan>> {
         self.tuned.as_ref()
     }
@@ -313,9 +309,6 @@ impl Condensed {
     }
 
     /// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn stiffness_with_real_kappa(&self, i: usize) -> Result<Csc> {
         let block = &self.blocks[i];
         let mut reference = block.reference.try_clone()?;

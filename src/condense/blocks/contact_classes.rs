@@ -49,14 +49,12 @@ impl ContactClasses {
     }
 
     /// Number of contacts without force.
-    #[must_use]
     pub fn inert(&self) -> usize {
         self.inert
     }
 
     /// Position of the first direction of a linear contact in [`crate::condense::HarmonicBlock::linear_rows`]; the
     /// others follow.
-    #[must_use]
     pub fn linear(&self, contact: usize) -> Option<usize> {
         self.linear.binary_search(&(contact, 0)).ok()
     }

@@ -82,7 +82,6 @@ pub struct TiedValues {
 
 impl HarmonicBlock {
     /// The way to its flexibility, as far as it is known before a sweep.
-    #[must_use]
     pub fn flexibility_way(&self) -> FlexibilityWay {
         match &self.source {
             Some(Source::Modes(_)) => FlexibilityWay::Modes,
@@ -92,9 +91,6 @@ impl HarmonicBlock {
     }
 
     /// A row over the independent degrees of freedom as one over the coordinates.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn row(&self, row: &Row) -> Result<MotionRow> {
         match &self.view {
             Some(view) => view.row(row),
@@ -103,15 +99,11 @@ impl HarmonicBlock {
     }
 
     /// Whether the matrices are those of another block, in the same memory.
-    #[must_use]
     pub fn shares_matrices(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.reference, &other.reference) && Arc::ptr_eq(&self.mass, &other.mass)
     }
 
     /// K_h of the structure itself, without any spring and without the loss in a complex stiffness, at the entries of the pattern.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn own_stiffness(&self, model: &Model) -> Result<Vec<Complex64>> {
         let Some(view) = &self.view else {
             let structure = model.structure();
@@ -131,7 +123,6 @@ impl HarmonicBlock {
     }
 
     /// Whether a force acts at any frequency.
-    #[must_use]
     pub fn has_force(&self) -> bool {
         let unbalance = self.unbalance.iter().flatten();
         self.force.iter().chain(unbalance).any(|f| *f != Complex64::ZERO)

@@ -38,52 +38,42 @@ impl ModelCache {
     }
 
     /// Slots for extended problems, so close that an estimate carries few harmonics more than it needs.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn for_estimates() -> Result<Self> {
         let geometric = (0..EXTENDED_SLOTS).map(|k| (EXTENDED_FIRST as f64 * EXTENDED_RATIO.powi(k)) as usize);
         Self::new((0..EXTENDED_FIRST).chain(geometric))
     }
 
     /// The numbers of harmonics.
-    #[must_use]
     pub fn numbers(&self) -> impl DoubleEndedIterator<Item = usize> + ExactSizeIterator + '_ {
         self.slots.iter().map(|slot| slot.0)
     }
 
     /// The first slot with a number of harmonics that is not below one; the number of slots where there is none.
-    #[must_use]
     pub fn slot_with(&self, highest: usize) -> usize {
         self.slots.partition_point(|slot| slot.0 < highest)
     }
 
     /// Number of slots.
-    #[must_use]
     pub fn slots(&self) -> usize {
         self.slots.len()
     }
 
     /// Highest harmonic of a slot.
-    #[must_use]
     pub fn highest(&self, slot: usize) -> usize {
         self.slots[slot].0
     }
 
     /// Any model that was made before.
-    #[must_use]
     pub fn any(&self) -> Option<&Resolution> {
         self.slots.iter().find_map(|slot| slot.1.get())
     }
 
     /// The model of the slot of a number of harmonics, if it was made.
-    #[must_use]
     pub fn made(&self, highest: usize) -> Option<&Resolution> {
         self.slots.get(self.slot_with(highest))?.1.get()
     }
 
     /// The model with the most harmonics that was made for a slot below one.
-    #[must_use]
     pub fn below(&self, slot: usize) -> Option<&Resolution> {
         self.slots[..slot].iter().rev().find_map(|slot| slot.1.get())
     }

@@ -24,9 +24,6 @@ pub(crate) type ContactDirection = (usize, usize);
 
 /// Assigns the directions of active contacts to unique relative coordinates. Returns the directions, contact after
 /// contact, and for each coordinate the (contact, direction) that represents it.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn assign_coordinates(
     model: &Model,
     active: &[usize],

@@ -26,13 +26,11 @@ impl From<(f64, f64)> for Sweep {
 
 impl Sweep {
     /// Whether it has more than one frequency.
-    #[must_use]
     pub fn is_range(self) -> bool {
         self.start.to_bits() != self.stop.to_bits()
     }
 
     /// Its lower end, its middle and its upper end in harmonic `number`.
-    #[must_use]
     pub fn of_harmonic(self, number: usize) -> [f64; 3] {
         let (low, high) = (self.start.min(self.stop), self.start.max(self.stop));
         [low, 0.5 * (low + high), high].map(|omega| omega * number as f64)

@@ -52,7 +52,6 @@ pub struct LoadedLaw<'a> {
 
 impl<'a> LoadedLaw<'a> {
     /// A law whose load does not depend on the frequency.
-    #[must_use]
     pub fn plain(law: &'a dyn Law) -> Self {
         Self {
             law,
@@ -121,7 +120,6 @@ impl TiedLoad {
     }
 
     /// The contact under its load at an angular frequency.
-    #[must_use]
     pub fn contact_at(&self, omega: f64) -> Contact {
         self.description.at(&self.contact, self.p * omega)
     }

@@ -170,7 +170,6 @@ impl DynamicStiffness {
     }
 
     /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
-    #[must_use]
     pub fn should_refine(&self, condensed: &Condensed, i: usize, columns: &[Complex64]) -> bool {
         let entries = condensed.blocks()[i].reference.values.len();
         let count = columns.len() / condensed.ndof();

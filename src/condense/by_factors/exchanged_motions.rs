@@ -97,7 +97,6 @@ impl Condensed {
     }
 
     /// Whether some motion is exchanged.
-    #[must_use]
     pub fn has_exchanges(&self) -> bool {
         self.exchanges.iter().any(Option::is_some)
     }

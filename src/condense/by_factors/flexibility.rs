@@ -35,9 +35,6 @@ impl Table {
     }
 
     /// Memory for so many numbers.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn of_size(size: usize) -> Result<Self> {
         Ok(Self {
             value: try_vec(size, Complex64::ZERO, CONTEXT)?,

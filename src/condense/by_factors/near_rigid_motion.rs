@@ -26,9 +26,6 @@ const RANK: f64 = 1e-11;
 
 /// Corrects the motion `x` of the i-th carried harmonic at `omega` so that near-rigid coordinates have their share of
 /// the relative motions `y`. `workspace` has the factors of this harmonic.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 pub fn correct(
     workspace: &mut Workspace,
     condensed: &Condensed,

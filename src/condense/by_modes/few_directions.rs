@@ -56,9 +56,6 @@ pub(crate) struct FewDirections {
 
 /// Damping C, all matrices on one pattern, as αM + βK and few directions; `None` where they are more. First α and β are
 /// those that were given, then those by which most entries vanish.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn few_directions(
     pattern: &Csc,
     matrices: [&[Complex64]; 3],
@@ -91,9 +88,6 @@ impl FewDirections {
     }
 
     /// VᴴRV for a basis V, from the rows DᴴV, direction after direction in each of `order` columns.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn on_basis(&self, seen: &[Complex64], order: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
         let count = self.directions.len();
         let mut weighted = try_copy(seen, CONTEXT)?;

@@ -81,7 +81,6 @@ pub struct ModalRows {
 }
 
 /// Terms of a series for a sum within a relative tolerance; none for 0: all modes are summed.
-#[must_use]
 pub fn terms_within(tolerance: f64) -> usize {
     if tolerance > 0.0 {
         (((MODAL_ROWS_SHARE * tolerance).ln() / STIFF.ln()).ceil() as usize).min(MOST_TERMS)
@@ -103,9 +102,6 @@ impl ModalRows {
     }
 
     /// The rows of the i-th carried harmonic with this row of the response, and with those of the springs or without them.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn with_rows(
         (condensed, i): (&Condensed, usize),
         observed: &MotionRow,
@@ -151,9 +147,6 @@ impl ModalRows {
     }
 
     /// The rows of these terms among those known, or new ones, which are then known.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn shared(at: (&Condensed, usize, usize), source: Source, known: &mut Vec<Arc<Self>>) -> Result<Arc<Self>> {
         if let Some(rows) = known.iter().find(|rows| rows.are_of(&at.0.blocks()[at.1], &source)) {
             return Ok(Arc::clone(rows));
@@ -220,9 +213,6 @@ impl ModalRows {
     }
 
     /// The adjoint shape of each term along a force.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn forced(&self, force: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut found = Vec::new();
         if force.iter().any(|f| *f != Complex64::ZERO) {
@@ -244,9 +234,6 @@ impl ModalRows {
 
     /// out ← the sum over the stiff modes by series of so many terms, 0 where all modes are to be summed, and slope ← its
     /// derivative, if there is memory for one; returns the first mode that is not in it.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn add_stiff(
         &self,
         at: Denominator,

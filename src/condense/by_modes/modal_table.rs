@@ -148,7 +148,6 @@ impl ModalTable {
     }
 
     /// The rows of its wave.
-    #[must_use]
     pub fn rows(&self) -> Arc<ModalRows> {
         Arc::clone(&self.rows)
     }

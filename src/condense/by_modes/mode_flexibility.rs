@@ -218,37 +218,31 @@ impl ModeFlexibility {
     }
 
     /// (B x)ᴴ Z⁻¹ Wᴴ of one contact, and the motion of the reference degree of freedom under a unit force of it.
-    #[must_use]
     pub fn gauge_of_column(&self, coordinate: usize) -> [Complex64; 2] {
         self.gauge.of_columns[coordinate]
     }
 
     /// (B x)ᴴ ∂x, and ∂x of the reference degree of freedom: by frequency, then by damping ratio.
-    #[must_use]
     pub fn gauge_of_rates(&self) -> [[Complex64; 2]; 2] {
         self.gauge.of_rates
     }
 
     /// Relative motions of the contacts: of x, ∂x/∂ω and ∂x/∂D.
-    #[must_use]
     pub fn relative(&self, row: usize) -> [Complex64; 3] {
         [0, 1, 2].map(|k| self.relative[k * self.coordinates + row])
     }
 
     /// Relative motions W Z⁻¹ Wᴴ of the contacts under a unit force on each, column after column.
-    #[must_use]
     pub fn value(&self) -> &[Complex64] {
         &self.value
     }
 
     /// x of all degrees of freedom; of the modes where [`Self::is_of_modes`].
-    #[must_use]
     pub fn x(&self) -> &[Complex64] {
         &self.x
     }
 
     /// Whether the harmonic solved last has its motion in the modes of its wave.
-    #[must_use]
     pub fn is_of_modes(&self) -> bool {
         let sums = self.by_sums.and_then(|i| self.sums[i].as_ref());
         sums.is_some_and(|(sums, _)| !sums.is_fundamental())

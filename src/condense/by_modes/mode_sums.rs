@@ -130,9 +130,6 @@ impl ModeSums {
     }
 
     /// Memory for it.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn work(&self) -> Result<SumWork> {
         let (rows, n, coordinates) = (self.rows.count(), self.rows.terms(), self.rows.coordinates());
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);

@@ -68,9 +68,6 @@ const MOST_CONDITION: f64 = 1e4;
 const MOST_CHANGE: f64 = 1e-6;
 
 /// The poles of the i-th carried harmonic, or why it has none.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn poles(
     condensed: &Condensed,
     i: usize,

@@ -75,9 +75,6 @@ pub struct SharedWaves {
 
 impl SharedWaves {
     /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`].
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn attach(&self, model: &Model, mut condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Condensed> {
         let mut waves = self.waves.take();
         let attached = condensed.attach_modes(model, &mut waves, interrupt);
@@ -86,9 +83,6 @@ impl SharedWaves {
     }
 
     /// The modes of the i-th carried harmonic, as [`WaveCache::of`].
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn of(&self, model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Found> {
         let mut waves = self.waves.take();
         let found = waves.of(model, condensed, i, interrupt);
@@ -97,9 +91,6 @@ impl SharedWaves {
     }
 
     /// The rows of the contacts in the modes of a wave, as [`ModalRows::shared`].
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn rows(&self, at: (&Condensed, usize, usize), source: Source) -> Result<Arc<ModalRows>> {
         let mut known = self.rows.take();
         let rows = ModalRows::shared(at, source, &mut known);
@@ -125,15 +116,11 @@ impl WaveCache {
     }
 
     /// Whether no wave has modes or poles.
-    #[must_use]
     pub fn is_refused(&self) -> bool {
         self.has_no_modes && self.without_poles.is_some()
     }
 
     /// The modes of the i-th carried harmonic, or where damping couples them its poles, or why it has none.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn of(&mut self, model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Found> {
         let block = &condensed.blocks()[i];
         if block.number == 0 {
@@ -244,9 +231,6 @@ impl WaveCache {
 }
 
 /// Whether the flexibility of the waves of a structure is a sum over modes along a branch, unless a contact is near-rigid.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn have_modes(model: &Model) -> Result<bool> {
     if model.structure().ndof() > ALL_UP_TO || has_other_terms(model) {
         return Ok(false);
@@ -256,9 +240,6 @@ pub(crate) fn have_modes(model: &Model) -> Result<bool> {
 }
 
 /// Whether a sweep with so many harmonics, or more, takes all modes of a structure that is too large for them in general.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn are_all_modes_wanted(model: &Model, harmonics: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = model.structure().ndof();
     if n > ALL_BESIDE_DEAR_FACTORS_UP_TO || has_other_terms(model) || model.structure().whole_loss_factor()?.is_none() {

@@ -75,9 +75,6 @@ fn of_factors(entries: usize, n: usize) -> f64 {
 }
 
 /// Whether all modes of a matrix with this pattern take less time than the factors of so many harmonics along a range.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<bool> {
     let n = pattern.cols;
     let of_factors = of_factors(entries_by_degrees(pattern)?, n);
@@ -86,9 +83,6 @@ pub(crate) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<b
 
 /// Whether tables of a wheel's flexibility take less time from the waves of the tuned wheel than by factors of all sectors, by their
 /// multiplications.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn is_tuned_quicker(plan: &TunedPlan, blocks: &[HarmonicBlock]) -> Result<bool> {
     let Some(first) = blocks.first() else { return Ok(false) };
     let (sectors, n) = (plan.basis.sectors, plan.basis.order);

@@ -65,9 +65,6 @@ impl Certificate {
 
 /// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it; that up to the first
 /// frequency alone at which it exceeds `enough`. The residuals at that one are appended to `residuals`, see [`residual`].
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn certificate(
     (block, view): (&HarmonicBlock, &ReducedView),
     loss_factor: f64,

@@ -103,9 +103,6 @@ impl TunedBasis {
     }
 
     /// D of a matrix of all sectors.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn of(&self, a: &Csc, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
         let (sectors, n, r) = (self.sectors, self.order, self.rank);
         let all = sectors * r;

@@ -141,9 +141,6 @@ impl TunedPlan {
     }
 
     /// The means around the ring of the i-th block as the sum of its terms with these factors.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn means(&self, i: usize, factors: &[Complex64; TUNED_TERMS]) -> Result<Vec<Complex64>> {
         let mut sum = try_vec(self.ring(i).kinds(), Complex64::ZERO, CONTEXT)?;
         self.add_terms((i, factors), |matrix| &matrix.means, &mut sum);

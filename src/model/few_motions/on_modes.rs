@@ -117,9 +117,6 @@ impl ShapesOfWaves {
 }
 
 /// Independent degrees of freedom on which contacts act, ascending.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn degrees_of_contacts(model: &Model) -> Result<Vec<usize>> {
     let structure = model.structure();
     let mut moves = try_vec(structure.ndof(), false, CONTEXT)?;
@@ -143,9 +140,6 @@ fn is_own_mirror(structure: &Structure, diameter: usize) -> bool {
 }
 
 /// Amplitudes of the forces on the independent degrees of freedom, harmonic by harmonic.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn forces_of_harmonics(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
     let mut found: Vec<(usize, Vec<Complex64>)> = Vec::new();
     for f in model.excitation().forces() {
@@ -238,9 +232,6 @@ impl OnModes {
     }
 
     /// The forces of `model` on the coordinates of this sector: harmonics and amplitudes, all coordinates each.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn forces(&self, model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
         let mut found = forces_of_harmonics(model)?;
         for (harmonic, force) in &mut found {
@@ -253,9 +244,6 @@ impl OnModes {
     }
 
     /// Harmonics of the coordinates from those of the independent degrees of freedom, harmonic by harmonic.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn coordinates(&self, n: usize, harmonics: &[Complex64]) -> Result<Vec<Complex64>> {
         let order = self.model.structure().ndof();
         let mut found = try_vec(harmonics.len() / n * order, Complex64::ZERO, CONTEXT)?;
@@ -269,9 +257,6 @@ impl OnModes {
     }
 
     /// Harmonics of the independent degrees of freedom from those of the coordinates.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn motion(&self, n: usize, coordinates: &[Complex64]) -> Result<Vec<Complex64>> {
         let order = self.model.structure().ndof();
         let mut found = try_vec(coordinates.len() / order * n, Complex64::ZERO, CONTEXT)?;

@@ -30,9 +30,6 @@ impl MotionRow {
     }
 
     /// The row of the motion under a force: xᴴ for a column x.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn adjoint(column: &SparseVector) -> Result<Self> {
         let mut terms = Vec::new();
         for (p, z) in column {
@@ -47,7 +44,6 @@ impl MotionRow {
     }
 
     /// r·x
-    #[must_use]
     pub fn along(&self, x: &[Complex64]) -> Complex64 {
         self.0.iter().map(|&(p, a)| a * x[p]).sum()
     }
@@ -64,7 +60,6 @@ pub enum Basis {
 
 impl Basis {
     /// The columns of a real basis; none of a complex one.
-    #[must_use]
     pub fn into_real(self) -> Vec<f64> {
         match self {
             Self::Real(v) => v,
@@ -73,7 +68,6 @@ impl Basis {
     }
 
     /// The columns of a complex basis; none of a real one.
-    #[must_use]
     pub fn into_complex(self) -> Vec<Complex64> {
         match self {
             Self::Complex(v) => v,
@@ -89,7 +83,6 @@ impl Basis {
     }
 
     /// Bytes that it takes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         match self {
             Self::Real(v) => size_of_val(&v[..]),
@@ -190,13 +183,11 @@ impl ReducedView {
     }
 
     /// Matrices on the basis.
-    #[must_use]
     pub fn pencil(&self) -> &ReducedPencil {
         &self.wave.pencil
     }
 
     /// Damping between two coordinates.
-    #[must_use]
     pub fn damping(&self, i: usize, j: usize) -> Complex64 {
         let pencil = self.pencil();
         match &pencil.damping {
@@ -207,9 +198,6 @@ impl ReducedView {
     }
 
     /// A row over the coordinates with the same motion as one over the degrees of freedom.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn row(&self, row: &Row) -> Result<MotionRow> {
         let mut terms = Vec::new();
         for (k, z) in self.product(&row.iter().flatten().copied())?.into_iter().enumerate() {
@@ -232,9 +220,6 @@ impl ReducedView {
     }
 
     /// Coordinates of an input, in which everything of a conjugated wave is that of the wave itself.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn coordinates(&self, input: &SparseVector) -> Result<Vec<Complex64>> {
         let mut found = self.product(&input.iter().map(|&(p, z)| (p, self.turned(z).conj())))?;
         for z in &mut found {
@@ -264,9 +249,6 @@ impl ReducedView {
     }
 
     /// Motion of all independent degrees of freedom, x = V q.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn expand(&self, q: &[Complex64], x: &mut [Complex64]) -> Result<()> {
         let order = self.pencil().order();
         let mut turned = try_vec(order, Complex64::ZERO, CONTEXT)?;
@@ -309,16 +291,12 @@ pub struct KeptWaves(Arc<Mutex<Vec<Arc<ReducedWave>>>>);
 
 impl KeptWaves {
     /// The wave of a key.
-    #[must_use]
     pub fn find(&self, key: WaveKey) -> Option<Arc<ReducedWave>> {
         let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waves.iter().find(|wave| wave.key == key).map(Arc::clone)
     }
 
     /// Keeps a wave instead of the one with its key.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn keep(&self, wave: &Arc<ReducedWave>) -> Result<()> {
         let mut waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waves.retain(|kept| kept.key != wave.key);
@@ -328,9 +306,6 @@ impl KeptWaves {
     }
 
     /// The same waves in a list of its own.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn separate(&self) -> Result<Self> {
         let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut own = Vec::new();
@@ -341,7 +316,6 @@ impl KeptWaves {
     }
 
     /// Bytes of all bases.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waves.iter().map(|wave| wave.basis.bytes()).sum()

@@ -36,9 +36,6 @@ impl ShapeBasis {
     }
 
     /// M, C or K on the shapes.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn projected(&self, which: MatrixKind, a: &Csc, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let order = self.columns.len() / self.n;
         let mut entries = Vec::new();
@@ -72,9 +69,6 @@ impl ShapeBasis {
 
     /// Coordinates of the motion in the space of the shapes that is next to a motion; `held` has the degrees of freedom
     /// of the contacts.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn coordinates(
         &self,
         (mass, held): (&Csc, &[usize]),

@@ -112,9 +112,6 @@ impl StuckShapes {
     }
 
     /// The shapes with the first `modal` modal ones, these times `scale`, and the static ones orthogonal to them.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub fn basis(&self, held: &[usize], modal: usize, scale: f64, interrupt: &Interrupt<'_>) -> Result<ShapeBasis> {
         let n = self.n;
         let modes = &self.modal[..modal * n];

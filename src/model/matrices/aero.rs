@@ -66,13 +66,11 @@ impl Structure {
     }
 
     /// Whether aerodynamic forces act.
-    #[must_use]
     pub fn has_aero(&self) -> bool {
         self.aero().iter().any(Option::is_some)
     }
 
     /// Whether aerodynamic forces per displacement act.
-    #[must_use]
     pub fn has_aero_stiffness(&self) -> bool {
         self.aero()[AeroForm::Displacement as usize].is_some()
     }

@@ -26,7 +26,6 @@ impl Structure {
     /// Whether the stiffness is complex and not Hermitian, but symmetric, so that what is not Hermitian in it dissipates. A
     /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror, and where that of −d was given,
     /// which is then the transpose; of real sectors without symmetry it is the conjugate.
-    #[must_use]
     pub fn has_complex_stiffness(&self) -> bool {
         let blocks = &self.blocks[MatrixKind::Stiffness as usize];
         if self.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
@@ -69,9 +68,6 @@ impl Structure {
 
     /// Loss factor of the whole stiffness: the one that was given, and η of a complex stiffness H(1 + iη) with a Hermitian H. `None`
     /// where a complex stiffness dissipates in another form.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn whole_loss_factor(&self) -> Result<Option<f64>> {
         if !self.has_complex_stiffness() {
             return Ok(Some(self.loss_factor()));

@@ -52,14 +52,12 @@ impl Structure {
     }
 
     /// Signed nodal diameter h·EO mod N of a harmonic of the wave, −N/2 < d ≤ N/2.
-    #[must_use]
     pub fn diameter_of(&self, harmonic: usize) -> i64 {
         self.signed_diameter(self.residue(harmonic as i64) as i64)
     }
 
     /// The lowest harmonic above 0 in which all sectors move alike: n·EO is a multiple of N only for multiples n of
     /// it. 1 for a plain structure.
-    #[must_use]
     pub fn in_step(&self) -> usize {
         let (mut divisor, mut rest) = (self.sectors(), self.residue(1));
         while rest != 0 {
@@ -75,7 +73,6 @@ impl Structure {
     }
 
     /// e^{−2πi·diameter·offset/N}: the same for the wave of `diameter` waves per turn.
-    #[must_use]
     pub fn wave_phase(&self, diameter: i64, offset: i64) -> Complex64 {
         let n = self.sectors() as i128;
         self.lag((i128::from(diameter) * i128::from(offset)).rem_euclid(n) as usize)
@@ -212,9 +209,6 @@ impl Structure {
     }
 
     /// The matrix −A of the aerodynamic influence in a wave, on the left-hand side; `None` without influence.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn aero_of_wave(&self, form: AeroForm, wave: Wave) -> Result<Option<Csc>> {
         match wave {
             Wave::Harmonic(h) => self.aero_matrix(form, self.residue(h as i64), h == 0),
@@ -342,7 +336,6 @@ impl Structure {
     }
 
     /// Entry (p, p) of the matrix of a harmonic, without its assembly and without Rayleigh damping.
-    #[must_use]
     pub fn wave_diagonal(&self, which: MatrixKind, harmonic: usize, p: usize) -> Complex64 {
         let blocks = &self.blocks[which as usize];
         let residue = self.residue(harmonic as i64);

@@ -44,7 +44,6 @@ impl DegreeMap {
     }
 
     /// Whether another map has the same independent degrees of freedom, with the same images.
-    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         self.given == other.given
             && match (&self.images, &other.images) {
@@ -164,9 +163,6 @@ impl DegreeMap {
     }
 
     /// The same map with `count` independent degrees of freedom behind all others.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn extended(&self, count: usize) -> Result<Self> {
         let Some(images) = self.images.as_deref() else {
             return Ok(Self::identity(self.given + count));
@@ -179,9 +175,6 @@ impl DegreeMap {
 
     /// The map onto `order` other independent degrees of freedom, the first of which are the given old ones; the images of
     /// the others are empty.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn retaining(&self, held: &[usize], order: usize) -> Result<Self> {
         let mut start = try_vec(1, 0, CONTEXT)?;
         let mut terms = Vec::new();
@@ -216,19 +209,16 @@ impl DegreeMap {
     }
 
     /// Degrees of freedom as the caller numbers them.
-    #[must_use]
     pub fn given(&self) -> usize {
         self.given
     }
 
     /// Independent degrees of freedom.
-    #[must_use]
     pub fn independent(&self) -> usize {
         self.images.as_ref().map_or(self.given, |images| images.origin.len())
     }
 
     /// Whether every degree of freedom is independent.
-    #[must_use]
     pub fn is_identity(&self) -> bool {
         self.images.is_none()
     }
@@ -265,14 +255,12 @@ impl DegreeMap {
     }
 
     /// Whether a degree of freedom does not move.
-    #[must_use]
     pub fn is_fixed(&self, dof: usize) -> bool {
         self.images.as_ref().is_some_and(|images| images.fixed[dof])
     }
 
     /// The number of a degree of freedom among the independent ones; `None` for a fixed one and for one on the right
     /// face.
-    #[must_use]
     pub fn number(&self, dof: usize) -> Option<usize> {
         match self.images.as_deref() {
             None => Some(dof),
@@ -285,7 +273,6 @@ impl DegreeMap {
     }
 
     /// The caller's number of an independent degree of freedom.
-    #[must_use]
     pub fn origin(&self, independent: usize) -> usize {
         match self.images.as_deref() {
             None => independent,

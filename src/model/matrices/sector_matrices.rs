@@ -13,9 +13,6 @@ const CONTEXT: &str = "the matrices of the sector";
 pub(crate) type Entries = Vec<(usize, usize, Complex64)>;
 
 /// The blocks of a matrix of the sector. Its own block has the symmetry of the matrix exactly.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blocks> {
     // A block per pair of sectors: rows and columns in the same one, in this and the next, in the next and this.
     let which = |row: i64, column: i64| match (row, column) {
@@ -64,9 +61,6 @@ pub(crate) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blo
 
 /// Entries of a matrix of sector 0, given for all of its degrees of freedom, over the independent ones of this sector and, behind
 /// them, of the next.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn of_both_sectors(map: &DegreeMap, a: &Csc) -> Result<Entries> {
     let n = map.independent();
     let mut count = 0;
@@ -125,9 +119,6 @@ fn adjoint(a: &Csc) -> Result<Csc> {
 }
 
 /// Rows and columns of a matrix on the independent degrees of freedom of `old` that are independent in `new`, too.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &impl Columns) -> Result<Csc> {
     let n = new.independent();
     let number = |p: usize| new.number(old.origin(p));
@@ -143,9 +134,6 @@ pub(crate) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &impl Columns) -> 
 }
 
 /// Rows and columns of the independent degrees of freedom of a matrix that is given for all.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn of_independent(map: &DegreeMap, a: Csc) -> Result<Csc> {
     if map.is_identity() {
         return Ok(a);

@@ -48,7 +48,6 @@ impl SectorMotion {
     }
 
     /// Row over the independent degrees of freedom, where the sector at an offset moves `phase` times as this one.
-    #[must_use]
     pub fn row(&self, phase: impl Fn(i64) -> Complex64) -> Row {
         self.terms
             .map(|term| term.map(|t| (t.dof, phase(t.sector) * t.coefficient)))
@@ -56,7 +55,6 @@ impl SectorMotion {
 
     /// Row over the degrees of freedom of all sectors of a ring; `place` returns the number of one, from its number
     /// in its sector and the offset of that sector.
-    #[must_use]
     pub fn ring_row(&self, place: impl Fn(usize, i64) -> usize) -> [Option<(usize, f64)>; MOTION_TERMS] {
         self.terms
             .map(|term| term.map(|t| (place(t.dof, t.sector), t.coefficient)))
@@ -127,7 +125,6 @@ struct Sides<'a> {
 
 impl Structure {
     /// Relative motion in the k-th direction of a contact.
-    #[must_use]
     pub fn contact_motion(&self, contact: &Contact, k: usize) -> SectorMotion {
         let direction = contact.direction(k);
         self.written(&Sides::of_contact(contact, &direction))
@@ -135,7 +132,6 @@ impl Structure {
     }
 
     /// Relative motion of a spring.
-    #[must_use]
     pub fn spring_motion(&self, spring: &Spring) -> SectorMotion {
         let direction = Direction::between(spring.dof_a, spring.dof_b);
         let sides = Sides {
@@ -147,7 +143,6 @@ impl Structure {
     }
 
     /// Row of a relative motion in a wave.
-    #[must_use]
     pub fn row(&self, motion: &SectorMotion, wave: Wave) -> Row {
         motion.row(|sector| match wave {
             Wave::Harmonic(h) => self.phase(h, sector),
@@ -156,7 +151,6 @@ impl Structure {
     }
 
     /// Row of the k-th relative motion of a contact in a harmonic.
-    #[must_use]
     pub fn contact_row(&self, contact: &Contact, k: usize, harmonic: usize) -> Row {
         self.row(&self.contact_motion(contact, k), Wave::Harmonic(harmonic))
     }

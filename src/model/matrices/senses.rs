@@ -16,7 +16,6 @@ const CONJUGATE: f64 = 1e-13;
 
 impl Structure {
     /// The signed nodal diameter −N/2 < d ≤ N/2 of a wave of `waves` waves per turn, in which sector s + 1 lags by 2πd/N.
-    #[must_use]
     pub fn signed_diameter(&self, waves: i64) -> i64 {
         let (diameter, backward) = self.fold(waves);
         if backward { -(diameter as i64) } else { diameter as i64 }
@@ -44,7 +43,6 @@ impl Structure {
 
     /// The nodal diameter 0 ..= N/2 of a wave of `waves` waves per turn; `true` if it travels against the sense in
     /// which sector s + 1 lags.
-    #[must_use]
     pub fn fold(&self, waves: i64) -> (usize, bool) {
         let n = self.sectors();
         let residue = i128::from(waves).rem_euclid(n as i128) as usize;

@@ -57,19 +57,16 @@ impl SpeedLoad {
     }
 
     /// n₀ of a load n₀ + c Ω² with the gap counted in.
-    #[must_use]
     pub fn load_at_rest(&self, contact: &Contact) -> f64 {
         self.preload - contact.kn * self.gap
     }
 
     /// A load that stands for all speeds Ω = pω: |n₀| + |c|p², above zero.
-    #[must_use]
     pub fn reference(&self, contact: &Contact, p: f64) -> f64 {
         self.load_at_rest(contact).abs() + (self.per_speed2 * p * p).abs()
     }
 
     /// The contact under ± this load, without any other gap.
-    #[must_use]
     pub fn referred(&self, contact: &Contact, load: f64) -> Contact {
         Self { gap: 0.0, ..*self }.under(contact, load)
     }

@@ -20,7 +20,6 @@ pub struct Spring {
 pub type Row = [Option<(usize, Complex64)>; TERMS_A + TERMS_B];
 
 /// r·x, the relative motion of a row.
-#[must_use]
 pub fn along(row: &Row, x: &[Complex64]) -> Complex64 {
     row.iter().flatten().map(|&(p, a)| a * x[p]).sum()
 }

@@ -15,9 +15,6 @@ const TIE: f64 = 1e8;
 
 impl Model {
     /// Rows of force and motion, and stiffness, of the springs of the model and of the `stuck` contacts in a wave.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     #[doc(hidden)]
     pub fn spring_rows<'c>(
         &self,

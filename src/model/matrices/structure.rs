@@ -111,7 +111,6 @@ impl Structure {
     }
 
     /// Whether any damping was given.
-    #[must_use]
     pub fn is_damped(&self) -> bool {
         self.rayleigh != (0.0, 0.0)
             || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
@@ -122,19 +121,16 @@ impl Structure {
     }
 
     /// Whether damping without a causal law was given: a loss factor or a structural matrix.
-    #[must_use]
     pub fn has_structural_damping(&self) -> bool {
         self.loss_factor != 0.0 || self.has_structural_matrix()
     }
 
     /// Whether a structural matrix was given.
-    #[must_use]
     pub fn has_structural_matrix(&self) -> bool {
         self.parts(MatrixKind::Structural).any(|a| !a.is_empty())
     }
 
     /// Whether the matrices depend on a speed that is not zero.
-    #[must_use]
     pub fn is_rotating(&self) -> bool {
         self.is_gyroscopic()
             || (!matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
@@ -142,7 +138,6 @@ impl Structure {
     }
 
     /// Whether gyroscopic forces act.
-    #[must_use]
     pub fn is_gyroscopic(&self) -> bool {
         !matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
             && self.parts(MatrixKind::Gyroscopic).any(|a| !a.is_empty())
@@ -157,19 +152,16 @@ impl Structure {
     }
 
     /// Whether damping ratios of modes were given.
-    #[must_use]
     pub fn has_modal_damping(&self) -> bool {
         !self.modal_damping.is_empty()
     }
 
     /// Loss factor of the stiffness of the structure.
-    #[must_use]
     pub fn loss_factor(&self) -> f64 {
         self.loss_factor
     }
 
     /// Whether a matrix was given in any form.
-    #[must_use]
     pub fn has(&self, kind: MatrixKind) -> bool {
         self.parts(kind).next().is_some()
     }
@@ -214,7 +206,6 @@ impl Structure {
     }
 
     /// Number of sectors and engine order of the forces, where this is a whole wheel.
-    #[must_use]
     pub fn whole_wheel(&self) -> Option<(usize, i64)> {
         self.wheel
     }
@@ -226,7 +217,6 @@ impl Structure {
     }
 
     /// The map from the degrees of freedom of the caller to the independent ones.
-    #[must_use]
     pub fn degrees(&self) -> &DegreeMap {
         &self.degrees
     }
@@ -321,13 +311,11 @@ impl Structure {
     }
 
     /// Number of sectors N; 1 for a plain structure.
-    #[must_use]
     pub fn sectors(&self) -> usize {
         self.sectors
     }
 
     /// Engine order of the wave.
-    #[must_use]
     pub fn engine_order(&self) -> i64 {
         self.engine_order
     }

@@ -17,9 +17,6 @@ pub enum WaveMatrix<'a> {
 
 impl WaveMatrix<'_> {
     /// The matrix in the form of computations.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn into_csc(self) -> Result<Csc> {
         match self {
             Self::Kept(a) => a.expanded(),
@@ -28,7 +25,6 @@ impl WaveMatrix<'_> {
     }
 
     /// Whether every entry is real.
-    #[must_use]
     pub fn is_real(&self) -> bool {
         match self {
             Self::Kept(a) => a.is_real(),
@@ -37,7 +33,6 @@ impl WaveMatrix<'_> {
     }
 
     /// Largest modulus of an entry.
-    #[must_use]
     pub fn max_abs(&self) -> f64 {
         match self {
             Self::Kept(a) => a.max_abs(),

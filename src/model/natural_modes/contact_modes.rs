@@ -192,9 +192,6 @@ impl ContactModes {
     }
 
     /// φᴴ M x of each of the first `modes` modes.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn coordinates(&self, x: &[Complex64], modes: usize) -> Result<Vec<Complex64>> {
         let mut found = Vec::new();
         for image in self.images.chunks_exact(self.n).take(modes) {
@@ -204,9 +201,6 @@ impl ContactModes {
     }
 
     /// R x of each contact.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn relative(&self, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut found = Vec::new();
         for motion in &self.motions {

@@ -149,9 +149,6 @@ impl Model {
 
     /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be had, as where K or M
     /// is not Hermitian.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
     pub(crate) fn natural_frequencies(
         &self,
         h: usize,

@@ -32,9 +32,6 @@ pub type Pair = (Complex64, Vec<Complex64>);
 
 impl Quadratic<'_> {
     /// The Hermitian part of K.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn hermitian_stiffness(&self) -> Result<Csc> {
         let n = self.mass.rows;
         let half = Complex64::new(0.5, 0.0);
@@ -50,7 +47,6 @@ impl Quadratic<'_> {
 
     /// The eigenvalue of a mode: one that oscillates, or one that grows, which is then real; `None` for a motion that is rigid or damped
     /// beyond vibration.
-    #[must_use]
     pub fn as_mode(&self, mut eigenvalue: Complex64, shape: &[Complex64]) -> Option<Complex64> {
         if eigenvalue.im > QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
             return (!self.is_rigid(eigenvalue, shape)).then_some(eigenvalue);
@@ -76,9 +72,6 @@ impl Quadratic<'_> {
     }
 
     /// λ²M + λC + K
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
         Csc::sum(
             self.mass.rows,
@@ -91,9 +84,6 @@ impl Quadratic<'_> {
     }
 
     /// (2λM + C) x
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut y = self.damping.times(x, CONTEXT)?;
         self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
@@ -102,7 +92,6 @@ impl Quadratic<'_> {
 }
 
 /// Whether two pairs are one mode.
-#[must_use]
 pub fn is_one(a: &Pair, b: &Pair) -> bool {
     if (a.0 - b.0).norm() > ONE_VALUE * a.0.norm() {
         return false;

@@ -31,7 +31,6 @@ const RESONANCES_UNDAMPED: f64 = 1e-13;
 
 impl Resonance {
     /// Whether nothing but rounding damps it.
-    #[must_use]
     pub fn is_undamped(&self) -> bool {
         self.half_width <= RESONANCES_UNDAMPED * self.omega
     }
@@ -111,9 +110,6 @@ impl Model {
     ///
     /// Modes are those of the Hermitian part of K; its skew part adds to the damping. With mass-normalised shapes Φ,
     /// poles are the eigenvalues of diag(ω) + ½i Φᴴ(C + Im K/ω)Φ, exact to first order in the damping.
-    ///
-    /// # Errors
-    /// `OutOfMemory`, `StoppedByCaller`.
     #[doc(hidden)]
     pub fn resonances(
         &self,

@@ -62,7 +62,6 @@ const CONTEXT: &str = "the resonance";
 
 impl Resonance {
     /// Whether no bounded motion balances the force.
-    #[must_use]
     pub fn is_overloaded(&self) -> bool {
         self.growth >= UNBOUNDED_GROWTH
     }

@@ -85,7 +85,6 @@ fn digest(write: impl FnOnce(&mut ByteWriter<'_>)) -> u64 {
 
 impl Model {
     /// The fingerprint of the model.
-    #[must_use]
     pub(crate) fn fingerprint(&self) -> Fingerprint {
         let structure = &self.structure;
         let forces = |constant: bool| {
@@ -185,7 +184,6 @@ impl Model {
     }
 
     /// The digest of a sector, for the wheel that is made of it.
-    #[must_use]
     pub(crate) fn sector_digest(&self) -> SectorDigest {
         let all = self.fingerprint();
         SectorDigest {

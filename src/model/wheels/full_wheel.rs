@@ -26,14 +26,12 @@ const FULL_WHEEL_OF_ONE_ENTRY: u64 = 20;
 impl Structure {
     /// Number of sectors after which the wave repeats, in space: N / gcd(EO, N). 1 for a plain
     /// structure.
-    #[must_use]
     pub fn repeating_sectors(&self) -> usize {
         self.in_step()
     }
 
     /// The number j of sectors, below [`Self::repeating_sectors`] n, after which the motion is delayed by the n-th
     /// part of the period: x_{s+j}(t + T/n) = x_s(t). It solves j·EO/g = 1 modulo n.
-    #[must_use]
     pub fn sectors_per_part(&self) -> usize {
         let n = self.repeating_sectors();
         let divisor = (self.sectors() / n) as i128;

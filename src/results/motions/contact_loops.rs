@@ -67,7 +67,6 @@ impl<'a> Orbit<'a> {
     }
 
     /// The same where the law has an exchanged motion, with the motion of the contact.
-    #[must_use]
     pub fn moving(self, actual: &'a [f64]) -> Self {
         Self {
             actual: Some(actual),
@@ -76,7 +75,6 @@ impl<'a> Orbit<'a> {
     }
 
     /// A linear spring in each of some directions; stiffness 0 is without force.
-    #[must_use]
     pub fn spring(set: &'a HarmonicSet, motion: &'a [f64], directions: usize, stiffness: f64) -> Self {
         Self {
             motion: PeriodicMotion {
@@ -170,9 +168,6 @@ impl<'a> Orbit<'a> {
     }
 
     /// Smallest and largest motion in every direction, exactly.
-    ///
-    /// # Errors
-    /// `OutOfMemory`, `StoppedByCaller`.
     pub fn ranges(&self, interrupt: &Interrupt<'_>) -> Result<Vec<(f64, f64)>> {
         let PeriodicMotion { set, directions, .. } = self.motion;
         let mut search = TurningPoints::new(set)?;

@@ -10,9 +10,6 @@ const SIGNAL_CHECK_BETWEEN_CHECKS: usize = 256;
 const OF_ONE_JET: usize = 10;
 
 /// Checks a stop now and then, before the j-th value of a signal.
-///
-/// # Errors
-/// `StoppedByCaller`.
 pub(crate) fn check_time(interrupt: &Interrupt<'_>, j: usize, set: &HarmonicSet) -> Result<()> {
     if j.is_multiple_of(SIGNAL_CHECK_BETWEEN_CHECKS) {
         interrupt.check_before((SIGNAL_CHECK_BETWEEN_CHECKS * OF_ONE_JET * (set.numbers().len() + 1)) as u64)?;

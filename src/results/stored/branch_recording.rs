@@ -129,9 +129,6 @@ impl Branch {
 
     /// The branch of a run that the caller stopped before its model was condensed: it has no point, and nothing is
     /// known of the reduction.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn stopped(model: &Model, options: &SolverOptions) -> Result<Self> {
         let condensed = Condensed::without_harmonics(model)?;
         let reduction = Reduction {

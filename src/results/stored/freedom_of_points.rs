@@ -14,9 +14,6 @@ pub(crate) struct FreedomOfPoints {
 
 impl FreedomOfPoints {
     /// Those of so many points, as yet unknown.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn unknown(points: usize, contacts: usize) -> Result<Self> {
         Ok(Self {
             contacts,

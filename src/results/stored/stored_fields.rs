@@ -45,7 +45,6 @@ pub enum PointField {
 
 impl Branch {
     /// A number of all stored points; `None` where the branch does not have it.
-    #[must_use]
     pub(crate) fn stored_field(&self, field: PointField) -> Option<&[f64]> {
         let is_mode = self.mode.is_some();
         match field {
@@ -74,9 +73,6 @@ impl Branch {
     }
 
     /// Gives the points without stability, those beside the curve among them, NaN for it.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub(crate) fn complete_stability(&mut self) -> Result<()> {
         if !self.tells_stability {
             return Ok(());

@@ -139,7 +139,6 @@ impl Search<'_> {
     }
 
     /// The state with its loss.
-    #[must_use]
     pub fn weighed(&self, mut state: State) -> State {
         // A prior is no outlier.
         let (data, priors) = state.residuals.split_at(self.predictor.rows());
@@ -149,9 +148,6 @@ impl Search<'_> {
     }
 
     /// JᵀWJ and JᵀWr, the priors with weight 1; without `robust` all weights are 1.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn normal_equations(&self, state: &State, robust: bool) -> Result<(Vec<f64>, Vec<f64>)> {
         let n = state.z.len();
         let data = self.predictor.rows();

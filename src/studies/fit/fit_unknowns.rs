@@ -252,9 +252,6 @@ impl Unknowns {
     }
 
     /// Values of all parameters.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn theta(&self, z: &[f64]) -> Result<Vec<f64>> {
         let mut theta = try_vec(self.entries.len(), 0.0, CONTEXT)?;
         for (to, entry) in theta.iter_mut().zip(&self.entries) {

@@ -17,9 +17,6 @@ pub(super) struct SharedWork {
 
 impl SharedWork {
     /// The modes for curves with a response degree of freedom.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn waves(&mut self, response: Option<usize>) -> Result<&SharedWaves> {
         let position = if let Some(position) = self.waves.iter().position(|(dof, _)| *dof == response) {
             position

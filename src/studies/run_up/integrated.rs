@@ -81,9 +81,6 @@ pub(super) struct Integrated {
 
 /// Integrates in time around the largest displacement of a slow flow, and puts the amplitudes there into its turns; `None` where the
 /// work that is allowed does not suffice, or no steady motion is found.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
 #[inline(never)]
 pub(super) fn integrate(
     model: &Model,

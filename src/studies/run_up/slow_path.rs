@@ -12,9 +12,6 @@ pub(super) struct SlowPath {
 
 impl SlowPath {
     /// Appends amplitude and rate at a time behind the last one.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn push(&mut self, time: f64, state: [Complex64; 2]) -> Result<()> {
         try_push(&mut self.times, time, "the slow flow")?;
         try_push(&mut self.states, state, "the slow flow")

@@ -13,9 +13,6 @@ const STEADY_MOTION_LOOKS: usize = 256;
 
 /// Largest displacement within a period of the steady motion at a resonance, with the mean, all harmonics of the mode and the other modes;
 /// NaN where the table does not reach its amplitude.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(super) fn largest_steady(table: &ModeTable, others: &OtherModes, at: &SynthesisPoint) -> Result<f64> {
     let mut place = Place::default();
     match table.find(at.modal_amplitude, &mut place) {

@@ -85,9 +85,6 @@ impl LifeState {
     }
 
     /// Whether another state is the continuation of this one: its amplitude and works follow from the derivatives at both.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn goes_on_to(&self, other: &Self, (states, tolerance): (&WornStates<'_>, f64)) -> Result<bool> {
         let mut change = try_copy(&other.depths, CONTEXT)?;
         for (x, before) in change.iter_mut().zip(&self.depths) {
@@ -100,9 +97,6 @@ impl LifeState {
     }
 
     /// f′ = J f.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn second(&self) -> Result<Vec<f64>> {
         times(&self.worn.rate_by_depth, &self.worn.rate)
     }
@@ -246,9 +240,6 @@ impl LifeStep {
     }
 
     /// The estimated error of the step, and the power of the length with which it grows.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn error(&self, states: &WornStates<'_>, last: Option<&Self>) -> Result<(f64, i32)> {
         error_of(states, &self.to, ((&self.fourth, self.third), self.length()), last)
     }
@@ -268,9 +259,6 @@ impl LifeStep {
     }
 
     /// Rates at n cycles.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn rates(&self, n: f64) -> Result<Vec<f64>> {
         let s = (n - self.from.n) / self.length();
         let mut rates = try_copy(&self.from.worn.rate, CONTEXT)?;
@@ -313,9 +301,6 @@ impl LifeStep {
     }
 
     /// A step so short that rates are constant over it.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
     pub fn short(from: &LifeState, to: LifeState) -> Result<Self> {
         let zero = || try_vec(from.depths.len(), 0.0, CONTEXT);
         Ok(Self {
@@ -454,9 +439,6 @@ fn corrected(
 
 /// Depths at a distance from a state that a step has reached, as they follow without a change of a contact's state: the Taylor series of
 /// f′ = J f, where J goes on along the line through its values at both ends of that step.
-///
-/// # Errors
-/// `OutOfMemory`.
 pub(crate) fn ahead((at, last): (&LifeState, Option<&LifeStep>), delta: f64) -> Result<Vec<f64>> {
     let jacobian = &at.worn.rate_by_depth;
     let mut slope = try_vec(jacobian.len(), 0.0, CONTEXT)?;

@@ -130,9 +130,6 @@ impl Walk<'_> {
     }
 
     /// Walks over a time in which the contact is closed.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
     pub(crate) fn run(&mut self, [begin, end]: [f64; 2], mut phase: Phase, interrupt: &Interrupt<'_>) -> Result<()> {
         let [upper, lower] = self.bounds;
         let mut cursors = [

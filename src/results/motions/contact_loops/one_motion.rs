@@ -98,7 +98,6 @@ impl<'a> ScalarOrbit<'a> {
 
     /// Work, never negative: 0 for laws without memory and for contacts that do not slip. Shares as far as
     /// the law has states.
-    #[must_use]
     pub fn account(&self) -> Account {
         Account {
             work: self.work(),
