@@ -245,6 +245,7 @@ fn the_curve_above_the_tongue_is_reached_by_switching() {
         guess: Some(guess),
         ..ModeOptions {
             branches: 0,
+            branch_depth: 0,
             at: &[],
             ..range
         }

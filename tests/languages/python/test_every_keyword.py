@@ -323,7 +323,7 @@ for name, (structs, others) in OF_STRUCTS.items():
 # test_axis_nodes.py.
 PLAIN = {
     "add_contact", "add_damper", "add_patch", "check_jacobian", "aero", "clear_forces", "clone", "longer_period", "contact", "cyclic",
-    "free", "from_bytes", "load", "matrix", "mistune", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
+    "free", "from_bytes", "load", "matrix", "mistune", "on_blade_modes", "save", "to_bytes", "wheel", "wheel_peaks", "wheel_study", "worst_pattern",
     "wheel_quantile", "intentional_pattern", "identify_pattern", "blade_frequencies", "pattern_of_blades",
     "fit", "plot", "plot_campbell", "plot_interference", "plot_loop", "bifurcations", "folds", "peaks", "optima", "turns", "higher_peaks",
     "limit_cycles",
