@@ -263,7 +263,7 @@ fn bytes_that_are_no_saved_model_are_refused_with_their_reason() {
         bytes[place] = value;
         bytes
     };
-    refused(&newer(8, 6), Status::Unsupported, "format 6 is newer than 5");
+    refused(&newer(8, 7), Status::Unsupported, "format 7 is newer than 6");
     refused(
         &[&bytes[..], b"\n"].concat(),
         Status::Argument,

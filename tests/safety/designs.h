@@ -166,7 +166,7 @@ static hbvib_status stable(const hbvib_model *model, uint64_t *sum)
     hbvib_branch *branch = NULL;
     hbvib_view view;
     hbvib_status status = HBVIB_OK;
-    s.stability = HBVIB_STABILITY_WHEEL;
+    s.stability = hbvib_model_sectors(model) > 1 ? HBVIB_STABILITY_WHEEL : HBVIB_STABILITY_WAVE;
     memset(&view, 0, sizeof view);
     STEP(hbvib_view_init(&view, sizeof view));
     STEP(hbvib_forced_response(model, &s, &o, NULL, &branch));

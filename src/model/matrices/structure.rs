@@ -80,7 +80,7 @@ pub struct Structure {
     pub(crate) modal_damping: Vec<Option<KeptMatrix>>,
     /// Sectors and engine order, where this is a whole wheel: what its equations may be taken for, and no result depends on.
     pub(crate) wheel: Option<(usize, i64)>,
-    /// The sector that a whole wheel was made of; `None` where that is not known, as after loading.
+    /// The sector that a whole wheel was made of; `None` where that is not known, as from bytes of an earlier version.
     pub(crate) sector: Option<SectorDigest>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],

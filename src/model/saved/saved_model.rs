@@ -3,7 +3,8 @@
 //!
 //! Little-endian: mark (8 bytes), version (4), 0 (4), length L of the model (8), the model (L), checksum of all
 //! bytes before it (8). Version 2 adds the aerodynamic influence, version 3 the places of sliders, version 4 rigid bodies and
-//! centrifugal forces, version 5 whole wheels; a model without is written as an earlier version.
+//! centrifugal forces, version 5 whole wheels, version 6 digests of their sectors; a model without is written
+//! as an earlier version.
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
@@ -14,6 +15,7 @@ use crate::model::matrices::speed::{Speed, SpeedLoad};
 use crate::model::matrices::spring::Spring;
 use crate::model::matrices::structure::{MAX_SECTORS, Structure};
 use crate::model::mechanical_model::Model;
+use crate::model::wheels::sector_digest::SectorDigest;
 use num_complex::Complex64;
 
 /// First bytes of a saved model. A transfer as text changes some of them.
@@ -21,7 +23,7 @@ const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
 /// Kind: fixed.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// Bytes before the model.
 /// Kind: fixed.
@@ -62,7 +64,8 @@ impl Model {
         out.bytes(&MARK);
         out.u32(
             match (self.has_bodies(), self.has_places(), self.structure.has_aero()) {
-                _ if self.structure.wheel.is_some() => VERSION,
+                _ if self.structure.sector.is_some() => VERSION,
+                _ if self.structure.wheel.is_some() => 5,
                 (true, _, _) => 4,
                 (false, true, _) => 3,
                 (false, false, true) => 2,
@@ -155,6 +158,12 @@ impl Model {
         if let Some((sectors, engine_order)) = self.structure.wheel {
             out.count(sectors);
             out.i64(engine_order);
+        }
+        if let Some(sector) = &self.structure.sector {
+            for part in [sector.degrees, sector.matrices, sector.damping, sector.springs] {
+                out.i64(part.cast_signed());
+            }
+            out.i64(sector.engine_order);
         }
         Ok(())
     }
@@ -249,6 +258,15 @@ impl Model {
                 return Err(input.damaged("a wheel has a number of sectors that it cannot have"));
             }
             model.structure.wheel = Some(wheel);
+        }
+        if version >= 6 {
+            model.structure.sector = Some(SectorDigest {
+                degrees: input.i64()?.cast_unsigned(),
+                matrices: input.i64()?.cast_unsigned(),
+                damping: input.i64()?.cast_unsigned(),
+                springs: input.i64()?.cast_unsigned(),
+                engine_order: input.i64()?,
+            });
         }
         Ok(model)
     }
