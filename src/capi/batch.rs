@@ -292,15 +292,7 @@ pub unsafe extern "C" fn hbvib_batch_response_peaks(
     amplitude: *mut f64,
     omega: *mut f64,
 ) -> hbvib_status {
-    call(|| {
-        let batch = read::<Batch>(batch, 1)?;
-        let response = index(response, batch.responses(), 2, "response")?;
-        let peaks = batch.peaks();
-        if count(capacity, 3, "capacity")? < peaks.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", peaks.len()).with_argument(3);
-        }
-        unsafe { fill_pairs((peaks, response), |peak| &peak.responses, amplitude, omega) }
-    })
+    call(|| unsafe { fill_pairs((batch, response, capacity), |peak| &peak.responses, amplitude, omega) })
 }
 
 /// The larger value of a response of each design at the two ends of the range, in the order of
@@ -322,24 +314,22 @@ pub unsafe extern "C" fn hbvib_batch_response_ends(
     amplitude: *mut f64,
     omega: *mut f64,
 ) -> hbvib_status {
-    call(|| {
-        let batch = read::<Batch>(batch, 1)?;
-        let response = index(response, batch.responses(), 2, "response")?;
-        let peaks = batch.peaks();
-        if count(capacity, 3, "capacity")? < peaks.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", peaks.len()).with_argument(3);
-        }
-        unsafe { fill_pairs((peaks, response), |peak| &peak.ends, amplitude, omega) }
-    })
+    call(|| unsafe { fill_pairs((batch, response, capacity), |peak| &peak.ends, amplitude, omega) })
 }
 
-/// Fills arguments 4 and 5 with a pair of each design.
+/// Fills arguments 4 and 5 with a pair of each design, for a batch, a response and a capacity as arguments 1 to 3.
 unsafe fn fill_pairs(
-    (peaks, response): (&[DesignPeak], usize),
+    (batch, response, capacity): (*const hbvib_batch, i64, i64),
     pairs: impl Fn(&DesignPeak) -> &Vec<(f64, f64)>,
     amplitude: *mut f64,
     omega: *mut f64,
 ) -> Result<Status> {
+    let batch = read::<Batch>(batch, 1)?;
+    let response = index(response, batch.responses(), 2, "response")?;
+    let peaks = batch.peaks();
+    if count(capacity, 3, "capacity")? < peaks.len() {
+        return fail!(Dimension, "capacity = {capacity}, needs {}", peaks.len()).with_argument(3);
+    }
     let n = peaks.len();
     disjoint(
         &[],

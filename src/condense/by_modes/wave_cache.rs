@@ -136,9 +136,8 @@ impl WaveCache {
             self.without_poles = Some(FlexibilityWay::Few);
         } else if !matches!(block.artificial, Artificial::None) {
             // Poles would follow the damping ratio of a nonlinear mode; directions of damping do not.
-            let found = self.with_dampers((model, condensed, i), FlexibilityWay::SingleFrequency, interrupt)?;
-            if found.is_ok() {
-                return Ok(found);
+            if let Some(modes) = self.beside_dampers((model, condensed, i), interrupt)? {
+                return Ok(Ok(Source::Modes(modes)));
             }
         }
         if let Some(reason) = self.without_poles {
@@ -165,14 +164,25 @@ impl WaveCache {
         reason: FlexibilityWay,
         interrupt: &Interrupt<'_>,
     ) -> Result<Found> {
-        if self.has_many_dampers || reason == FlexibilityWay::Few {
+        if reason == FlexibilityWay::Few {
             return Ok(Err(reason));
         }
-        if let Some(modes) = self.modes(at, true, interrupt)? {
-            return Ok(Ok(Source::Modes(modes)));
+        let found = self.beside_dampers(at, interrupt)?;
+        Ok(found.map(Source::Modes).ok_or(reason))
+    }
+
+    /// The modes of a harmonic whose damping beside αM + βK has few directions.
+    fn beside_dampers(
+        &mut self,
+        at: (&Model, &Condensed, usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Arc<WaveModes>>> {
+        if self.has_many_dampers {
+            return Ok(None);
         }
-        self.has_many_dampers = true;
-        Ok(Err(reason))
+        let found = self.modes(at, true, interrupt)?;
+        self.has_many_dampers = found.is_none();
+        Ok(found)
     }
 
     /// The modes of a harmonic; `None` where the damping is not proportional, and not beside few directions where these are allowed.

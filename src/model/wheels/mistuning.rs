@@ -355,7 +355,7 @@ mod tests {
     fn a_matrix_of_a_sector_stands_in_all_with_their_factors_and_stays_symmetric() {
         let (n, sectors) = (3, 4);
         let all = n * sectors;
-        // Of sector 0 with both of its neighbours, so that matrices of neighbours overlap.
+        // Entries of sector 0 with both of its neighbours, so that matrices of neighbours overlap.
         let place = |k: usize| (k + all - n) % all;
         let mut entries = Vec::new();
         for i in 0..3 * n {

@@ -10,7 +10,7 @@ use crate::hooks::{Hooks, Progress};
 use crate::interrupt::Phase;
 use crate::model::Model;
 use crate::options::{LifeOptions, SolverOptions};
-use crate::studies::wear::life_length::{Doubt, growth, length_of};
+use crate::studies::wear::life_length::{Doubt, LIFE_TRIES, Refusals, growth, length_of};
 use crate::studies::wear::life_step::{LifeState, LifeStep, Taken, ahead};
 use crate::studies::wear::worn_state::{WornState, WornStates};
 
@@ -35,10 +35,6 @@ const LIFE_STEP_SHARE: f64 = 0.5;
 /// Half of the change of depths over the tolerance within which a jump is located. Chosen: rates that jump by their own size err by less.
 /// Kind: tuned; measured on: nothing, it is chosen.
 const LIFE_JUMP: f64 = 0.15;
-
-/// Steps in turn that may be refused.
-/// Kind: cap; halves of a life down to the length of a jump are 60.
-const LIFE_TRIES: usize = 200;
 
 /// Halvings of a step that fails.
 /// Kind: cap.
@@ -193,8 +189,7 @@ impl Walk<'_> {
         let mut last: Option<LifeStep> = None;
         let mut delta = self.first_length(&at, end);
         let mut halvings = 0;
-        // Steps that were taken when the last one was tried, and steps in turn that were refused since.
-        let mut refused = (0, 0);
+        let mut refusals = Refusals::default();
         // The event that lies ahead, once a step has met it, and the cycles at which the motion seems another one.
         let mut met: Option<f64> = None;
         let mut broken: Option<(f64, Doubt)> = None;
@@ -203,7 +198,7 @@ impl Walk<'_> {
         let mut before: Option<(f64, f64)> = None;
         while at.n < end {
             hooks.interrupt().phase(Phase::Continuation, at.n / end)?;
-            self.may_go_on(&mut refused, at.n, end)?;
+            self.may_go_on(&mut refusals, at.n, end)?;
             let rest = end - at.n;
             if let Some(event) = met {
                 let (distance, across) = (event - at.n, self.length_across(&at, rest)?);
@@ -288,16 +283,14 @@ impl Walk<'_> {
     }
 
     /// Whether another step may be tried at n cycles; counts those in turn that were refused.
-    fn may_go_on(&self, (taken, refused): &mut (usize, usize), n: f64, end: f64) -> Result<()> {
+    fn may_go_on(&self, refusals: &mut Refusals, n: f64, end: f64) -> Result<()> {
         if self.found.steps >= self.options.most_steps {
             return Err(Error::new(
                 Status::StoppedMaxPoints,
                 format_args!("the life has {} steps at {n} of {end} cycles", self.found.steps),
             ));
         }
-        *refused = if self.found.steps == *taken { *refused + 1 } else { 0 };
-        *taken = self.found.steps;
-        if *refused > LIFE_TRIES {
+        if refusals.are_too_many(self.found.steps) {
             return Err(Error::new(
                 Status::StoppedStepTooSmall,
                 format_args!("the life does not go on at {n} cycles after {LIFE_TRIES} steps that were refused"),

@@ -1,5 +1,26 @@
 //! Length of the next step of a life: from the error of the last one, and where the motion seems to end.
 
+/// Steps in turn that may be refused.
+/// Kind: cap; halves of a life down to the length of a jump are 60.
+pub(crate) const LIFE_TRIES: usize = 200;
+
+/// Steps in turn that were refused.
+#[derive(Default)]
+pub(crate) struct Refusals {
+    /// Number of steps that were taken when the last one was tried.
+    taken: usize,
+    count: usize,
+}
+
+impl Refusals {
+    /// Counts a step that is tried after `taken` ones; whether those refused since are more than may be.
+    pub fn are_too_many(&mut self, taken: usize) -> bool {
+        self.count = if taken == self.taken { self.count + 1 } else { 0 };
+        self.taken = taken;
+        self.count > LIFE_TRIES
+    }
+}
+
 /// How it is tried whether the motion ends, or a step was only long.
 #[derive(Clone, Copy)]
 pub(crate) enum Doubt {
