@@ -5,6 +5,7 @@
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Measure, Response};
 use crate::results::Branch;
 use crate::sensitivity::{ForcedPoint, Parameter, Reason, TotalDerivative, WaveMatrices, contact_at_onset};
@@ -80,7 +81,7 @@ pub fn complex_sensitivity_with(
     let at = (branch, point);
     let omega = branch.omega_at(point).unwrap_or_default();
     let mut equations = Equations {
-        range: (omega, omega),
+        range: omega.into(),
         at: None,
     };
     complex_at(
@@ -94,7 +95,7 @@ pub fn complex_sensitivity_with(
 
 /// Equations of a curve near its points that derivatives were made of, and the frequencies between which they hold.
 pub(crate) struct Equations<'a> {
-    pub range: (f64, f64),
+    pub range: Range,
     /// Those of the point before.
     pub at: Option<ForcedPoint<'a>>,
 }

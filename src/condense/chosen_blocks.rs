@@ -92,7 +92,7 @@ fn tuned_blocks(
 /// need many harmonics, and take the modes of small wheels. At a single frequency few factors are needed.
 fn may_be_tuned(request: &Request<'_>) -> bool {
     let n = request.model.structure().ndof();
-    if !request.sweep.is_range() {
+    if request.sweep.is_single() {
         return n > FACTORED_AT_ONE_UP_TO;
     }
     n > ALL_UP_TO || (n >= TUNED_FROM && request.options.tolerance == 0.0)

@@ -15,7 +15,6 @@ use crate::condense::blocks::flexibility_way::FlexibilityWay;
 use crate::condense::blocks::memory_limit::within_for_contacts;
 use crate::condense::blocks::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::blocks::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
-use crate::condense::blocks::sweep::Sweep;
 use crate::condense::blocks::tied_load::TiedLoad;
 use crate::condense::by_factors::exchanged_motions::{check_rigid, select_exchanged};
 use crate::condense::by_factors::flexibility::Workspace;
@@ -28,6 +27,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::power_of_two;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Content, DampingForm, Exchanged, Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -46,7 +46,7 @@ impl Condensed {
     pub fn new(
         model: &Model,
         options: &SolverOptions,
-        sweep: impl Into<Sweep>,
+        sweep: impl Into<Range>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
         Self::with_reference(model, options, sweep, None, interrupt)
@@ -60,7 +60,7 @@ impl Condensed {
     pub fn with_reference(
         model: &Model,
         options: &SolverOptions,
-        sweep: impl Into<Sweep>,
+        sweep: impl Into<Range>,
         reference: Option<Reference>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
@@ -250,7 +250,7 @@ impl Condensed {
     pub(super) fn unscaled(
         model: &Model,
         options: &SolverOptions,
-        (forced, sweep): (&[usize], Sweep),
+        (forced, sweep): (&[usize], Range),
         (mode, reference): (Option<(DampingForm, &[Complex64])>, Option<Reference>),
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {

@@ -8,6 +8,7 @@ use crate::condense::by_modes::single_contact_lanes::SingleContactLanes;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
+use crate::options::Range;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -86,10 +87,9 @@ impl FrequencyCache {
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(condensed: &Condensed, response: usize, range: (f64, f64), interrupt: &Interrupt<'_>) -> Result<Self> {
+    pub fn new(condensed: &Condensed, response: usize, range: Range, interrupt: &Interrupt<'_>) -> Result<Self> {
         let coordinates = condensed.coordinates();
-        let (start, end) = range;
-        let sweep = start.to_bits() != end.to_bits();
+        let sweep = !range.is_single();
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
@@ -332,10 +332,11 @@ impl FrequencyCache {
 /// factorisations, as far as it had to be known.
 fn of_wave(
     (condensed, i, response): (&Condensed, usize, usize),
-    (start, end): (f64, f64),
+    range: Range,
     (waves, work, workspace): (&mut Vec<Arc<ModalRows>>, &mut ModalWork, &mut Workspace),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(ModalTable, f64)>> {
+    let Range { start, stop: end } = range;
     let Some(source) = &condensed.blocks()[i].source else {
         return Ok(None);
     };

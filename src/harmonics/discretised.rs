@@ -6,6 +6,7 @@ use crate::harmonics::Estimate;
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::interrupt::Interrupt;
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
 use crate::results::{Branch, SpecialKind, Verdict};
@@ -56,7 +57,7 @@ pub(crate) trait Discretised {
 
     /// The resonances between two parameter values with the contacts in their linear state; `None` where the response
     /// with linear contacts is not a rational function of the parameter, or they cannot be had.
-    fn resonances(&mut self, _range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+    fn resonances(&mut self, _range: Range) -> Result<Option<Vec<Resonance>>> {
         Ok(None)
     }
 

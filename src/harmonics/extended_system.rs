@@ -324,7 +324,7 @@ mod tests {
             ..SolverOptions::default()
         };
         let condensed = Condensed::new(&model, &options, omega, &none).unwrap();
-        let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega), 0, None, &none).unwrap();
+        let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega).into(), 0, None, &none).unwrap();
         let sizes = Sizes::new(&condensed, 0);
         let work = Work::of_point(&sizes, 40, 0);
         let bounded = |enough| work.highest((&condensed, enough), &options, 1.0, Sizes::evaluation);

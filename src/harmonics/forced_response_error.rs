@@ -20,6 +20,7 @@ use crate::harmonics::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Response, SolverOptions};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
@@ -80,7 +81,7 @@ pub struct ForcedEstimator<'a> {
     rows: Vec<Arc<ModalRows>>,
     tables: usize,
     /// Range of the frequencies of the points.
-    range: Option<(f64, f64)>,
+    range: Option<Range>,
     /// The responses that were asked for.
     responses: &'a [Response<'a>],
 }
@@ -125,8 +126,8 @@ impl<'a> ForcedEstimator<'a> {
 
     /// For points in a range of frequency; for one point at a single frequency, after which no extended problem is kept.
     #[must_use]
-    pub fn over(mut self, range: (f64, f64)) -> Self {
-        self.single = range.0.to_bits() == range.1.to_bits();
+    pub fn over(mut self, range: Range) -> Self {
+        self.single = range.is_single();
         self.range = (!self.single).then_some(range);
         self
     }
@@ -405,7 +406,7 @@ impl<'a> ForcedEstimator<'a> {
                 condensed
             } else {
                 // One scale for all points, so that they share tables of one unit.
-                let (start, stop) = self.range.unwrap_or((solved.omega, solved.omega));
+                let Range { start, stop } = self.range.unwrap_or(solved.omega.into());
                 // Exchanged motions are those of the whole range.
                 let stop = if solved.condensed.has_exchanges() { stop } else { start };
                 Condensed::new(self.model, &options, (start, stop), self.interrupt)?
@@ -458,7 +459,7 @@ impl<'a> ForcedEstimator<'a> {
             system.set_point(omega, factored, work)?;
             system
         } else {
-            let range = (omega, omega);
+            let range = omega.into();
             let (response, samples, interrupt) = (self.response, resolution.samples, self.interrupt);
             let mut problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
             problem.watch((self.responses, response), samples)?;

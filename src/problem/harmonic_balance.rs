@@ -13,6 +13,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::norm;
+use crate::options::Range;
 use crate::options::Response;
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::gauges::{Gauges, Seen};
@@ -91,7 +92,7 @@ impl<'a> HarmonicBalance<'a> {
     pub fn new(
         condensed: &'a Condensed,
         response: usize,
-        range: (f64, f64),
+        range: Range,
         samples: usize,
         given: Option<Vec<f64>>,
         interrupt: &'a Interrupt<'a>,
@@ -104,7 +105,7 @@ impl<'a> HarmonicBalance<'a> {
             .saturating_mul(coordinates)
             .saturating_mul(set.numbers().len());
         let loaded_at_rest =
-            condensed.is_preloaded() || static_force(condensed, range.0, samples, interrupt)?.is_some();
+            condensed.is_preloaded() || static_force(condensed, range.start, samples, interrupt)?.is_some();
         Ok(Self {
             condensed,
             forces: Box::new(ContactForces::new(condensed, samples, interrupt)?),

@@ -97,7 +97,7 @@ mod tests {
                 ..SolverOptions::default()
             };
             let condensed = Condensed::new(&model, &options, (0.3, 2.0), &interrupt).unwrap();
-            let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0), 0, None, &interrupt).unwrap();
+            let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0).into(), 0, None, &interrupt).unwrap();
             let n = problem.size();
             let make = || Residual::new(n).unwrap();
             let (mut quick, mut slow) = (make(), make());

@@ -11,6 +11,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dot;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::model::few_motions::reduced_wave::MotionRow;
+use crate::options::Range;
 use crate::options::Response;
 use crate::problem::gauges::{Derivatives, Gauges};
 use crate::problem::harmonic_balance::HarmonicBalance;
@@ -73,7 +74,7 @@ impl<'a> ForcedPoint<'a> {
     /// # Errors
     /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
     pub fn new(condensed: &'a Condensed, at: (usize, usize), omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
-        Self::over(condensed, at, (omega, omega), interrupt)
+        Self::over(condensed, at, omega.into(), interrupt)
     }
 
     /// The same for solutions at frequencies of a range, over which flexibilities are sums where the curve has them from sums.
@@ -83,7 +84,7 @@ impl<'a> ForcedPoint<'a> {
     pub fn over(
         condensed: &'a Condensed,
         (response, samples): (usize, usize),
-        range: (f64, f64),
+        range: Range,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let problem = HarmonicBalance::new(condensed, response, range, samples, None, interrupt)?;

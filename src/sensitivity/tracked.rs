@@ -5,6 +5,7 @@ use crate::continuation::Point;
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::{Corrected, Estimate};
+use crate::options::Range;
 use crate::problem::{InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Special, SpecialKind};
 use num_complex::Complex64;
@@ -95,11 +96,11 @@ impl Unknowns {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(start: Vec<f64>, range: (f64, f64)) -> Result<Self> {
+    pub fn new(start: Vec<f64>, range: Range) -> Result<Self> {
         Ok(Self {
             matrix: square(start.len())?,
             start,
-            step: PARAMETER_STEP * (range.1 - range.0).abs(),
+            step: PARAMETER_STEP * range.width(),
             is_reciprocal: false,
         })
     }

@@ -22,6 +22,7 @@ use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::{dot, norm};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Response, SolverOptions};
 use crate::problem::gauges::Gauges;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
@@ -103,7 +104,7 @@ impl<'a> TrackedResponse<'a> {
     pub fn new(
         (model, parameter): (&'a Model, Parameter<'a>),
         (solver, response_dof, response): (&SolverOptions, usize, Option<Response<'a>>),
-        range: (f64, f64),
+        range: Range,
         (motion, length, omega): (&[f64], f64, f64),
         kind: ResponsePoint,
         interrupt: &'a Interrupt<'a>,

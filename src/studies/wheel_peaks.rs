@@ -5,6 +5,7 @@ use crate::error::{Error, Result, Status, fail, try_push};
 use crate::hooks::Hooks;
 use crate::model::Model;
 use crate::model::wheels::sector_digest::SectorUse;
+use crate::options::Range;
 use crate::options::{ForcedOptions, Response, SolverOptions};
 use crate::results::{Branch, ResponseSeries, Special};
 use crate::studies::range_ends::at_ends;
@@ -71,7 +72,7 @@ pub struct WheelPeaks {
     /// The response of the wheel, whose response number s is that of blade s.
     pub branch: Branch,
     /// First and last angular frequency that were asked for.
-    pub range: (f64, f64),
+    pub range: Range,
 }
 
 impl WheelPeaks {
@@ -105,7 +106,7 @@ impl WheelPeaks {
                 format_args!(
                     "{of} is at {amplitude:.6e} at omega = {omega}, an end of the range {} .. {}, above its peaks there: the highest peak \
                      lies beyond; widen the range",
-                    self.range.0, self.range.1
+                    self.range.start, self.range.stop
                 ),
             )
         };
@@ -192,7 +193,7 @@ pub fn wheel_peaks(
             .responses()
             .first()
             .map_or(BladePeak::NONE, |series| BladePeak::of(&tuned, series)),
-        range: (options.omega_start, options.omega_stop),
+        range: Range::new(options.omega_start, options.omega_stop),
         blades,
         branch,
     })

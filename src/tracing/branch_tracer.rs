@@ -9,6 +9,7 @@ use crate::harmonics::discretised::Traceable;
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
+use crate::options::Range;
 use crate::tracing::inner_ends::{InnerEnd, InnerEnds};
 use crate::tracing::resonance_bands::ResonanceBands;
 use crate::tracing::resonance_grid::LinearGrid;
@@ -31,7 +32,7 @@ const ONSET_SHARE: f64 = 0.25;
 pub(crate) struct Course<'a> {
     pub settings: Settings,
     /// The whole range, of which `settings` may omit a part that needs no following.
-    pub range: (f64, f64),
+    pub range: Range,
     /// Parameter values of requested solutions.
     pub at: &'a [f64],
     pub max_points: usize,
@@ -301,7 +302,7 @@ impl<'a> BranchTracer<'a> {
 
     /// Completed share of the range at a parameter value.
     fn fraction_done(&self, parameter: f64) -> f64 {
-        let (start, end) = self.course.range;
+        let Range { start, stop: end } = self.course.range;
         let range = end - start;
         if range == 0.0 {
             return 1.0;

@@ -11,6 +11,7 @@ use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status, try_push};
 use crate::harmonics::discretised::Traceable;
 use crate::hooks::{Hooks, LogLevel};
+use crate::options::Range;
 use crate::results::SpecialKind;
 use crate::tracing::branch_tracer::{BranchTracer, Stretch, some_unless_lost};
 use crate::tracing::resonance_grid::LinearGrid;
@@ -133,7 +134,7 @@ impl BranchTracer<'_> {
         }
         self.grid_requested = true;
         let settings = self.course.settings;
-        let range = (settings.start.min(settings.end), settings.start.max(settings.end));
+        let range = Range::new(settings.start.min(settings.end), settings.start.max(settings.end));
         let Some(resonances) = analysis.resonances(range)? else {
             let reason = "natural frequencies are not known: linear contacts are followed like nonlinear ones";
             hooks.log(LogLevel::Info, reason);

@@ -74,7 +74,7 @@ impl CoarseStart {
             let condensed = Condensed::new(model, &options, settings.start, interrupt)?;
             let given = found.as_ref().map(|below| below.at(&condensed)).transpose()?;
             let is_transferred = given.is_some();
-            let at = (settings.start, settings.start);
+            let at = settings.start.into();
             let mut problem = HarmonicBalance::new(&condensed, response, at, solver.samples, given, interrupt)?;
             let first = match initial_point::solve_within(&mut problem, settings, EFFORT, interrupt) {
                 Ok(first) => first,

@@ -10,6 +10,7 @@ use crate::harmonics::Solved;
 use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::SolverOptions;
 use crate::results::Recovery;
 use num_complex::Complex64;
@@ -37,7 +38,7 @@ impl<'a> FineMotion<'a> {
     pub fn new(
         model: &'a Model,
         solver: &SolverOptions,
-        (response, range): (usize, (f64, f64)),
+        (response, range): (usize, Range),
         (models, waves): (&'a ModelCache, &'a SharedWaves),
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {

@@ -22,6 +22,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Content, Exchanged, ForcedOptions, Response, SolverOptions, check_highest, check_responses};
 use crate::problem::InitialGuess;
 use crate::results::{Branch, Descent};
@@ -216,7 +217,7 @@ fn follow(
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
-    let sweep = (range.omega_start, range.omega_stop);
+    let sweep = Range::new(range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;
     let condensed = |harmonics, reference, fewer: Option<&Condensed>| {
         let options = SolverOptions { harmonics, ..*solver };
@@ -329,10 +330,10 @@ fn tell_end(branch: &mut Branch, length: f64, merged_at: Option<f64>) {
     }
 }
 
-fn settings_of(solver: &SolverOptions, (start, end): (f64, f64), detail: Detail) -> Settings {
+fn settings_of(solver: &SolverOptions, range: Range, detail: Detail) -> Settings {
     Settings {
-        start,
-        end,
+        start: range.start,
+        end: range.stop,
         tolerance: solver.tol_residual,
         max_iterations: solver.max_newton,
         steps: StepControl::with_detail(solver.step, solver.step_min, solver.step_max, detail),
@@ -343,7 +344,7 @@ fn settings_of(solver: &SolverOptions, (start, end): (f64, f64), detail: Detail)
 fn course_of<'a>(solver: &SolverOptions, range: &ForcedOptions<'a>, settings: Settings) -> Course<'a> {
     Course {
         settings,
-        range: (range.omega_start, range.omega_stop),
+        range: Range::new(range.omega_start, range.omega_stop),
         at: range.at,
         max_points: solver.max_points,
         may_refine: may_refine(solver),
@@ -479,7 +480,7 @@ fn first_point(
 fn bands(
     model: &Model,
     (solver, detail): (&SolverOptions, Detail),
-    (forced, sweep): (&[usize], (f64, f64)),
+    (forced, sweep): (&[usize], Range),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<ResonanceBands>> {
     if detail == Detail::Curve || solver.step_max > 0.0 {
@@ -509,7 +510,7 @@ pub(crate) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
 /// A model condensed for a sweep, with the modes of its waves where it has some; from one with fewer harmonics, where there is one.
 fn condensed(
     (model, options): (&Model, &SolverOptions),
-    sweep: (f64, f64),
+    sweep: Range,
     (reference, fewer): (Option<Reference>, Option<&Condensed>),
     waves: &SharedWaves,
     interrupt: &Interrupt<'_>,
@@ -522,7 +523,7 @@ fn condensed(
         Some(shared) => shared,
         None => Condensed::with_reference(model, options, sweep, reference, interrupt)?,
     };
-    if sweep.0.to_bits() == sweep.1.to_bits() {
+    if sweep.is_single() {
         return Ok(condensed);
     }
     waves.attach(model, condensed, interrupt)

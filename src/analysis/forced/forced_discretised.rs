@@ -26,6 +26,7 @@ use crate::model::Model;
 use crate::model::matrices::spring::along;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 use crate::options::{Measure, Response, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
@@ -155,7 +156,11 @@ impl<'a> ForcedDiscretised<'a> {
             estimator: estimates
                 .then(|| {
                     let estimator = ForcedEstimator::new(model, solver, response, extended, interrupt);
-                    boxed(|| Ok(estimator.over((settings.start, settings.end)).watching(responses.list)))
+                    boxed(|| {
+                        Ok(estimator
+                            .over(Range::new(settings.start, settings.end))
+                            .watching(responses.list))
+                    })
                 })
                 .transpose()?,
             stale: false,
@@ -169,7 +174,7 @@ impl<'a> ForcedDiscretised<'a> {
             linear: false,
             fine: match &stability {
                 Some(stability) if stability.on_all_degrees => {
-                    let observed = (response, (settings.start, settings.end));
+                    let observed = (response, Range::new(settings.start, settings.end));
                     Some(FineMotion::new(model, solver, observed, extended, interrupt)?)
                 }
                 _ => None,
@@ -446,7 +451,7 @@ impl Discretised for ForcedDiscretised<'_> {
         Ok(true)
     }
 
-    fn resonances(&mut self, range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+    fn resonances(&mut self, range: Range) -> Result<Option<Vec<Resonance>>> {
         let condensed = &self.resolutions.current.resolution.condensed;
         if condensed.is_reduced() {
             return reduced_resonances(self.model, condensed, range, self.interrupt);

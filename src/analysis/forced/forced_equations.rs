@@ -5,6 +5,7 @@ use crate::continuation::resolve::solve_linear;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::options::Range;
 use crate::options::Response;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
@@ -45,7 +46,7 @@ impl<'a> Equations<'a> {
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let (condensed, samples) = (&*resolution.condensed, resolution.samples);
-        let range = (settings.start, settings.end);
+        let range = Range::new(settings.start, settings.end);
         let mut problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
         problem.watch((responses, response), samples)?;
         Ok(Self {

@@ -135,7 +135,7 @@ fn solve(
     solver: &SolverOptions,
     interrupt: &Interrupt<'_>,
 ) -> Result<StaticState> {
-    let mut problem = HarmonicBalance::new(condensed, 0, (OMEGA, OMEGA), solver.samples, None, interrupt)?;
+    let mut problem = HarmonicBalance::new(condensed, 0, OMEGA.into(), solver.samples, None, interrupt)?;
     let settings = Settings {
         start: OMEGA,
         end: OMEGA,

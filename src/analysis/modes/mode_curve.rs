@@ -21,6 +21,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::natural_modes::repeated_modes::Multiple;
+use crate::options::Range;
 use crate::options::{Content, Flexibility, ModeOptions, SolverOptions, check_highest};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
@@ -132,7 +133,7 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
         contact: None,
         reference_dof: 0,
     };
-    let ends = (range.log10_start, range.log10_stop);
+    let ends = Range::new(range.log10_start, range.log10_stop);
     branch.set_mode(ModeData::new(info, linear, gauge, ends));
     Ok(branch)
 }

@@ -9,6 +9,7 @@ use crate::error::{Result, Status, fail};
 use crate::harmonics::discretised::{Discretised, Recorder};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
+use crate::options::Range;
 use crate::options::{ModeOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::SpecialKind;
@@ -62,7 +63,7 @@ pub(crate) fn course<'a>(
             start: if from < end { start } else { from },
             ..settings
         },
-        range: (start, end),
+        range: Range::new(start, end),
         at: range.at,
         max_points: solver.max_points,
         may_refine: may_refine(solver),
@@ -82,7 +83,7 @@ pub(crate) fn trace(
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Status> {
-    let (start, end) = tracer.course().range;
+    let Range { start, stop: end } = tracer.course().range;
     let max_points = tracer.course().max_points;
     let linear_up_to = onset.linear_up_to;
     let level = mode.resolution();
@@ -235,7 +236,7 @@ fn linear_range(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Status>> {
     let course = tracer.course();
-    let (start, stop) = course.range;
+    let Range { start, stop } = course.range;
     let spacing = course.settings.steps.largest() * (stop - start);
     let steps = ((end - start) / spacing).ceil().max(1.0);
     let count = if end > start { steps as usize + 1 } else { 1 };

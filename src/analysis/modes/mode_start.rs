@@ -8,6 +8,7 @@ use crate::model::Model;
 use crate::model::matrices::spring::along;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::mode_selection::SelectedMode;
+use crate::options::Range;
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::results::stored::mode_branch::{ModeData, ModeInfo};
@@ -95,7 +96,7 @@ impl ModeStart {
             stuck: try_copy(&self.chosen.stuck, CONTEXT)?,
             free: try_copy(&self.chosen.free, CONTEXT)?,
         };
-        let ends = (range.log10_start, range.log10_stop);
+        let ends = Range::new(range.log10_start, range.log10_stop);
         Ok(ModeData::new(info, self.linear.clone(), self.gauge.clone(), ends))
     }
 }

@@ -11,6 +11,7 @@ use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{DampingForm, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeData;
 use crate::results::{Branch, ParameterData};
@@ -104,7 +105,7 @@ pub(crate) fn follow(
     let mut tracked = TrackedDamping::new(
         (model, parameter),
         (&options, branch.response_dof()),
-        (range.start, range.stop),
+        Range::new(range.start, range.stop),
         (linear, gauge),
         ((&begin, own.length()), omega, at),
         (to, interrupt),
@@ -113,7 +114,12 @@ pub(crate) fn follow(
     let reduction = resolution.condensed.reduction_with(first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
     let mut found = Branch::new(resolution, reduction, highest, branch.response_dof())?;
-    found.set_mode(ModeData::new(data.info.clone(), linear.clone(), gauge.clone(), ends));
+    found.set_mode(ModeData::new(
+        data.info.clone(),
+        linear.clone(),
+        gauge.clone(),
+        ends.into(),
+    ));
     let mut data = ParameterData::default();
     let recorder = CurveRecorder::new(
         Followed::new(&mut tracked, (&levels, level), settings, interrupt),
@@ -132,7 +138,7 @@ pub(crate) fn follow(
 fn without_points(first: &Model, solver: &SolverOptions, mode: &Branch) -> Result<Branch> {
     let mut found = Branch::stopped(first, solver)?;
     if let Some(data) = mode.mode_data() {
-        let ends = (STUCK, STUCK + 1.0);
+        let ends = Range::new(STUCK, STUCK + 1.0);
         found.set_mode(ModeData::new(
             data.info.clone(),
             data.linear.clone(),

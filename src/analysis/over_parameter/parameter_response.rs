@@ -13,6 +13,7 @@ use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{ForcedOptions, Response, SolverOptions, check_responses};
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
@@ -219,7 +220,7 @@ pub(crate) fn follow_from(
     let mut tracked = TrackedResponse::new(
         (model, parameter),
         (&options, branch.response_dof(), range.response),
-        (range.start, range.stop),
+        Range::new(range.start, range.stop),
         (&start, own.length(), omega),
         kind,
         interrupt,

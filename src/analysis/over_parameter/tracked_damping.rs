@@ -20,6 +20,7 @@ use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::{dot, norm};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
@@ -77,7 +78,7 @@ impl<'a> TrackedDamping<'a> {
     pub fn new(
         (model, parameter): (&'a Model, Parameter<'a>),
         (solver, response_dof): (&SolverOptions, usize),
-        range: (f64, f64),
+        range: Range,
         (linear, gauge): (&'a LinearMode, &'a Gauge),
         ((motion, length), omega, point): ((&[f64], f64), f64, ModePoint),
         (set, interrupt): (&HarmonicSet, &'a Interrupt<'a>),

@@ -12,6 +12,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::model::matrices::speed::Speed;
+use crate::options::Range;
 use crate::options::{Exchanged, SolverOptions};
 use crate::results::Branch;
 use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};
@@ -28,7 +29,7 @@ pub(crate) struct FreePoints<'a> {
     branch: &'a Branch,
     solver: SolverOptions,
     /// First and last angular frequency of all points; `None`: that of each point.
-    sweep: Option<(f64, f64)>,
+    sweep: Option<Range>,
     interrupt: &'a Interrupt<'a>,
     held: Option<HeldContacts>,
 }
@@ -58,7 +59,7 @@ impl<'a> FreePoints<'a> {
     pub fn along(
         model: &'a Model,
         branch: &'a Branch,
-        (solver, sweep): (&SolverOptions, (f64, f64)),
+        (solver, sweep): (&SolverOptions, Range),
         interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
@@ -185,7 +186,7 @@ impl<'a> FreePoints<'a> {
 
     fn prepared(
         &self,
-        (model, sweep): (&Model, Option<(f64, f64)>),
+        (model, sweep): (&Model, Option<Range>),
         sliders: &[StuckSlider],
         (point, resolution): (usize, usize),
     ) -> Result<HeldContacts> {
@@ -209,7 +210,7 @@ impl<'a> FreePoints<'a> {
             ..self.solver.fixed()
         };
         let omega = branch.omega_at(point).unwrap_or(f64::NAN);
-        let sweep = sweep.unwrap_or((omega, omega));
+        let sweep = sweep.unwrap_or(omega.into());
         let reference = Some(condensed.reference());
         let condensed = Condensed::with_reference(&held, &options, sweep, reference, self.interrupt)?;
         Ok(HeldContacts {

@@ -12,6 +12,7 @@ use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::linalg::sparse_storage::sparse::Csc;
+use crate::options::Range;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
@@ -81,13 +82,13 @@ fn computed(
     let forced = peak
         .condensed
         .under_force(&load.force, damping, 2.0 * load.ratio * state.omega)?;
-    let range = ((omega - width).max(0.1 * omega), omega + width);
+    let range = Range::new((omega - width).max(0.1 * omega), omega + width);
     let mut problem = HarmonicBalance::new(&forced, peak.response_dof, range, peak.samples, None, interrupt)?;
     problem.set_factorised(true);
     let n = forced.unknowns();
-    let settings = |(start, end): (f64, f64)| Settings {
-        start,
-        end,
+    let settings = |range: Range| Settings {
+        start: range.start,
+        end: range.stop,
         tolerance: 1e-9,
         max_iterations: 25,
         steps: StepControl::new(0.0, 0.0, COMPUTED_PEAK_STEP),
@@ -119,7 +120,7 @@ fn computed(
     let settings = if rising >= 0.0 {
         upwards
     } else {
-        settings((range.1, range.0))
+        settings(Range::new(range.stop, range.start))
     };
     let mut before = first.try_clone()?;
     let mut continuation = Continuation::new(settings, first)?;

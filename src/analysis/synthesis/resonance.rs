@@ -62,8 +62,8 @@ impl<'a> Solver<'a> {
         )?;
         let n = problem.size();
         let settings = Settings {
-            start: data.range.0,
-            end: data.range.1,
+            start: data.range.start,
+            end: data.range.stop,
             tolerance: 1e-10,
             max_iterations: 25,
             steps: StepControl::new(0.0, 0.0, 0.0),

@@ -4,13 +4,13 @@
 use crate::condense::Condensed;
 use crate::condense::blocks::exchange::{CREEP, Exchange};
 use crate::condense::blocks::relative_coordinates::AssembledDirection;
-use crate::condense::blocks::sweep::Sweep;
 use crate::condense::by_factors::flexibility::{Table, Workspace};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::model::Model;
 use crate::options::Exchanged;
+use crate::options::Range;
 use num_complex::Complex64;
 use std::f64::consts::E;
 
@@ -126,7 +126,7 @@ impl Condensed {
     }
 
     /// Sets α of all exchanges, from the middle of a sweep, and the frequencies at which their sticks ring.
-    pub(crate) fn set_exchanges(&mut self, sweep: Sweep, interrupt: &Interrupt<'_>) -> Result<()> {
+    pub(crate) fn set_exchanges(&mut self, sweep: Range, interrupt: &Interrupt<'_>) -> Result<()> {
         if !self.has_exchanges() {
             return Ok(());
         }

@@ -12,13 +12,13 @@
 //! an error (1 + ‖Z⁻¹‖) ε_p of the motion, which no larger basis makes smaller.
 
 use crate::condense::HarmonicBlock;
-use crate::condense::blocks::sweep::Sweep;
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::hermitian;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::few_motions::reduced_wave::{ReducedView, Remainder, WaveDamping};
+use crate::options::Range;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the certificate of the flexibility";
@@ -69,7 +69,7 @@ pub(crate) fn certificate(
     (block, view): (&HarmonicBlock, &ReducedView),
     loss_factor: f64,
     inputs: &[SparseVector],
-    (sweep, enough): (Sweep, f64),
+    (sweep, enough): (Range, f64),
     residuals: &mut Vec<Complex64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
@@ -89,7 +89,7 @@ pub(crate) fn certificate(
             try_push(&mut frequencies, frequency, CONTEXT)?;
         }
     }
-    let mut lacks_resonances = sweep.is_range() && block.number > 0;
+    let mut lacks_resonances = !sweep.is_single() && block.number > 0;
     let mut lu = Lu::new(n, inputs.len().max(1))?;
     let mut worst = Certificate::default();
     let remainder = &view.pencil().remainder;
@@ -247,7 +247,7 @@ fn inverse_norm(lu: &mut Lu<Complex64>, n: usize, interrupt: &Interrupt<'_>) -> 
 fn resonances(
     block: &HarmonicBlock,
     view: &ReducedView,
-    sweep: Sweep,
+    sweep: Range,
     frequencies: &mut Vec<f64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {

@@ -6,7 +6,6 @@
 
 use crate::condense::HarmonicBlock;
 use crate::condense::blocks::contact_classes::ContactClasses;
-use crate::condense::blocks::sweep::Sweep;
 use crate::condense::by_modes::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
 use crate::condense::on_a_basis::basis_outlook::USUAL_COLUMNS;
 use crate::condense::on_a_basis::certificate::{Certificate, certificate};
@@ -21,6 +20,7 @@ use crate::model::few_motions::reduced_wave::{ReducedView, ReducedWave, WaveKey}
 use crate::model::matrices::sector_motion::MOTION_TERMS;
 use crate::model::matrices::spring::Row;
 use crate::model::matrices::wave::Wave;
+use crate::options::Range;
 use crate::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -70,7 +70,7 @@ pub(crate) struct Request<'a> {
     pub options: &'a SolverOptions,
     pub numbers: &'a [usize],
     pub contacts: (&'a ContactClasses, &'a [(usize, usize)]),
-    pub sweep: Sweep,
+    pub sweep: Range,
     /// η of the whole stiffness; `None` where a complex one has another form.
     pub loss_factor: Option<f64>,
 }
@@ -189,7 +189,7 @@ fn limit(request: &Request<'_>) -> f64 {
 /// they take the modes.
 fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = request.ndof();
-    let is_estimated = request.options.tolerance > 0.0 && request.sweep.is_range();
+    let is_estimated = request.options.tolerance > 0.0 && !request.sweep.is_single();
     if n > ALL_UP_TO {
         return Ok(!is_estimated || !are_all_modes_wanted(request.model, request.numbers.len(), interrupt)?);
     }
@@ -201,7 +201,7 @@ fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> R
     let is_modal = request.model.structure().has_modal_damping();
     let of_sum = if is_modal { OF_POLES } else { OF_MODES };
     let of_sum = of_sum * groups.len() as f64 * (n as f64).powi(3);
-    Ok(request.options.tolerance == 0.0 && request.sweep.is_range() && of_basis < of_sum)
+    Ok(request.options.tolerance == 0.0 && !request.sweep.is_single() && of_basis < of_sum)
 }
 
 fn declined<T>(forced: bool) -> Result<Option<T>> {
@@ -301,7 +301,7 @@ fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
     Some(Factors {
         highest: request.sweep.of_harmonic(highest)[2],
         harmonics: group.members.len(),
-        along_range: request.sweep.is_range(),
+        along_range: !request.sweep.is_single(),
     })
 }
 

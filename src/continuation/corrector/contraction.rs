@@ -90,7 +90,7 @@ mod tests {
         };
         let range = (0.1, 0.6);
         let condensed = Condensed::new(model, &options, range, &interrupt).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 8, range, samples, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, range.into(), samples, None, &interrupt).unwrap();
         let n = problem.unknowns();
         let mut exact = Corrector::new(n, TOLERANCE, 30).unwrap();
         let mut quick = Corrector::new(n, TOLERANCE, 30).unwrap();

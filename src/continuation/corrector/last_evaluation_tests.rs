@@ -93,7 +93,7 @@ fn points_and_tangents_are_those_of_new_factors() {
         let range = (0.1, 0.6);
         let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
         let mut problem = Counting {
-            problem: HarmonicBalance::new(&condensed, 8, range, 0, None, &interrupt).unwrap(),
+            problem: HarmonicBalance::new(&condensed, 8, range.into(), 0, None, &interrupt).unwrap(),
             evaluations: 0,
             matrices: 0,
         };

@@ -89,7 +89,7 @@ mod tests {
         };
         let range = (0.1, 0.6);
         let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 8, range, 0, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, range.into(), 0, None, &interrupt).unwrap();
         let n = problem.unknowns();
         // A loose tolerance, so that steps from points beside the branch are far above rounding.
         let (mut exact, mut quick) = (

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, try_copy, try_extend, try_push};
 use crate::model::natural_modes::repeated_modes::Multiple;
 use crate::options::Amplitude;
+use crate::options::Range;
 use crate::problem::epmc::{Gauge, LinearMode};
 use std::f64::consts::PI;
 
@@ -73,7 +74,7 @@ pub(crate) struct ModeData {
     pub linear: LinearMode,
     pub gauge: Gauge,
     /// The range of log₁₀ amplitude.
-    pub range: (f64, f64),
+    pub range: Range,
     /// The numbers of all stored points, one array for each field, so that fields can be borrowed.
     fields: [Vec<f64>; FIELDS],
     /// Unknowns and parameter of each point of the curve, then its tangent.
@@ -89,7 +90,7 @@ pub(crate) struct ModeData {
 const FIELDS: usize = 8;
 
 impl ModeData {
-    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64)) -> Self {
+    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: Range) -> Self {
         Self {
             info,
             linear,

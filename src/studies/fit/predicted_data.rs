@@ -12,6 +12,7 @@ use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Branch, Special};
@@ -244,7 +245,7 @@ impl Predictor<'_> {
             None => special.amplitude,
         };
         let mut equations = Equations {
-            range: (omega_start, omega_stop),
+            range: Range::new(omega_start, omega_stop),
             at: None,
         };
         for i in 0..set.x.len() {

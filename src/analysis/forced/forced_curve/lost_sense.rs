@@ -16,6 +16,7 @@ use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
@@ -85,7 +86,7 @@ impl Discretised for Misled<'_, '_> {
         self.response.take_over_estimate(point, factor)
     }
 
-    fn resonances(&mut self, range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+    fn resonances(&mut self, range: Range) -> Result<Option<Vec<Resonance>>> {
         self.response.resonances(range)
     }
 
