@@ -63,7 +63,7 @@ impl Branch {
         const CONTEXT: &str = "the energies";
         let carried = self.carried_of(point)?.len();
         let condensed = self.condensed_at(point);
-        let (n, length, omega) = (condensed.ndof(), condensed.length(), self.omega[point]);
+        let (n, length, omega) = (condensed.ndof(), condensed.length(), self.table.omega[point]);
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
         let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {

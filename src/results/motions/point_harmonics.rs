@@ -22,7 +22,7 @@ impl Branch {
     pub fn harmonics_at_with(&self, point: usize, x: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
         self.carried_of(point)?;
         let n = self.ndof();
-        let needed = (self.harmonics + 1) * n;
+        let needed = (self.run.harmonics + 1) * n;
         if x.len() != needed {
             return fail!(
                 Dimension,
@@ -30,7 +30,7 @@ impl Branch {
                 x.len()
             );
         }
-        let found = Recovery::at(self, point, interrupt)?.all(self.harmonics)?;
+        let found = Recovery::at(self, point, interrupt)?.all(self.run.harmonics)?;
         x.copy_from_slice(&found);
         Ok(())
     }

@@ -49,7 +49,7 @@ impl<'a> Recovery<'a> {
     pub fn at(branch: &'a Branch, point: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         interrupt.check()?;
         branch.carried_of(point)?;
-        let resolution = &branch.resolutions[branch.places[point].resolution];
+        let resolution = &branch.resolutions[branch.table.places[point].resolution];
         Self::of(resolution, Self::stored(branch, point), interrupt)
     }
 
@@ -75,7 +75,7 @@ impl<'a> Recovery<'a> {
 
     fn stored(branch: &'a Branch, point: usize) -> Solution<'a> {
         let motion = branch.motion_at(point).unwrap_or(&[]);
-        (motion, branch.omega[point], branch.damping_at(point))
+        (motion, branch.table.omega[point], branch.damping_at(point))
     }
 
     /// Selects a stored point and evaluates its contact forces.
@@ -83,7 +83,7 @@ impl<'a> Recovery<'a> {
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
     pub fn go_to(&mut self, branch: &'a Branch, point: usize) -> Result<()> {
-        let resolution = &branch.resolutions[branch.places[point].resolution];
+        let resolution = &branch.resolutions[branch.table.places[point].resolution];
         if !core::ptr::eq(self.resolution, resolution) {
             *self = Self::at(branch, point, self.interrupt)?;
             return Ok(());

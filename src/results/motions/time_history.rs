@@ -242,7 +242,7 @@ impl Branch {
             .binary_search_by_key(&contact, |assembled| assembled.contact)
             .ok()?;
         let load = laws[found].load.as_ref()?;
-        Some(load.contact_at(self.omega[point]))
+        Some(load.contact_at(self.table.omega[point]))
     }
 
     /// Number of relative motions of a contact in [`Self::contact_loop`].
@@ -297,7 +297,7 @@ impl Branch {
             let all = self.motion_at(point).unwrap_or(&[]);
             try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
         }
-        let omega = self.omega[point];
+        let omega = self.table.omega[point];
         let law = match &assembled.load {
             None => Arc::clone(&assembled.law),
             Some(load) => load.contact_at(omega).law(condensed.length())?,

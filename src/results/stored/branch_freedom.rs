@@ -29,8 +29,8 @@ impl Branch {
     /// Stores the freedom of all points; `stopped` if the caller stopped its computation.
     pub(crate) fn set_freedom(&mut self, freedom: Box<FreedomOfPoints>, stopped: bool) {
         self.freedom = Some(freedom);
-        if stopped && self.status == Status::Ok {
-            self.status = Status::StoppedByCaller;
+        if stopped && self.run.status == Status::Ok {
+            self.run.status = Status::StoppedByCaller;
         }
     }
 }

@@ -27,7 +27,7 @@ impl Branch {
     /// `OutOfMemory`.
     pub fn limit_cycles(&self) -> Result<Vec<LimitCycle>> {
         let mut found = Vec::new();
-        for &(special, slope) in &self.limit_cycles {
+        for &(special, slope) in &self.special.limit_cycles {
             let cycle = LimitCycle {
                 point: special.point,
                 omega: special.omega,

@@ -9,7 +9,7 @@ use crate::results::stored::origin::Origin;
 impl Branch {
     /// Notes the model, whose wave the branch has unless it was given one of its own.
     pub(crate) fn set_origin(&mut self, model: &Model, on_wave: bool) {
-        self.origin = Some(Origin {
+        self.family.origin = Some(Origin {
             model: model.fingerprint(),
             on_wave,
         });
@@ -22,7 +22,7 @@ impl Branch {
     pub(crate) fn check_model(&self, model: &Model) -> Result<()> {
         self.check_one_model()?;
         self.check_size(model)?;
-        let on_wave = self.origin.is_none_or(|origin| origin.on_wave);
+        let on_wave = self.family.origin.is_none_or(|origin| origin.on_wave);
         self.check_origin(
             model,
             if self.mode_data().is_some() {
@@ -39,7 +39,7 @@ impl Branch {
     }
 
     fn check_origin(&self, model: &Model, used: Use) -> Result<()> {
-        match &self.origin {
+        match &self.family.origin {
             Some(origin) => origin.model.check(model, used),
             None => Ok(()),
         }

@@ -48,17 +48,20 @@ impl Branch {
     pub(crate) fn stored_field(&self, field: PointField) -> Option<&[f64]> {
         let is_mode = self.mode.is_some();
         match field {
-            PointField::Omega => Some(&self.omega),
-            PointField::Amplitude => Some(&self.amplitude),
-            PointField::Residual => Some(&self.residual),
-            PointField::NewtonIterations => Some(&self.iterations),
-            PointField::HarmonicsUsed => Some(&self.harmonics_used),
-            PointField::SlipFraction => Some(&self.slip_fraction),
-            PointField::SamplingError => Some(&self.sampling_error),
-            PointField::ErrorEstimate => Some(&self.error_estimate),
-            PointField::DampingErrorEstimate => is_mode.then_some(&self.damping_error_estimate[..]),
-            PointField::FloquetRadius => self.tells_stability.then_some(&self.floquet_radius[..]),
-            PointField::UnstableDirections => self.tells_stability.then_some(&self.unstable_directions[..]),
+            PointField::Omega => Some(&self.table.omega),
+            PointField::Amplitude => Some(&self.table.amplitude),
+            PointField::Residual => Some(&self.table.residual),
+            PointField::NewtonIterations => Some(&self.table.iterations),
+            PointField::HarmonicsUsed => Some(&self.table.harmonics_used),
+            PointField::SlipFraction => Some(&self.table.slip_fraction),
+            PointField::SamplingError => Some(&self.errors.sampling),
+            PointField::ErrorEstimate => Some(&self.errors.truncation),
+            PointField::DampingErrorEstimate => is_mode.then_some(&self.errors.damping[..]),
+            PointField::FloquetRadius => self.run.tells_stability.then_some(&self.stability.floquet_radius[..]),
+            PointField::UnstableDirections => self
+                .run
+                .tells_stability
+                .then_some(&self.stability.unstable_directions[..]),
             PointField::FreeSliders => self.freedom.as_ref().map(|freedom| freedom.count()),
             PointField::ByPlace => self.freedom.as_ref().map(|freedom| freedom.by_place().as_flattened()),
             PointField::Parameter => self.parameter.as_ref().map(|data| &data.parameter[..]),
@@ -74,11 +77,14 @@ impl Branch {
 
     /// Gives the points without stability, those beside the curve among them, NaN for it.
     pub(crate) fn complete_stability(&mut self) -> Result<()> {
-        if !self.tells_stability {
+        if !self.run.tells_stability {
             return Ok(());
         }
-        let stored = self.omega.len();
-        for numbers in [&mut self.floquet_radius, &mut self.unstable_directions] {
+        let stored = self.table.omega.len();
+        for numbers in [
+            &mut self.stability.floquet_radius,
+            &mut self.stability.unstable_directions,
+        ] {
             numbers
                 .try_reserve(stored.saturating_sub(numbers.len()))
                 .map_err(|_| Error::out_of_memory("the stability of the points"))?;

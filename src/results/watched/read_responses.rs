@@ -77,20 +77,20 @@ impl Branch {
         check_responses(responses, self.ndof(), self.reduction().sectors)?;
         let mut found = Vec::new();
         for response in responses {
-            let series = ResponseSeries::new(response, self.response_dof, false)?;
+            let series = ResponseSeries::new(response, self.run.response_dof, false)?;
             try_push(&mut found, series, CONTEXT)?;
         }
         if responses.is_empty() || self.stored() == 0 {
             return Ok(found);
         }
         let mut recovery = Recovery::at(self, 0, interrupt)?;
-        let mut model = OnModel::new(self.condensed_at(0), responses, self.response_dof)?;
-        for (point, &omega) in self.omega.iter().enumerate() {
+        let mut model = OnModel::new(self.condensed_at(0), responses, self.run.response_dof)?;
+        for (point, &omega) in self.table.omega.iter().enumerate() {
             interrupt.part(Phase::Results, point, self.stored())?;
             recovery.go_to(self, point)?;
             let condensed = self.condensed_at(point);
             if !core::ptr::eq(condensed, model.condensed) {
-                model = OnModel::new(condensed, responses, self.response_dof)?;
+                model = OnModel::new(condensed, responses, self.run.response_dof)?;
             }
             model.fill(&mut recovery, omega)?;
             let set = condensed.set();

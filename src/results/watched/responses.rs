@@ -19,7 +19,7 @@ impl Branch {
 
     /// Whether the error of a point is that of the norm of all responses.
     pub(crate) fn together(&self) -> bool {
-        self.together
+        self.run.together
     }
 
     /// Number of the response with the largest error at a stored point, in the norm that the tolerance has; `None` where no error
@@ -27,7 +27,7 @@ impl Branch {
     #[must_use]
     pub fn leading_response(&self, point: usize) -> Option<usize> {
         let error = |of: &ResponseSeries| -> f64 {
-            let unit = if self.together {
+            let unit = if self.run.together {
                 of.values().get(point).map_or(f64::NAN, |x| x.abs())
             } else {
                 1.0
@@ -53,9 +53,9 @@ impl Branch {
 
     /// Notes the responses before the first point. `observed`: the first is the amplitude that the branch has by itself.
     pub(crate) fn watch(&mut self, (responses, together): (&[Response<'_>], bool), observed: bool) -> Result<()> {
-        self.together = together;
+        self.run.together = together;
         for (i, response) in responses.iter().enumerate() {
-            let series = ResponseSeries::new(response, self.response_dof, observed && i == 0)?;
+            let series = ResponseSeries::new(response, self.run.response_dof, observed && i == 0)?;
             try_push(&mut self.responses, series, "the responses")?;
         }
         Ok(())
