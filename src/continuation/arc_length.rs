@@ -48,22 +48,32 @@ pub struct Continuation {
     /// Size of its unknowns, and length of its tangent in the metric of the last prediction.
     size: f64,
     length: f64,
-    /// A point whose memory the next one takes.
-    unused: Option<Point>,
+    memory: StepMemory,
     /// Largest motion and amplitude so far.
     largest: (f64, f64),
     /// Error of the prediction of the point accepted last.
     last_error: f64,
     /// Points accepted last whose parameters differ by rounding.
     stationary: usize,
+    surfaces: Surfaces,
+}
+
+/// Memory of steps.
+pub struct StepMemory {
+    /// A point whose memory the next one takes.
+    unused: Option<Point>,
     row: Vec<f64>,
     scratch: Vec<f64>,
     /// Memory of the next prediction.
     prediction: Vec<f64>,
+}
+
+/// Corners that are left along their surface.
+pub struct Surfaces {
     /// Whether corners are left that it reaches along their surface. Paths of homotopies end there, and so does a branch
     /// that meets the next one before its steps have grown again: one that goes to infinity would creep.
-    leaves_surfaces: bool,
-    left_surface: bool,
+    may_leave: bool,
+    left: bool,
 }
 
 const CONTEXT: &str = "the continuation";
@@ -159,21 +169,25 @@ impl Continuation {
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             history: History::new(n + 1)?,
             current: first,
-            unused: None,
+            memory: StepMemory {
+                unused: None,
+                row: try_vec(n + 1, 0.0, CONTEXT)?,
+                scratch: try_vec(n + 1, 0.0, CONTEXT)?,
+                prediction: Vec::new(),
+            },
             last_error: f64::INFINITY,
             stationary: 0,
-            row: try_vec(n + 1, 0.0, CONTEXT)?,
-            scratch: try_vec(n + 1, 0.0, CONTEXT)?,
-            prediction: Vec::new(),
-            leaves_surfaces: false,
-            left_surface: false,
+            surfaces: Surfaces {
+                may_leave: false,
+                left: false,
+            },
         })
     }
 
     /// The same for a branch, which leaves corners that it reaches along their surface, too.
     #[must_use]
     pub fn leaving_surfaces(mut self) -> Self {
-        self.leaves_surfaces = true;
+        self.surfaces.may_leave = true;
         self
     }
 
@@ -184,10 +198,10 @@ impl Continuation {
     /// `OutOfMemory`.
     pub fn go_on_from(&mut self, previous: Option<Point>, current: Point) -> Result<()> {
         let n = current.v.len() - 1;
-        if n + 1 != self.row.len() {
+        if n + 1 != self.memory.row.len() {
             self.corrector = corrector(n, &self.settings)?;
-            self.row = try_vec(n + 1, 0.0, CONTEXT)?;
-            self.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
+            self.memory.row = try_vec(n + 1, 0.0, CONTEXT)?;
+            self.memory.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
         }
         self.note_size(&current);
         self.history = History::new(n + 1)?;
@@ -233,7 +247,7 @@ impl Continuation {
 
     /// Takes the memory of a point that is no longer used for the next one.
     pub fn recycle(&mut self, point: Point) {
-        self.prediction = point.v;
+        self.memory.prediction = point.v;
         self.corrector.recycle(point.tangent);
     }
 
@@ -253,7 +267,7 @@ impl Continuation {
             return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
         }
         let metric = self.metric();
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         loop {
             let step = self.steps.step();
             let (v, amplitude) = self.predict(metric, step)?;
@@ -311,18 +325,18 @@ impl Continuation {
 
     fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
         self.note_size(&point);
-        self.left_surface &= point.step < GROWN;
+        self.surfaces.left &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
         self.stationary = if change <= ARC_LENGTH_ROUNDING * point.parameter().abs() && point.step > TINY {
             self.stationary + 1
         } else {
             0
         };
-        let next = match self.unused.take() {
+        let next = match self.memory.unused.take() {
             Some(old) => point.try_clone_into(old)?,
             None => point.try_clone()?,
         };
-        self.unused = self.history.push(core::mem::replace(&mut self.current, next));
+        self.memory.unused = self.history.push(core::mem::replace(&mut self.current, next));
         Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
             Some(_) => Advance::Accepted { point, last: true },
@@ -349,10 +363,10 @@ impl Continuation {
 
     /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
-        self.length = metric.unit(&self.current.tangent, &mut self.row);
-        let mut v = core::mem::take(&mut self.prediction);
+        self.length = metric.unit(&self.current.tangent, &mut self.memory.row);
+        let mut v = core::mem::take(&mut self.memory.prediction);
         v.clear();
-        try_extend(&mut v, &self.row, CONTEXT)?;
+        try_extend(&mut v, &self.memory.row, CONTEXT)?;
         let is_smooth = self.is_smooth();
         let amplitude = self.history.predict(&self.current, metric, (step, is_smooth), &mut v);
         Ok((v, amplitude))
@@ -390,21 +404,21 @@ impl Continuation {
         interrupt: &Interrupt<'_>,
     ) -> Result<Attempt> {
         let n = v.len() - 1;
-        self.scratch.copy_from_slice(&v);
+        self.memory.scratch.copy_from_slice(&v);
         if keep_parameter {
-            self.row.fill(0.0);
-            self.row[n] = 1.0;
+            self.memory.row.fill(0.0);
+            self.memory.row[n] = 1.0;
         }
         self.corrector.set_may_foresee(self.is_smooth());
         let corrected = match self
             .corrector
-            .correct(problem, &mut v, &self.row, metric, false, interrupt)?
+            .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?
         {
             Outcome::Converged(corrected) => corrected,
             Outcome::Failed => return Ok(Attempt::Failed),
         };
         if keep_parameter {
-            v[n] = self.scratch[n];
+            v[n] = self.memory.scratch[n];
         }
         let mut point = Point::new(v, corrected, step);
         let here = &self.current;
@@ -424,11 +438,12 @@ impl Continuation {
         let back = cosine(along, chord, lengths.0) < STRAIGHT;
         let far = chord > 3.0 * step;
         let size = norm(point.unknowns());
-        let error = self.prediction_error(&self.scratch, (&point, size), amplitude);
+        let error = self.prediction_error(&self.memory.scratch, (&point, size), amplitude);
         // A smooth curve that another one crosses changes its sense, too, and a step over the crossing is well predicted.
         let crossed = self.steps.crosses_branches() && error <= CROSSED.0 && kept >= CROSSED.1;
         let jumped = jumped && !crossed;
-        self.history.judge(&self.scratch, &point, &self.row, metric);
+        self.history
+            .judge(&self.memory.scratch, &point, &self.memory.row, metric);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }

@@ -119,13 +119,18 @@ pub struct Gauges<'a> {
     /// Packed signals of the gauges, and their changes.
     signals: Vec<f64>,
     changes: Vec<f64>,
+    motion: GaugeMotion,
+    /// The point and the direction that were read last, and the harmonics whose signals are known there.
+    last: Vec<f64>,
+    known: Vec<bool>,
+}
+
+/// Memory of motions and of their changes, relative and of the structure.
+pub struct GaugeMotion {
     w: Vec<Complex64>,
     dw: Vec<Complex64>,
     x: Vec<Complex64>,
     dx: Vec<Complex64>,
-    /// The point and the direction that were read last, and the harmonics whose signals are known there.
-    last: Vec<f64>,
-    known: Vec<bool>,
 }
 
 impl<'a> Gauges<'a> {
@@ -154,10 +159,12 @@ impl<'a> Gauges<'a> {
             reader: Reader::new(set)?,
             signals: try_vec(numbers, 0.0, CONTEXT)?,
             changes: try_vec(numbers, 0.0, CONTEXT)?,
-            w: vector(condensed.coordinates())?,
-            dw: vector(condensed.coordinates())?,
-            x: vector(condensed.ndof())?,
-            dx: vector(condensed.ndof())?,
+            motion: GaugeMotion {
+                w: vector(condensed.coordinates())?,
+                dw: vector(condensed.coordinates())?,
+                x: vector(condensed.ndof())?,
+                dx: vector(condensed.ndof())?,
+            },
             last: Vec::new(),
             known: try_vec(set.numbers().len(), false, CONTEXT)?,
         })
@@ -194,19 +201,20 @@ impl<'a> Gauges<'a> {
                 self.forces.evaluate(u, omega)?;
                 evaluated = true;
             }
-            for (c, (w, dw)) in self.w.iter_mut().zip(&mut self.dw).enumerate() {
+            for (c, (w, dw)) in self.motion.w.iter_mut().zip(&mut self.motion.dw).enumerate() {
                 *w = self.forces.minus_reference(u, c, i);
                 *dw = self.forces.along(along, c, i) + self.forces.by_omega(c, i) * d_omega;
             }
-            let (x, dx) = (&mut self.x, &mut self.dx);
+            let (x, dx) = (&mut self.motion.x, &mut self.motion.dx);
             let at = (i, omega);
-            self.workspace.recover(condensed, i, omega, &self.w, x, interrupt)?;
             self.workspace
-                .recover_along(condensed, at, (&self.dw, d_omega), x, dx, interrupt)?;
-            for (c, y) in self.w.iter_mut().enumerate() {
+                .recover(condensed, i, omega, &self.motion.w, x, interrupt)?;
+            self.workspace
+                .recover_along(condensed, at, (&self.motion.dw, d_omega), x, dx, interrupt)?;
+            for (c, y) in self.motion.w.iter_mut().enumerate() {
                 *y = set.get_at(u, c * m, i);
             }
-            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, x, interrupt)?;
+            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.motion.w, x, interrupt)?;
             for (r, gauge) in self.all.iter().enumerate() {
                 let (factor, d_factor) = gauge.factor(number, omega);
                 let (value, change) = (gauge.along(i, x), gauge.along(i, dx));

@@ -80,6 +80,11 @@ pub(crate) struct TrackedResponse<'a> {
     interrupt: &'a Interrupt<'a>,
     /// Borders of the condition of a fold or an extremum, from the first evaluation on.
     borders: Option<Borders>,
+    last: LastResponse,
+}
+
+/// Result of the point evaluated last.
+pub(crate) struct LastResponse {
     /// Amplitude at the point evaluated last, its total derivative by the parameter, and its change with all unknowns and
     /// the parameter along solutions.
     amplitude: f64,
@@ -126,10 +131,12 @@ impl<'a> TrackedResponse<'a> {
             unknowns: Unknowns::new(start, range)?,
             interrupt,
             borders: None,
-            amplitude: 0.0,
-            d_amplitude: 0.0,
-            gradient: try_vec(n + 1, 0.0, CONTEXT)?,
-            curvature: f64::NAN,
+            last: LastResponse {
+                amplitude: 0.0,
+                d_amplitude: 0.0,
+                gradient: try_vec(n + 1, 0.0, CONTEXT)?,
+                curvature: f64::NAN,
+            },
         })
     }
 
@@ -245,17 +252,17 @@ impl<'a> TrackedResponse<'a> {
             return Ok(scale);
         }
         self.fill_motions(point.jacobian());
-        self.gradient.fill(0.0);
+        self.last.gradient.fill(0.0);
         if self.is_free() {
             let by_omega = point.residual_by_omega(omega)?;
             let (row, curvature) = peak_row(point, own, omega, &adjoint)?;
-            self.curvature = curvature;
+            self.last.curvature = curvature;
             self.fill_frequency((&by_omega, &row), omega, unit, by_gauge);
-            self.gradient[m] = adjoint.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+            self.last.gradient[m] = adjoint.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
         }
         let slope = self.by_parameter((model, condensed), p, &adjoint)?;
-        self.gradient[values.len()] = slope;
-        (self.amplitude, self.d_amplitude) = (adjoint.amplitude, slope);
+        self.last.gradient[values.len()] = slope;
+        (self.last.amplitude, self.last.d_amplitude) = (adjoint.amplitude, slope);
         Ok(scale)
     }
 
@@ -293,19 +300,19 @@ impl<'a> TrackedResponse<'a> {
             self.by_parameter(models, p, adjoint)
         })?;
         self.fill_frequency((&by_omega, &g.by_unknowns), omega, unit, 1.0);
-        self.amplitude = length * amplitude.norm();
+        self.last.amplitude = length * amplitude.norm();
         // The change of the amplitude with all unknowns: in a fold its adjoint at a fixed frequency does not exist.
-        for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
+        for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
-        self.gradient[n] = self.by_parameter(models, p, &partial)?;
+        self.last.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+        self.last.gradient[n] = self.by_parameter(models, p, &partial)?;
         // The adjoint of motions, frequency and condition together.
         let mut system = Lu::new(n, 1)?;
         system.matrix().copy_from_slice(&self.unknowns.matrix);
-        self.d_amplitude = f64::NAN;
+        self.last.d_amplitude = f64::NAN;
         if system.factor(self.interrupt).is_ok() {
-            let mut lambda = try_copy(&self.gradient[..n], CONTEXT)?;
+            let mut lambda = try_copy(&self.last.gradient[..n], CONTEXT)?;
             system.solve_transposed(&mut lambda);
             // R is in the unit of the unknowns, and the result of an adjoint motion in that of the condensed model.
             let weight = lambda.pop().unwrap_or(f64::NAN);
@@ -314,7 +321,7 @@ impl<'a> TrackedResponse<'a> {
             }
             point.amplitude(own, omega)?;
             let adjoint = point.of_lambda((own, omega), amplitude, &lambda)?;
-            self.d_amplitude = self.by_parameter(models, p, &adjoint)? - weight * g.by_parameter;
+            self.last.d_amplitude = self.by_parameter(models, p, &adjoint)? - weight * g.by_parameter;
         }
         Ok(scale)
     }
@@ -344,14 +351,14 @@ impl<'a> TrackedResponse<'a> {
         self.fill_motions(point.jacobian());
         let row = extremum_gradient(point, (own, omega, length), &at, TRACKED_RESPONSE_OMEGA_UNIT * omega)?;
         self.fill_frequency((&by_omega, &row), omega, unit, 1.0);
-        self.amplitude = length * amplitude.norm();
-        for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
+        self.last.amplitude = length * amplitude.norm();
+        for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
-        self.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
+        self.last.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+        self.last.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
         // The amplitude does not change with the frequency there, so that its derivative is that at a fixed one.
-        self.d_amplitude = match point.adjoint(own, omega)? {
+        self.last.d_amplitude = match point.adjoint(own, omega)? {
             Some(adjoint) => self.by_parameter((model, condensed), p, &adjoint)?,
             None => f64::NAN,
         };
@@ -457,7 +464,7 @@ impl Tracked for TrackedResponse<'_> {
             }
         }
         self.unknowns.resize(n)?;
-        self.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
+        self.last.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
         self.solver.harmonics = highest;
         self.solver.samples = self.solver.samples.max(to.samples);
         Ok(())
@@ -526,7 +533,7 @@ impl Tracked for TrackedResponse<'_> {
             resolution: &resolution,
             omega,
             motion: &motion,
-            amplitude: Complex64::from(self.amplitude / condensed.length()),
+            amplitude: Complex64::from(self.last.amplitude / condensed.length()),
             response: &response,
             residual: point.residual,
             iterations: point.iterations,
@@ -536,11 +543,11 @@ impl Tracked for TrackedResponse<'_> {
             seen: &[],
         };
         branch.push_followed(kind, &record)?;
-        data.push(p, (self.d_amplitude, f64::NAN))?;
+        data.push(p, (self.last.d_amplitude, f64::NAN))?;
         let special = Special {
             point: branch.stored() - 1,
             omega,
-            amplitude: self.amplitude,
+            amplitude: self.last.amplitude,
         };
         Ok((special, sampling_error))
     }
@@ -555,7 +562,7 @@ impl Tracked for TrackedResponse<'_> {
         }
         let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
         self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
-        Ok(self.curvature <= 0.0)
+        Ok(self.last.curvature <= 0.0)
     }
 }
 
@@ -611,9 +618,9 @@ impl Problem for TrackedResponse<'_> {
 
     /// The amplitude; its derivative is that along the curve of solutions.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let mut change = dot(&self.gradient[..u.len()], &direction[..u.len()]);
-        change += self.gradient[u.len()] * direction[u.len()];
-        self.unknowns.observe(self.amplitude, change)
+        let mut change = dot(&self.last.gradient[..u.len()], &direction[..u.len()]);
+        change += self.last.gradient[u.len()] * direction[u.len()];
+        self.unknowns.observe(self.last.amplitude, change)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {

@@ -89,8 +89,8 @@ pub(crate) fn multipliers_of(
         trivial = 1;
     }
     // The lapses of a period turn the wheel by `follower` sectors each, which passes the ring some whole times.
-    let lapses = system.sectors;
-    let passed = system.follower * lapses / block.closure().sectors;
+    let lapses = system.wave.sectors;
+    let passed = system.wave.follower * lapses / block.closure().sectors;
     let turn = block.closure().factor(structure, passed).conj();
     let counts = Counts {
         stuck: stuck.len(),

@@ -82,7 +82,7 @@ impl Perturbations<'_> {
         // Sliders are numbered contact by contact, sectors within.
         let (sector, within) = (at / block % m, at % block);
         let group = at - sector * block - within;
-        let to = sector + system.follower;
+        let to = sector + system.wave.follower;
         (first + group + to % m * block + within, to / m)
     }
 

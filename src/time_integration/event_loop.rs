@@ -108,7 +108,7 @@ impl State {
     pub fn fold(&self, system: &System<'_>) -> Result<Self> {
         let mut half = self.try_clone()?;
         for (values, block) in [(&mut half.x, system.ndof), (&mut half.v, system.ndof), (&mut half.e, 1)] {
-            let group = block * system.sectors;
+            let group = block * system.wave.sectors;
             let mut kept = 0;
             for from in 0..values.len() {
                 if from % group < group / 2 {
@@ -129,7 +129,7 @@ impl State {
             (&mut self.v, &half.v, block),
             (&mut self.e, &half.e, 1),
         ] {
-            let part = block * system.sectors / 2;
+            let part = block * system.wave.sectors / 2;
             for (all, half) in all.chunks_exact_mut(2 * part).zip(half.chunks_exact(part)) {
                 let (first, second) = all.split_at_mut(part);
                 first.copy_from_slice(half);

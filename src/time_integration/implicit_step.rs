@@ -121,14 +121,15 @@ impl Implicit {
         for i in 0..GAUSS_STAGES {
             system.interrupt.check()?;
             system
+                .matrices
                 .inertia
                 .each(|r, c, m| matrix[(i * n + c) * all + i * n + r] += m);
             for j in 0..GAUSS_STAGES {
                 system.interrupt.check()?;
                 let (once, twice) = (h * tables.once[i][j], h * h * tables.twice[i][j]);
                 let mut add = |r: usize, c: usize, value: f64| matrix[(j * n + c) * all + i * n + r] += value;
-                system.damping.each(|r, c, d| add(r, c, once * d));
-                system.stiffness.each(|r, c, k| add(r, c, twice * k));
+                system.matrices.damping.each(|r, c, d| add(r, c, once * d));
+                system.matrices.stiffness.each(|r, c, k| add(r, c, twice * k));
                 for (element, piece) in system.elements.iter().zip(pieces) {
                     for (to, slopes) in element.rows.iter().zip(&piece.slope) {
                         for (from, slope) in element.rows.iter().zip(slopes).filter(|(_, slope)| **slope != 0.0) {
@@ -218,10 +219,11 @@ impl Implicit {
                 *r = -*r;
             }
             system
+                .matrices
                 .inertia
                 .multiply_add(1.0, &self.accelerations[i * n..(i + 1) * n], r);
-            system.damping.multiply_add(1.0, &self.v, r);
-            system.stiffness.multiply_add(1.0, &self.x, r);
+            system.matrices.damping.multiply_add(1.0, &self.v, r);
+            system.matrices.stiffness.multiply_add(1.0, &self.x, r);
             for (element, piece) in system.elements.iter().zip(pieces) {
                 element.push(1.0, piece.at(element.relative(&self.x)), r);
             }

@@ -34,7 +34,7 @@ pub(crate) fn state_of_sector(model: &Model, system: &System<'_>, sector: &[Comp
     let mut state = State::rest(system)?;
     let ndof = system.ndof;
     for (h, own) in sector.chunks_exact(ndof).enumerate() {
-        for s in 0..system.sectors {
+        for s in 0..system.wave.sectors {
             let phase = model.structure().phase(h, s as i64);
             for (dof, x) in own.iter().enumerate() {
                 let x = moved(x, phase, h);

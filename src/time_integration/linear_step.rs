@@ -127,8 +127,8 @@ impl Taylor {
         let (low, high) = step.coefficients.split_at_mut((k + 1) * n);
         let this = &low[k * n..];
         let (next, new) = high.split_at_mut(n);
-        system.stiffness.multiply_add(-1.0, this, f);
-        system.damping.multiply_add(-((k + 1) as f64) / h, next, f);
+        system.matrices.stiffness.multiply_add(-1.0, this, f);
+        system.matrices.damping.multiply_add(-((k + 1) as f64) / h, next, f);
         for (e, piece) in system.elements.iter().zip(pieces) {
             let force = if k == 0 {
                 piece.force

@@ -196,9 +196,9 @@ impl VariationalEquations<f64> {
             }
         };
         let matrices = [
-            sparse(&system.inertia)?,
-            sparse(&system.damping)?,
-            sparse(&system.stiffness)?,
+            sparse(&system.matrices.inertia)?,
+            sparse(&system.matrices.damping)?,
+            sparse(&system.matrices.stiffness)?,
         ];
         let [m, c, k] = &matrices;
         let count = elements.len();

@@ -51,13 +51,18 @@ struct SpecialRecord<'a> {
     motion: Vec<f64>,
     amplitude: Complex64,
     response: Vec<Complex64>,
-    residual: f64,
-    iterations: usize,
+    numbers: Accuracy,
     slip_fractions: Vec<f64>,
-    sampling_error: f64,
-    errors: (f64, f64),
     seen: Vec<SeenWithError>,
     mode: Option<ModePoint>,
+}
+
+/// How well a special point is solved.
+struct Accuracy {
+    residual: f64,
+    iterations: usize,
+    sampling_error: f64,
+    errors: (f64, f64),
 }
 
 /// Collects the points of one run.
@@ -170,11 +175,13 @@ impl<'a> BranchRecorder<'a> {
             motion: try_copy(record.motion, CONTEXT)?,
             amplitude: record.amplitude,
             response: try_copy(record.response, CONTEXT)?,
-            residual: record.residual,
-            iterations: record.iterations,
+            numbers: Accuracy {
+                residual: record.residual,
+                iterations: record.iterations,
+                sampling_error: record.sampling_error,
+                errors: record.errors,
+            },
             slip_fractions: try_copy(record.slip_fractions, CONTEXT)?,
-            sampling_error: record.sampling_error,
-            errors: record.errors,
             seen: try_copy(record.seen, CONTEXT)?,
             mode,
         };
@@ -198,11 +205,11 @@ impl<'a> BranchRecorder<'a> {
                 motion: &special.motion,
                 amplitude: special.amplitude,
                 response: &special.response,
-                residual: special.residual,
-                iterations: special.iterations,
+                residual: special.numbers.residual,
+                iterations: special.numbers.iterations,
                 slip_fractions: &special.slip_fractions,
-                sampling_error: special.sampling_error,
-                errors: special.errors,
+                sampling_error: special.numbers.sampling_error,
+                errors: special.numbers.errors,
                 seen: &special.seen,
             };
             self.branch.push_special(special.kind, special.after, &record)?;

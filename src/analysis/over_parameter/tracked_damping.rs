@@ -56,6 +56,11 @@ pub(crate) struct TrackedDamping<'a> {
     length: f64,
     unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
+    last: LastDamping,
+}
+
+/// Result of the point evaluated last.
+pub(crate) struct LastDamping {
     /// Damping ratio at the point evaluated last, its derivative by the parameter, and its second one along the mode.
     damping: f64,
     d_damping: f64,
@@ -106,9 +111,11 @@ impl<'a> TrackedDamping<'a> {
             length,
             unknowns: Unknowns::new(start, range)?,
             interrupt,
-            damping: 0.0,
-            d_damping: 0.0,
-            curvature: f64::NAN,
+            last: LastDamping {
+                damping: 0.0,
+                d_damping: 0.0,
+                curvature: f64::NAN,
+            },
         })
     }
 
@@ -206,7 +213,7 @@ impl<'a> TrackedDamping<'a> {
             *t = -*t;
         }
         let row = maximum_row(&mut problem, (&own, log10), &tangent, &lambda)?;
-        self.curvature = dot(&row[..x], &tangent) + row[x];
+        self.last.curvature = dot(&row[..x], &tangent) + row[x];
         self.unknowns.matrix.fill(0.0);
         // Motions are in another unit than those of the condensed model.
         let of = |i: usize| if i < m { unit } else { 1.0 };
@@ -222,8 +229,8 @@ impl<'a> TrackedDamping<'a> {
             *to = AMPLITUDE_UNIT * from / of(i);
         }
         last[x] = AMPLITUDE_UNIT * AMPLITUDE_UNIT * row[x];
-        self.damping = Epmc::frequency_and_damping(&at.linear, &own).1;
-        self.d_damping = self.by_parameter(&own, log10, p, &at)?;
+        self.last.damping = Epmc::frequency_and_damping(&at.linear, &own).1;
+        self.last.d_damping = self.by_parameter(&own, log10, p, &at)?;
         Ok(here.scale)
     }
 
@@ -400,18 +407,18 @@ impl Tracked for TrackedDamping<'_> {
             iterations: point.iterations,
             slip_fractions: equations.problem.forces().slip_fractions(),
             sampling_error,
-            errors: (f64::NAN, error * self.damping.abs()),
+            errors: (f64::NAN, error * self.last.damping.abs()),
             seen: &[],
         };
         branch.push_followed(kind, &record)?;
         if let Some(modes) = branch.mode_data_mut() {
             modes.push(mode)?;
         }
-        data.push(p, (f64::NAN, self.d_damping))?;
+        data.push(p, (f64::NAN, self.last.d_damping))?;
         let special = Special {
             point: branch.stored() - 1,
             omega,
-            amplitude: self.damping,
+            amplitude: self.last.damping,
         };
         Ok((special, sampling_error))
     }
@@ -423,7 +430,7 @@ impl Tracked for TrackedDamping<'_> {
     fn exists(&mut self, point: &Point) -> Result<bool> {
         let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
         self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
-        Ok(self.curvature <= 0.0)
+        Ok(self.last.curvature <= 0.0)
     }
 }
 
@@ -450,8 +457,8 @@ impl Problem for TrackedDamping<'_> {
 
     /// The damping ratio, which in its maximum changes with the parameter alone.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let change = self.d_damping * direction[u.len()];
-        self.unknowns.observe(self.damping, change)
+        let change = self.last.d_damping * direction[u.len()];
+        self.unknowns.observe(self.last.damping, change)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {

@@ -78,7 +78,7 @@ impl Subject<'_> {
 
     /// Whether forces and laws allow a motion in which sectors half a wave apart move opposite to each other.
     fn allows_halves(&self, system: &System<'_>) -> Result<bool> {
-        if !system.sectors.is_multiple_of(2) || system.loads.iter().any(|load| load.harmonic.is_multiple_of(2)) {
+        if !system.wave.sectors.is_multiple_of(2) || system.loads.iter().any(|load| load.harmonic.is_multiple_of(2)) {
             return Ok(false);
         }
         for contact in self.on_modes.map_or(self.model, |on_modes| &on_modes.model).contacts() {
@@ -303,13 +303,13 @@ fn through_a_lapse(
 
 /// Whether sectors half a wave apart move opposite to each other.
 fn is_odd(system: &System<'_>, state: &State) -> bool {
-    if !system.sectors.is_multiple_of(2) {
+    if !system.wave.sectors.is_multiple_of(2) {
         return false;
     }
-    let half = system.sectors / 2;
+    let half = system.wave.sectors / 2;
     let opposite = |values: &[f64], block: usize| {
         let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let group = block * system.sectors;
+        let group = block * system.wave.sectors;
         values.chunks_exact(group).all(|ring| {
             let (first, second) = ring.split_at(half * block);
             first.iter().zip(second).all(|(a, b)| (a + b).abs() <= ODD * largest)

@@ -50,13 +50,13 @@ impl Continuation {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let mut probe = try_copy(&self.current.v, CONTEXT)?;
-        metric.unit(&self.current.tangent, &mut self.row);
-        metric.add(&mut probe, depth, &self.row);
+        metric.unit(&self.current.tangent, &mut self.memory.row);
+        metric.add(&mut probe, depth, &self.memory.row);
         let Some(positive) = self.direction_beyond(problem, metric, &probe, interrupt)? else {
             return Ok(None);
         };
         if positive != self.current.positive {
-            for r in &mut self.row {
+            for r in &mut self.memory.row {
                 *r = -*r;
             }
         }
@@ -82,11 +82,16 @@ impl Continuation {
         probe: &[f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<bool>> {
-        metric.unit(&self.current.tangent, &mut self.row);
-        let found = self
-            .corrector
-            .direction_at(problem, probe, &self.row, metric, &mut self.scratch, interrupt)?;
-        metric.unit(&self.scratch, &mut self.row);
+        metric.unit(&self.current.tangent, &mut self.memory.row);
+        let found = self.corrector.direction_at(
+            problem,
+            probe,
+            &self.memory.row,
+            metric,
+            &mut self.memory.scratch,
+            interrupt,
+        )?;
+        metric.unit(&self.memory.scratch, &mut self.memory.row);
         Ok(found)
     }
 
@@ -100,14 +105,14 @@ impl Continuation {
         (step, keeps_sense): (f64, bool),
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         for factor in [2.0, 8.0, 32.0] {
             let length = factor * step;
             let mut v = try_copy(from, CONTEXT)?;
-            metric.add(&mut v, length, &self.row);
+            metric.add(&mut v, length, &self.memory.row);
             let outcome = self
                 .corrector
-                .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
+                .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?;
             let Outcome::Converged(corrected) = outcome else {
                 continue;
             };
@@ -119,12 +124,12 @@ impl Continuation {
             let turned = if keeps_sense {
                 point.positive != self.current.positive
             } else {
-                along(&point, &mut self.scratch, &self.row) < 0.0
+                along(&point, &mut self.memory.scratch, &self.memory.row) < 0.0
             };
             if turned {
                 point.reverse();
             }
-            let along = along(&point, &mut self.scratch, &self.row);
+            let along = along(&point, &mut self.memory.scratch, &self.memory.row);
             let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
             if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
                 return Ok(Some(point));
@@ -142,7 +147,7 @@ impl Continuation {
         metric: Metric,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         let here = try_copy(&self.current.v, CONTEXT)?;
         for length in BESIDE_SURFACE {
             for side in [length, -length] {
@@ -157,10 +162,10 @@ impl Continuation {
                         && let Some(point) = self.beyond_corner(problem, metric, &here, (length, false), interrupt)?
                     {
                         self.steps.restart(length);
-                        self.left_surface = true;
+                        self.surfaces.left = true;
                         return Ok(Some(point));
                     }
-                    for r in &mut self.row {
+                    for r in &mut self.memory.row {
                         *r = -*r;
                     }
                 }
@@ -181,23 +186,23 @@ impl Continuation {
         metric: Metric,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         let sense = (self.settings.end - self.settings.start).signum() * metric.p;
         for length in BESIDE_SURFACE {
             for (change, depth) in SIDES_AND_DEPTHS.map(|(side, depth)| (side * length, depth * length)) {
                 let mut v = try_copy(&self.current.v, CONTEXT)?;
-                metric.unit(&self.current.tangent, &mut self.row);
-                metric.add(&mut v, depth, &self.row);
+                metric.unit(&self.current.tangent, &mut self.memory.row);
+                metric.add(&mut v, depth, &self.memory.row);
                 let at = self.current.v[n] + sense * change;
                 v[n] = at;
                 if self.overshoot(at).is_some() {
                     continue;
                 }
-                self.row.fill(0.0);
-                self.row[n] = 1.0;
+                self.memory.row.fill(0.0);
+                self.memory.row[n] = 1.0;
                 let outcome = self
                     .corrector
-                    .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
+                    .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?;
                 let Outcome::Converged(corrected) = outcome else {
                     continue;
                 };
@@ -214,7 +219,7 @@ impl Continuation {
                         point.reverse();
                     }
                     self.steps.restart(length);
-                    self.left_surface = true;
+                    self.surfaces.left = true;
                     return Ok(Some(point));
                 }
             }
@@ -230,7 +235,7 @@ impl Continuation {
 
     /// The row of the plane in unscaled numbers.
     fn unscaled_row(&self, metric: Metric) -> Result<Vec<f64>> {
-        let mut row = try_copy(&self.row, CONTEXT)?;
+        let mut row = try_copy(&self.memory.row, CONTEXT)?;
         metric.unscale(&mut row);
         Ok(row)
     }
@@ -251,7 +256,7 @@ impl Continuation {
                 return Ok(Some(point));
             }
         }
-        if self.leaves_surfaces && !self.left_surface {
+        if self.surfaces.may_leave && !self.surfaces.left {
             if let Some(point) = self.leave_along_surface(problem, metric, interrupt)? {
                 return Ok(Some(point));
             }

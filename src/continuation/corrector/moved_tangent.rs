@@ -37,8 +37,9 @@ impl Corrector {
             (way > MOVED_TANGENT_ALONG * metric.distance(from, to)).then_some(way)
         };
         // Near-rigid contacts have matrices whose rounding would be amplified.
-        let is_small =
-            |last: &f64| (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&norm(&self.step));
+        let is_small = |last: &f64| {
+            (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&norm(&self.memory.step))
+        };
         let last = way(before, here).filter(|last| is_small(last) && self.at.rounding == 0.0)?;
         let slope = [1.0 / last, -1.0 / last, 0.0];
         let Some(first) = way(oldest, before).filter(|first| *first > APART * last) else {
