@@ -44,8 +44,8 @@ use crate::studies::fit::suspected_units::suspected;
 
 /// Fits parameters of `model` to data. If the solver has a tolerance, it is lowered where errors by harmonics would
 /// exceed a third of the standard deviations. Many data are first replaced by a share of them; a fit that is stopped
-/// then has the result of this share. Where the given start fits poorly, or the data do not depend on friction there,
-/// starts towards sliding and sticking are tried; `options.starts` adds others.
+/// in this stage returns the result of the share. Where the given start fits poorly, or the data do not depend on
+/// friction there, starts towards sliding and sticking are tried; `options.starts` adds others.
 ///
 /// # Errors
 /// `Singular` where the data do not tell the unknowns, with a sentence about the reason; `NoConvergence` where the model has no
