@@ -20,11 +20,11 @@ const AS_COMPLEX_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
-/// Eigenvalues and the matching vectors, column after column. Vectors are scaled to size 1.
+/// Eigenvalues, and vectors scaled to size 1, column after column.
 pub struct Pairs {
-    /// λ
+    /// Eigenvalues λ.
     pub values: Vec<Complex64>,
-    /// x with A x = λ x.
+    /// Vectors x with A x = λ x, column after column.
     pub vectors: Vec<Complex64>,
 }
 
@@ -87,7 +87,7 @@ pub fn values(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Ve
     Ok(values)
 }
 
-/// Largest entry of A X − X Λ, for vectors of size 1, over that of A.
+/// Error of eigenpairs: largest entry of A X − X Λ over that of A, for vectors of size 1.
 fn error(a: &[Complex64], n: usize, pairs: &Pairs) -> Result<f64> {
     let mut product = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     complex_products::multiply(a, &pairs.vectors, &mut product, n);
