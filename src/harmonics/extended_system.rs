@@ -233,7 +233,7 @@ impl<P: Problem> ExtendedSystem<P> {
 }
 
 impl<P: PackedHarmonics> ExtendedSystem<P> {
-    /// A problem of these sizes at a parameter value, with the work that it may take.
+    /// A problem of the given sizes at a parameter value, solved by iteration, with the work that it may take.
     pub fn iterative(problem: P, parameter: f64, factored: Factored, (sizes, work): (Sizes, Work)) -> Result<Self> {
         let factored = factored_of(&problem, factored);
         let (system, sectors) = krylov(&problem, factored)?;

@@ -126,7 +126,7 @@ impl Sizes {
         }
     }
 
-    /// These sizes where the flexibility is made from modes.
+    /// Returns the sizes for a flexibility that is computed from modes.
     pub fn with_modes(mut self, condensed: &Condensed) -> Self {
         let outputs = self.coordinates + 1.0;
         self.flexibility = OF_FACTORS * 8.0 * condensed.ndof() as f64 * outputs * outputs;

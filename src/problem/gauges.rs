@@ -124,7 +124,8 @@ pub struct Gauges<'a> {
     dw: Vec<Complex64>,
     x: Vec<Complex64>,
     dx: Vec<Complex64>,
-    /// The point and the direction that were read last; and the harmonics whose signals are known there.
+    /// Point and direction that were read last, in one list; and for each harmonic whether its signals are known at this
+    /// point.
     last: Vec<f64>,
     known: Vec<bool>,
 }

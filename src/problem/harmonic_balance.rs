@@ -90,7 +90,7 @@ impl<'a> HarmonicBalance<'a> {
     /// carried harmonic above zero. `samples` = 0 locates events exactly; `given` is a packed initial guess.
     ///
     /// # Errors
-    /// `OutOfMemory`; those of callbacks, whose force at rest is evaluated; `StoppedByCaller`.
+    /// `OutOfMemory`; those of callbacks, whose force at zero motion is evaluated; `StoppedByCaller`.
     pub fn new(
         condensed: &'a Condensed,
         response: usize,

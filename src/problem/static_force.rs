@@ -11,7 +11,7 @@ use crate::interrupt::Interrupt;
 /// evaluated at zero motion is skipped.
 ///
 /// # Errors
-/// `Argument` for a law that is declared odd and has a force at rest; those of callbacks.
+/// `Argument` for a law that is declared odd and has a force at zero motion; those of callbacks.
 pub fn static_force(
     condensed: &Condensed,
     omega: f64,

@@ -26,6 +26,8 @@ pub(crate) struct TotalDerivative<'a> {
 }
 
 impl<'a> TotalDerivative<'a> {
+    /// Begins the derivatives of a result; the products of contacts follow when they are needed.
+    ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(

@@ -19,7 +19,7 @@ const PARAMETER_STEP: f64 = 1e-5;
 /// A result over a parameter. Motions come first among its unknowns, in one unit of length for all harmonics and all values
 /// of the parameter.
 pub(crate) trait Tracked: Problem {
-    /// This result as a problem.
+    /// This result as the problem whose equations are solved.
     fn problem(&mut self) -> &mut dyn Problem;
 
     /// Number of unknowns that are motions.

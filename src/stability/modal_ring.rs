@@ -40,9 +40,9 @@ pub(crate) struct Sliders {
 pub(crate) struct RingWave {
     /// Nodal diameter 0 ..= N/2.
     pub diameter: usize,
-    /// Index of its first coordinate.
+    /// Index of the first coordinate of the wave.
     pub place: usize,
-    /// Whether its real and imaginary parts are coordinates, times √2, real parts first.
+    /// Whether real and imaginary parts of the modal amplitudes are separate coordinates, times √2, real parts first.
     pub is_pair: bool,
 }
 

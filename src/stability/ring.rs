@@ -27,7 +27,7 @@ pub(super) struct RingElement {
     /// Index of the element in the structure in time.
     pub source: usize,
     pub rows: Vec<Row>,
-    /// Index of its slider among those of the ring; `None` without a slider.
+    /// Index of the slider of this contact among the sliders of the ring; `None` without a slider.
     pub slider: Option<usize>,
     /// Whether the law of the contact has no events.
     pub smooth: bool,

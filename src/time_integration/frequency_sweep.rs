@@ -56,7 +56,7 @@ pub struct FrequencySweep {
 /// Carries out [`crate::analysis::sweep`], with options that have been checked.
 ///
 /// # Errors
-/// As there.
+/// As [`crate::analysis::sweep`].
 pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<'_>) -> Result<FrequencySweep> {
     let structure = model.structure();
     if structure.sectors() > 1 {

@@ -334,7 +334,7 @@ impl<'a> BranchTracer<'a> {
         )
     }
 
-    /// Whether a point found with other harmonics lies behind the point recorded last, or outside the range.
+    /// Whether a point found with other harmonics lies before the point recorded last, or outside the range.
     fn is_reversed_or_outside(
         &self,
         analysis: &dyn Traceable,

@@ -27,7 +27,7 @@ use num_complex::Complex64;
 /// Kind: rounding.
 pub(crate) const CREEP: f64 = 1e-6;
 
-/// The exchange of one coordinate.
+/// Exchange of the motion y of one coordinate for x = f/α + d(y − f/k)/dτ, where f is the force of its slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchange {
     /// α, the stiffness that defines the exchanged motion x.

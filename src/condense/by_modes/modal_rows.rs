@@ -71,7 +71,7 @@ pub struct ModalRows {
     coordinates: usize,
     /// Number of rows: contacts, response, springs and dampers.
     rows: usize,
-    /// Whether springs have rows here.
+    /// Whether some of the rows belong to springs.
     has_springs: bool,
     /// Row products with Φ, mode after mode, the stiffest mode first.
     left: Vec<Complex64>,

@@ -107,7 +107,7 @@ pub enum WaveDamping {
 pub struct Remainder {
     /// Index of the first column of the last block.
     pub last: usize,
-    /// Gram matrix of these parts, those of the mass before those of the damping.
+    /// Gram matrix of the parts that the basis cannot represent: first of images by the mass, then by the damping.
     pub gram: Vec<Complex64>,
     /// Relative error of solutions in the norm of A by rounding, which acts like a part that the basis leaves out.
     pub solutions: f64,

@@ -38,7 +38,7 @@ impl Model {
     /// R has per_speed2 = mR.
     ///
     /// # Errors
-    /// As [`Self::set_preload`], for the load at rest and the one at a fixed speed; `NotFinite` or `Argument` for
+    /// As [`Self::set_preload`], for the load at Ω = 0 and the one at a fixed speed; `NotFinite` or `Argument` for
     /// `per_speed2`.
     pub fn set_preload_at_speed(&mut self, id: usize, preload: f64, per_speed2: f64) -> Result<()> {
         if !per_speed2.is_finite() {

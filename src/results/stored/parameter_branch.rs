@@ -20,9 +20,9 @@ pub struct Optimum {
 
 /// A point at which a branch over a parameter turns: beyond its value the result does not exist.
 ///
-/// The turns of a peak that is followed through folds over the force are the forces at which a detached curve is born (a minimum) or
-/// merges with another one (a maximum). A fold turns there, too: under less force the two folds that meet do not exist. It also turns
-/// in a cusp.
+/// The turns of a peak that is followed through folds over the force are the forces at which a detached curve is born
+/// (a minimum) or merges with another one (a maximum). A followed fold turns at these forces, too: under less force the
+/// two folds that meet do not exist. It also turns in a cusp.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn {
     /// Index of the stored point.

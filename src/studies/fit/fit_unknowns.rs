@@ -126,6 +126,9 @@ pub(super) struct Unknowns {
 }
 
 impl Unknowns {
+    /// Checks the `unknowns`, one for each of the `parameters`, and lists the free ones. A start that is not given is
+    /// the value in `model`.
+    ///
     /// # Errors
     /// `Dimension`, `Argument` or `NotFinite`, naming the unknown; `OutOfMemory`.
     pub fn new(

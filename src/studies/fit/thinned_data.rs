@@ -63,7 +63,7 @@ fn is_thinned(set: &FitData<'_>) -> bool {
 pub(super) enum Start {
     /// The given start, since there are few data, or the search did not explain its share of them.
     Given,
-    /// These unknowns, from which the search is short.
+    /// Free unknowns found on a share of the data, from which the search is short.
     Nearer(Vec<f64>),
     /// No start: the caller stopped the search on a share of the data. The numbers are those of the share; residuals
     /// and values are NaN elsewhere.

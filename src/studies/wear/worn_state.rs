@@ -127,6 +127,8 @@ pub(crate) struct WornStates<'a> {
 }
 
 impl<'a> WornStates<'a> {
+    /// Checks the options, and reads the normal loads of the new machine.
+    ///
     /// # Errors
     /// Those of the options and of the solver; `Unsupported` for a load that follows a speed which is tied to the frequency.
     pub fn new(model: &'a Model, solver: &SolverOptions, options: &'a LifeOptions<'a>) -> Result<Self> {
