@@ -84,7 +84,7 @@ pub struct SynthesisPeak {
     pub at: SynthesisPoint,
     /// log₁₀ of the amplitude as the branch measures it.
     pub log10_amplitude: f64,
-    /// Whether the amplitude rises with the force here.
+    /// Whether the amplitude rises with the force at this resonance.
     ///
     /// If it does not, the resonance bounds a detached response from below.
     pub rising: bool,

@@ -110,7 +110,7 @@ pub struct Corrected {
 }
 
 impl Corrected {
-    /// Size of the i-th carried harmonic.
+    /// Size of the motions at the contacts in the i-th carried harmonic.
     pub(crate) fn size(&self, i: usize) -> f64 {
         size_of_harmonic(&self.set, (&self.motion, &self.rates), i)
     }

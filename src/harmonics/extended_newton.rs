@@ -56,7 +56,7 @@ pub(super) struct ExtendedSolution {
     pub at: Vec<f64>,
     /// δ, the simplified Newton step from Z, followed by 0 for the parameter.
     pub next: Vec<f64>,
-    /// Whether δ is small enough.
+    /// Whether δ is so small that the solution is certified.
     pub certified: bool,
     /// Number of Newton steps taken, each with a factorisation.
     pub steps: usize,

@@ -51,7 +51,7 @@ impl HarmonicHistory {
         }
     }
 
-    /// Notes that harmonics are justified: by an error, or as the fewest of a curve.
+    /// Notes that the current harmonics are justified: by an error, or as the fewest of a curve.
     pub fn note_justified(&mut self) {
         self.fresh = false;
     }

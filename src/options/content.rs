@@ -14,7 +14,7 @@ const COUNTS: f64 = 1e-6;
 pub struct Content {
     /// Common divisor of the harmonics above zero; 0: there are no such harmonics.
     pub base: usize,
-    /// Whether the mean or an even multiple of the divisor is among them.
+    /// Whether the mean or an even multiple of the divisor is among the harmonics.
     pub even: bool,
 }
 

@@ -37,7 +37,7 @@ pub enum LifeFollow<'a> {
     },
 }
 
-/// Options of a life.
+/// Options of a life under wear.
 #[derive(Clone, Copy, Debug)]
 pub struct LifeOptions<'a> {
     /// Contacts that wear, with their rates.

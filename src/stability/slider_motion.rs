@@ -18,7 +18,7 @@ pub(crate) struct RingForce {
     pub relative: Vec<Complex64>,
 }
 
-/// Coordinates, velocities and the places of all sliders.
+/// State of a block in time: modal coordinates q, velocities v and places w of all sliders.
 pub(crate) struct SliderState {
     pub q: DVector<f64>,
     pub v: DVector<f64>,
@@ -52,7 +52,7 @@ pub(crate) struct Change {
     pub speed: f64,
 }
 
-/// The changes of a lapse, from which perturbations are carried.
+/// Changes of contacts in a lapse, along which perturbations are carried.
 #[derive(Default)]
 pub(crate) struct Path {
     /// Contacts that slip at the beginning.

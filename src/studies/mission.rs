@@ -71,7 +71,7 @@ pub struct Mission {
     pub cycles: Vec<f64>,
     /// Damage of each stress, as Miner's sum.
     pub damage: Vec<f64>,
-    /// Passages through the resonance.
+    /// Passages through the resonance, in the order of time.
     pub crossings: Vec<MissionCrossing>,
     /// Number of steps of the slow flow.
     pub steps: usize,

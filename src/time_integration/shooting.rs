@@ -248,7 +248,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(self.hooks.report(&progress))
     }
 
-    /// Shifts the image and measures its distance from the state.
+    /// Shifts the image, so that each sector has the values of the one with the same motion a lapse later, and
+    /// measures its relative distance from the state.
     fn compare(&mut self, summary: &LapseSummary) {
         let system = &*self.system;
         shift(system, system.ndof, &self.image.x, &mut self.shifted.x);

@@ -24,7 +24,7 @@ const COARSE_START_AT_ONCE: usize = 12;
 /// Kind: tuned; measured on: not recorded.
 const COARSE_START_LARGE: usize = 1000;
 
-/// Bound of a homotopy with few harmonics.
+/// Bounds on points and iterations of a homotopy with few harmonics.
 const EFFORT: Effort = Effort {
     points: 200,
     iterations: usize::MAX,

@@ -68,7 +68,7 @@ pub(crate) struct Entered {
     pub dropped: Option<Dropped>,
 }
 
-/// Outcome of an entry.
+/// Outcome of the search for a first point inside the range.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum Entry {
     /// No point was found.

@@ -6,7 +6,7 @@ use crate::results::Branch;
 /// Options of a band.
 #[derive(Clone, Copy, Debug)]
 pub struct BandOptions<'a> {
-    /// The result that is bounded.
+    /// Result whose least and largest values are sought.
     pub of: BandOf,
     /// Contacts whose residual force is free; empty: all possible ones.
     pub contacts: &'a [usize],

@@ -43,9 +43,9 @@ pub struct HarmonicBlock {
     pub stiffness: Values,
     /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
     pub structural: Option<Values>,
-    /// C_h at the entries of the pattern.
+    /// Damping C_h at the entries of the pattern.
     pub damping: Values,
-    /// M_h at the entries of the pattern.
+    /// Mass M_h at the entries of the pattern.
     pub mass: Values,
     /// Matrix of the artificial damping of a nonlinear mode.
     pub artificial: Artificial,

@@ -68,7 +68,7 @@ impl ModelCache {
         self.slots.iter().find_map(|slot| slot.1.get())
     }
 
-    /// The model of the slot of a number of harmonics, if it was made.
+    /// The model of the slot for harmonics up to `highest`, if it was made.
     pub fn made(&self, highest: usize) -> Option<&Resolution> {
         self.slots.get(self.slot_with(highest))?.1.get()
     }

@@ -5,7 +5,7 @@ use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 
-/// A block of a matrix by the sectors of its columns.
+/// A block of a matrix, by the sector of its columns relative to the sector of its rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
     /// Rows and columns of one sector; for a plain structure the whole matrix.

@@ -5,7 +5,7 @@ use crate::results::Branch;
 use crate::results::stored::freedom_of_points::FreedomOfPoints;
 
 impl Branch {
-    /// Whether freedom was requested.
+    /// Whether the free sliders of the points were requested.
     #[must_use]
     pub fn tells_freedom(&self) -> bool {
         self.freedom.is_some()

@@ -22,7 +22,7 @@ pub struct ModeInfo {
     pub reference_dof: usize,
     /// Waves per turn of the fundamental: the signed engine order of the computation.
     pub engine_order: i64,
-    /// Quantity that the parameter measures.
+    /// Quantity whose log₁₀ is the parameter of the branch.
     pub amplitude: Amplitude,
     /// log₁₀ of the amplitude up to which all contacts stick; −∞ if a law is never linear.
     pub linear_up_to: f64,
@@ -80,7 +80,7 @@ pub(crate) struct ModeData {
     fields: [Vec<f64>; FIELDS],
     /// State of each point of the curve: unknowns and parameter, then the tangent.
     states: Vec<f64>,
-    /// Offset of the state of each point.
+    /// Index in `states` at which the state of each point begins.
     begins: Vec<usize>,
     /// State of each branch point, in the order of the bifurcations: unknowns with parameter, and direction of the
     /// curve.

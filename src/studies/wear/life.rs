@@ -97,7 +97,7 @@ pub struct Life {
     pub reached: f64,
     /// Largest amplitude and the cycles at which it occurs.
     pub largest: (f64, f64),
-    /// Amplitude at the beginning and at the end.
+    /// Amplitude at the beginning and at the end of the life.
     pub ends: (f64, f64),
     /// Number of steps that were taken.
     pub steps: usize,

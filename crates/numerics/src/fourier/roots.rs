@@ -18,7 +18,7 @@ struct Bracket {
     /// Time at which the function is negative; and time at which it is not.
     low: f64,
     high: f64,
-    /// Length of the last step.
+    /// Length of the last step towards the root.
     last: f64,
 }
 

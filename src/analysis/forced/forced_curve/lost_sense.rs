@@ -21,7 +21,7 @@ use crate::options::{ForcedOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
 
-/// The equations of a forced response that lose the sense of one point.
+/// Test equations of a forced response that reverse the sense of one resolved point.
 struct Misled<'a, 'b> {
     response: &'a mut ForcedDiscretised<'b>,
     /// Number of points of the branch after which the sense of the next resolved point is reversed.

@@ -93,7 +93,7 @@ impl<'a> Follower<'a> {
         Ok(())
     }
 
-    /// Fills a slice from its first time on.
+    /// Fills a slice with motions, forces and states, from time number `first` of n on.
     fn fill(&mut self, first: usize, out: &mut Times, interrupt: &Interrupt<'_>) -> Result<()> {
         let PeriodicMotion { set, directions: d, .. } = self.motion;
         let n = self.n;

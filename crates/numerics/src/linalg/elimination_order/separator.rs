@@ -228,7 +228,7 @@ impl<'a> Cut<'a> {
         Ok(())
     }
 
-    /// The allowed move with the largest gain, into the smaller part where both are equal.
+    /// Vertex and part of the allowed move with the largest gain; into the smaller part where gains are equal.
     fn next(&mut self, limit: i64, number: u8) -> Option<(usize, usize)> {
         let mut best: Option<(i64, i64, usize, usize)> = None;
         for part in 0..2 {

@@ -9,7 +9,7 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the rows that move";
 
-/// Rows of a pencil that no penalty holds.
+/// Rows of a pencil of stiffness and mass that no penalty stiffness holds.
 #[derive(Debug)]
 pub struct MovingRows {
     /// Indices of these rows, ascending.

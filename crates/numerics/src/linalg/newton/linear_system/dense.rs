@@ -64,7 +64,7 @@ impl DenseSystem {
         self.scales = scales;
     }
 
-    /// Unit of the unknowns.
+    /// Unit of the unknowns, by which their columns are scaled.
     pub(super) fn unit(&self) -> f64 {
         self.scales.0
     }
