@@ -391,7 +391,7 @@ mod tests {
         let mut blocks = Vec::new();
         let mut shared = 0;
         for number in 0..=40 {
-            // The same in some harmonics.
+            // κ is equal in groups of 15 harmonics.
             let kappa = |c: usize, number: usize| Complex64::new(1.0 + c as f64, 0.1 * (number / 15) as f64);
             let made = harmonic_block(model, number, contacts, |c| kappa(c, number), &interrupt).unwrap();
             if let Some(known) = of_same_wave(model, number, &blocks.iter()) {

@@ -221,7 +221,7 @@ mod tests {
                         a[(from + k / half) * n + from + k % half] = *z;
                     }
                 }
-                // The same after a reflection 1 − 2 v vᵀ, which hides the blocks.
+                // The matrix after a reflection 1 − 2 v vᵀ, which hides the blocks.
                 let v: Vec<f64> = (0..n).map(|k| (1.3 * k as f64).sin() + 0.2).collect();
                 let square: f64 = v.iter().map(|v| v * v).sum();
                 for transposed in [false, true] {

@@ -252,7 +252,7 @@ impl Search<'_> {
             let before = self.smallest(count);
             let new = self.run(Goal::Largest(count), round)?;
             let is_full = self.found.len() >= count;
-            // What is below those found is not wanted, whether it has converged or not.
+            // Eigenvalues below those found are not wanted, whether they have converged or not.
             if is_full && self.open.is_some_and(|open| open.first + open.bound <= before) {
                 self.open = None;
             }
