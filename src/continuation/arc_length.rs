@@ -24,36 +24,37 @@ use num_complex::Complex64;
 pub enum Advance {
     /// The next point; `last` if it is the end of the range.
     Accepted {
-        /// The point.
+        /// The accepted point.
         point: Point,
         /// Whether the end of the range was reached.
         last: bool,
     },
-    /// The branch turned back and left the range at its start; the point lies outside.
+    /// The branch turned back and left the range at its start, to a point outside.
     LeftAtStart {
-        /// The point.
+        /// The first point outside the range.
         point: Point,
     },
     /// No further point was found.
     Stopped(Status),
 }
 
-/// A branch that is followed.
+/// Follows a branch from point to point.
 pub struct Continuation {
     settings: Settings,
     steps: StepControl,
     corrector: Corrector,
     history: History,
     current: Point,
-    /// Size of its unknowns, and length of its tangent in the metric of the last prediction.
+    /// Size of the unknowns at the current point; and length of its tangent, both in the metric of the last
+    /// prediction.
     size: f64,
     length: f64,
     memory: StepMemory,
     /// Largest motion and amplitude so far.
     largest: (f64, f64),
-    /// Error of the prediction of the point accepted last.
+    /// Relative error of the prediction of the point accepted last.
     last_error: f64,
-    /// Points accepted last whose parameters differ by rounding.
+    /// Number of points accepted last whose parameters differ by rounding alone.
     stationary: usize,
     surfaces: Surfaces,
 }
@@ -64,7 +65,7 @@ pub struct StepMemory {
     unused: Option<Point>,
     row: Vec<f64>,
     scratch: Vec<f64>,
-    /// Memory of the next prediction.
+    /// Memory for the next prediction.
     prediction: Vec<f64>,
 }
 
@@ -132,9 +133,10 @@ const TINY: f64 = 1e-6;
 /// Kind: tuned; measured on: not recorded.
 const ARC_LENGTH_APPROACH: f64 = 0.5;
 
-/// Outcome of the corrected prediction of one step.
+/// Outcome of one step: prediction and correction.
 enum Attempt {
-    /// With the error of the prediction and the cosine of the angle between the tangents at its ends.
+    /// A point, with the error of its prediction and the cosine of the angle between the tangents at the ends of the
+    /// step.
     Good {
         point: Point,
         error: f64,
@@ -143,7 +145,7 @@ enum Attempt {
     Poor {
         error: f64,
     },
-    /// Beyond a resonance at this share of the step.
+    /// The step has passed a resonance as a whole, at this share of its length.
     Passed {
         share: f64,
     },
@@ -184,15 +186,15 @@ impl Continuation {
         })
     }
 
-    /// The same for a branch, which leaves corners that it reaches along their surface, too.
+    /// Also lets the branch leave corners that it reaches along the surface of an event.
     #[must_use]
     pub fn leaving_surfaces(mut self) -> Self {
         self.surfaces.may_leave = true;
         self
     }
 
-    /// Continues from a point in place of the one accepted last, and from `previous` in place of the one before, both
-    /// in the unknowns of a problem that may have more or fewer of them.
+    /// Continues from `current` in place of the point accepted last, and from `previous` in place of the point
+    /// before, both in the unknowns of a problem that may have more or fewer of them.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -213,8 +215,8 @@ impl Continuation {
         Ok(())
     }
 
-    /// Continues from a point, of which the branch before is not used, by a first step that changes the parameter by
-    /// about `change` at most.
+    /// Continues from a point, without the branch before it, by a first step that changes the parameter by at most
+    /// about `change`.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -225,7 +227,7 @@ impl Continuation {
         Ok(())
     }
 
-    /// Shortens the next step where it would change the parameter by more than about `change`.
+    /// Shortens the next step such that it changes the parameter by at most about `change`.
     pub fn change_at_most(&mut self, change: f64) {
         let metric = self.metric();
         let tangent = &self.current.tangent;
@@ -239,7 +241,7 @@ impl Continuation {
         &self.current
     }
 
-    /// Newton steps of all points so far, of those that failed too.
+    /// Number of Newton steps over all points so far, failed ones included.
     #[must_use]
     pub fn steps_taken(&self) -> usize {
         self.corrector.steps_taken()
@@ -251,7 +253,7 @@ impl Continuation {
         self.corrector.recycle(point.tangent);
     }
 
-    /// The point before it.
+    /// The point accepted before the current one; `None` at the first point.
     #[must_use]
     pub fn previous(&self) -> Option<&Point> {
         self.history.previous()
@@ -344,14 +346,14 @@ impl Continuation {
         })
     }
 
-    /// Takes the size of the point that becomes the current one.
+    /// Stores the size of the point that becomes the current one.
     fn note_size(&mut self, point: &Point) {
         self.size = norm(point.unknowns());
         self.largest.0 = self.largest.0.max(self.size);
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
     }
 
-    /// Size below which motions no longer refine the metric.
+    /// Smallest size of the unknowns by which the metric is scaled: smaller motions do not refine it.
     fn least_size(&self) -> f64 {
         (FLOOR * self.largest.0).max(ROUNDING_OF_MOTION)
     }
@@ -361,7 +363,8 @@ impl Continuation {
         Metric::along(self.size.max(self.least_size()), &self.settings)
     }
 
-    /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
+    /// Predicts point and amplitude one step ahead. Leaves the tangent as the row that defines the plane of the
+    /// correction.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
         self.length = metric.unit(&self.current.tangent, &mut self.memory.row);
         let mut v = core::mem::take(&mut self.memory.prediction);
@@ -372,12 +375,12 @@ impl Continuation {
         Ok((v, amplitude))
     }
 
-    /// Whether the branch is far better predicted than its steps, which the caller bounds, require.
+    /// Whether predictions are much better than the steps require, since the caller bounds these.
     fn is_smooth(&self) -> bool {
         self.last_error <= SMOOTH && self.steps.is_bounded_by_caller()
     }
 
-    /// The bound of the range that a parameter value lies beyond, and the share of the distance to it.
+    /// The bound of the range that the parameter value p exceeds, if any, and the share of the step up to it.
     fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
         let here = self.current.parameter();
         let (start, end) = (self.settings.start, self.settings.end);
@@ -477,18 +480,18 @@ impl Continuation {
     }
 }
 
-/// Least cosine between two directions, a step apart, that are one line.
+/// Smallest cosine between two directions, one step apart, that count as one line.
 fn same_line(step: f64) -> f64 {
     (LINE * step).clamp(LINE_BOUNDS.0, LINE_BOUNDS.1).cos()
 }
 
-/// The corrector of the points of a branch.
+/// Makes the corrector for points of a branch with n unknowns.
 fn corrector(n: usize, settings: &Settings) -> Result<Corrector> {
     let tolerance = settings.steps.tolerance(settings.tolerance);
     Corrector::new(n, tolerance, settings.max_iterations)
 }
 
-/// No step is small enough: returns the failure of a callback, or stops without a known cause.
+/// Ends a branch when no step is small enough: with the error of a callback, or without a known cause.
 fn too_small(failure: Option<Error>) -> Result<Advance> {
     match failure {
         Some(e) if e.status == Status::Callback => Err(e),

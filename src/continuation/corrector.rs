@@ -21,13 +21,13 @@ use num_complex::Complex64;
 /// Data of a converged correction.
 #[derive(Clone, Debug)]
 pub struct Corrected {
-    /// Newton iterations taken.
+    /// Number of Newton iterations taken.
     pub iterations: usize,
-    /// Residual relative to the problem's scale, before the last correction; or a bound of that behind it, where it foresees it.
+    /// Relative residual before the last correction; or a bound of the residual after it, where that was foreseen.
     pub residual: f64,
     /// Whether round-off stopped the residual above the requested tolerance.
     pub stalled: bool,
-    /// Observed amplitude.
+    /// Observed amplitude at the point.
     pub amplitude: Complex64,
     /// Derivative of the amplitude along the tangent.
     pub slope: Complex64,
@@ -40,20 +40,20 @@ pub struct Corrected {
 /// Outcome of a correction.
 #[derive(Debug)]
 pub enum Outcome {
-    /// It converged to a solution.
+    /// The correction converged to a solution.
     Converged(Corrected),
-    /// It found no solution.
+    /// The correction found no solution.
     Failed,
 }
 
-/// Origin of the stored factors.
+/// Which matrix the stored factors belong to.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Factors {
     /// No usable factors are stored.
     None,
-    /// The factors of the matrix of an earlier iteration.
+    /// Factors of the matrix of an earlier iteration.
     Earlier,
-    /// The factors of the current matrix.
+    /// Factors of the current matrix.
     Own,
 }
 
@@ -71,7 +71,7 @@ pub struct Corrector {
     failure: Option<Error>,
     /// Whether a correction may end with the factors of the iteration before.
     may_end_early: bool,
-    /// That of the corrections before, and whether those that follow are of the same smooth branch.
+    /// Contraction of the corrections before; and whether the next ones belong to the same smooth branch.
     contraction: Contraction,
     may_foresee: bool,
 }
@@ -153,22 +153,22 @@ impl Corrector {
         self.steps_taken
     }
 
-    /// Counts the steps of another corrector, which prepared a correction of this one.
+    /// Adds the steps of another corrector, which prepared a correction of this one.
     pub fn count_steps(&mut self, of_other: usize) {
         self.steps_taken += of_other;
     }
 
-    /// Tells whether the next correction is of a smooth branch whose points were corrected before.
+    /// States whether the next correction belongs to a smooth branch whose points were corrected before.
     pub fn set_may_foresee(&mut self, may_foresee: bool) {
         self.may_foresee = may_foresee;
     }
 
-    /// Takes memory that is no longer used for the next tangent.
+    /// Takes over memory that is no longer used, for the next tangent.
     pub fn recycle(&mut self, unused: Vec<f64>) {
         self.memory.unused = unused;
     }
 
-    /// Sets the bounds of the number of Newton iterations, and returns those before.
+    /// Sets the least and the largest number of Newton iterations, and returns the former bounds.
     pub fn limit(&mut self, iterations: (usize, usize)) -> (usize, usize) {
         let before = (self.limits.min_iterations, self.limits.max_iterations);
         (self.limits.min_iterations, self.limits.max_iterations) = iterations;
@@ -299,7 +299,7 @@ impl Corrector {
         Ok(Outcome::Failed)
     }
 
-    /// Evaluates the problem at `v`, so that its queries refer to that point.
+    /// Evaluates the problem at `v`, so that its queries refer to this point.
     ///
     /// # Errors
     /// Those of the problem.
@@ -325,7 +325,7 @@ impl Corrector {
         if r == 0.0 { 0.0 } else { r / self.at.scale }
     }
 
-    /// The tolerance, or the residual that rounding leaves where that is larger.
+    /// Residual that can be reached: the tolerance, or rounding where that is larger.
     fn attainable(&self) -> f64 {
         if self.at.rounding > 0.0 {
             self.limits.tolerance.max(self.at.rounding / self.at.scale)
@@ -360,12 +360,12 @@ impl Corrector {
         Ok(factored)
     }
 
-    /// Length of the unknowns of the step.
+    /// Length of the step in the unknowns, without the parameter.
     fn step_length(&self, metric: Metric) -> f64 {
         norm(&self.memory.step[..self.memory.step.len() - 1]) * metric.u
     }
 
-    /// Bound of the residual behind a first step of these sizes, where that leads to a solution.
+    /// Bound of the residual after a first step from these sizes, if it is known to lead to a solution.
     fn foresee(&mut self, problem: &mut dyn Problem, sizes: Sizes) -> Option<f64> {
         // Iterative solutions and near-rigid contacts leave other residuals, and sampled laws have other matrices everywhere.
         let is_smooth = self.may_foresee && self.system.is_direct() && !problem.has_kinks() && self.at.rounding == 0.0;
@@ -374,7 +374,7 @@ impl Corrector {
             .flatten()
     }
 
-    /// step = −(R, 0)
+    /// step ← −(R, 0).
     fn negate_residual(&mut self) {
         let n = self.memory.step.len() - 1;
         for (s, r) in self.memory.step.iter_mut().zip(&self.at.values) {
@@ -383,7 +383,7 @@ impl Corrector {
         self.memory.step[n] = 0.0;
     }
 
-    /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
+    /// step ← −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
     /// earlier iteration may be reused where the matrix has hardly changed.
     fn newton_step(
         &mut self,
@@ -399,8 +399,8 @@ impl Corrector {
         self.solve(problem, (metric, row), STEP_ERROR, interrupt)
     }
 
-    /// Solves for `step` with the current matrix, by factors of an earlier one to the given error; `false` where it
-    /// is singular. The problem is at the point of the matrix.
+    /// Solves for `step` with the current matrix, to a relative error that allows factors of an earlier one; `false`
+    /// where it is singular. The problem must have been evaluated at the point of the matrix.
     fn solve(
         &mut self,
         problem: &mut dyn Problem,
@@ -428,8 +428,8 @@ impl Corrector {
         Ok(self.factor(problem, interrupt)? && self.system.solve(problem, error, &mut self.memory.step, interrupt)?)
     }
 
-    /// Applies the last Newton step, in `step`, without another evaluation (its error is the square of a residual already
-    /// below the tolerance); the tangent is that in `next`.
+    /// Applies the last Newton step, in `step`, without another evaluation: the error is the square of a residual
+    /// already below the tolerance. The tangent is taken from `next`.
     fn finish(
         &mut self,
         problem: &mut dyn Problem,
@@ -466,8 +466,8 @@ impl Corrector {
         }))
     }
 
-    /// The tangent of the current matrix in scaled numbers, of any length, in `next`; `false` where the matrix is singular. With
-    /// weights of `slope_weights` it is that behind the Newton step.
+    /// Computes the tangent of the current matrix in scaled numbers, of any length, into `next`; `false` where the
+    /// matrix is singular. With weights of `slope_weights` it is the tangent after the Newton step.
     fn solve_for_tangent(
         &mut self,
         problem: &mut dyn Problem,
@@ -489,7 +489,7 @@ impl Corrector {
         solved
     }
 
-    /// The unit tangent in unscaled numbers from the one in `next`.
+    /// Fills in the unit tangent, in unscaled numbers, from the one in `next`.
     fn unit_tangent(&self, metric: Metric, tangent: &mut [f64]) {
         let inverse = 1.0 / norm(&self.memory.next);
         for (t, s) in tangent.iter_mut().zip(&self.memory.next) {
@@ -498,8 +498,9 @@ impl Corrector {
         metric.unscale(tangent);
     }
 
-    /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled into `tangent`,
-    /// pointing along the row. Returns whether det [J r; tangentᵀ] is positive; `None` where the matrix is singular.
+    /// Fills `tangent` with the direction in which the linearisation at `v` keeps the residual, whether `v` is a
+    /// solution or not; it points along the row. Returns whether det [J r; tangentᵀ] is positive; `None` where the
+    /// matrix is singular.
     ///
     /// # Errors
     /// Those of the problem.

@@ -50,31 +50,31 @@ const BRANCH_STEP: f64 = 1e-4;
 /// Kind: cap.
 const TRACKED_RESPONSE_ITERATIONS: usize = 200;
 
-/// Point of a response over the frequency that is followed.
+/// Point of a forced response that is followed over a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ResponsePoint {
-    /// That at a fixed frequency.
+    /// The point at a fixed frequency.
     Fixed,
     /// A maximum of the amplitude.
     Peak,
-    /// The same, and the minimum that meets it.
+    /// A maximum of the amplitude, and the minimum that meets it.
     Extremum,
     /// A turning point of the frequency.
     Fold,
 }
 
-/// The response as a function of a parameter.
+/// The followed point of a forced response over a parameter, as a problem.
 pub(crate) struct TrackedResponse<'a> {
     model: &'a Model,
     parameter: Parameter<'a>,
     solver: SolverOptions,
     response_dof: usize,
-    /// The response that is followed instead of its amplitude.
+    /// The response that is followed in place of the amplitude; `None`: the amplitude.
     response: Option<Response<'a>>,
-    /// Frequency at a fixed one, or that of the first peak or fold.
+    /// The fixed frequency, or the frequency of the first peak or fold.
     omega: f64,
     kind: ResponsePoint,
-    /// Unit of lengths of the unknowns.
+    /// Unit of length of the motions among the unknowns.
     length: f64,
     unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
@@ -90,11 +90,11 @@ pub(crate) struct LastResponse {
     amplitude: f64,
     d_amplitude: f64,
     gradient: Vec<f64>,
-    /// d²A/dω² of a peak.
+    /// Second derivative d²A/dω² of a peak.
     curvature: f64,
 }
 
-/// A model at a value of the parameter, condensed.
+/// The model at a value of the parameter, condensed.
 struct At {
     model: Model,
     condensed: Condensed,
@@ -166,7 +166,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(At { model, condensed })
     }
 
-    /// The equations on a condensed model, with what is followed.
+    /// The equations on a condensed model, with the followed response.
     fn point<'c>(&self, condensed: &'c Condensed, omega: f64) -> Result<ForcedPoint<'c>>
     where
         'a: 'c,
@@ -179,7 +179,7 @@ impl<'a> TrackedResponse<'a> {
         }
     }
 
-    /// The response that is followed at a solution, as an estimate watches it, in the caller's unit.
+    /// Values of the followed response at a solution, as an estimate watches them, in the caller's unit.
     fn watched(&self, condensed: &Condensed, own: &[f64], omega: f64) -> Result<Vec<Complex64>> {
         let mut seen = Vec::new();
         let mut values = Vec::new();
@@ -196,7 +196,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(values)
     }
 
-    /// Motions in the unit of lengths of a condensed model.
+    /// Motions in the unit of length of a condensed model.
     fn own_motion(&self, u: &[f64], condensed: &Condensed) -> Result<Vec<f64>> {
         let mut own = try_copy(&u[..self.motions()], CONTEXT)?;
         for y in &mut own {
@@ -229,7 +229,8 @@ impl<'a> TrackedResponse<'a> {
         Ok(if m == 0 { 1.0 } else { scale / unit })
     }
 
-    /// The equations at a fixed frequency or in a peak, and the scale of their residual, in the unit of the condensed model.
+    /// Evaluates the equations at a fixed frequency or in a peak; returns the scale of their residual, in the unit of
+    /// the condensed model.
     fn peak_equations(
         &mut self,
         point: &mut ForcedPoint<'_>,
@@ -266,7 +267,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(scale)
     }
 
-    /// The same in a fold.
+    /// Evaluates the equations in a fold; returns the scale of their residual.
     fn fold_equations(
         &mut self,
         point: &mut ForcedPoint<'_>,
@@ -326,7 +327,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(scale)
     }
 
-    /// The same in a peak or the minimum that meets it.
+    /// Evaluates the equations in a peak or in the minimum that meets it; returns the scale of their residual.
     fn extremum_equations(
         &mut self,
         point: &mut ForcedPoint<'_>,
@@ -382,7 +383,7 @@ impl<'a> TrackedResponse<'a> {
         at
     }
 
-    /// Lets the borders follow the null vectors at a solution.
+    /// Replaces the borders by the null vectors at a solution.
     fn follow_borders(&mut self, point: &mut ForcedPoint<'_>, own: &[f64], omega: f64) -> Result<()> {
         if self.borders.is_none() {
             return Ok(());
@@ -406,7 +407,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(())
     }
 
-    /// Writes Newton's matrix of the motions.
+    /// Writes Newton's matrix of the motions as a part of the Jacobian.
     fn fill_motions(&mut self, jacobian: &[f64]) {
         let (m, n) = (self.motions(), self.unknowns.len());
         self.unknowns.matrix.fill(0.0);
@@ -420,7 +421,7 @@ impl<'a> TrackedResponse<'a> {
         }
     }
 
-    /// Writes the column of the frequency, and the row of its condition times a factor.
+    /// Writes the column of the frequency, and the row of its condition, the latter times a factor.
     fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
         let (m, n) = (self.motions(), self.unknowns.len());
         for (x, r) in self.unknowns.matrix[m * n..m * n + m].iter_mut().zip(column) {
@@ -433,7 +434,7 @@ impl<'a> TrackedResponse<'a> {
         self.unknowns.matrix[m * n + m] = row[m] * TRACKED_RESPONSE_OMEGA_UNIT * omega * factor;
     }
 
-    /// The derivative of the result of an adjoint motion by the parameter.
+    /// Derivative by the parameter of the result to which an adjoint motion belongs.
     fn by_parameter(&self, (model, condensed): (&Model, &Condensed), p: f64, adjoint: &Adjoint) -> Result<f64> {
         let at_frequency = model.at_frequency(adjoint.omega)?;
         let solution = (condensed, self.solver.samples);
@@ -616,7 +617,7 @@ impl Problem for TrackedResponse<'_> {
         Ok(())
     }
 
-    /// The amplitude; its derivative is that along the curve of solutions.
+    /// Observes the amplitude; its derivative is taken along the curve of solutions.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         let mut change = dot(&self.last.gradient[..u.len()], &direction[..u.len()]);
         change += self.last.gradient[u.len()] * direction[u.len()];

@@ -42,7 +42,7 @@ const SLIDER_LAPSE_BEGIN: f64 = 1e-14;
 const SLIDER_LAPSE_ROUNDING: f64 = 1e-12;
 
 impl SliderMotion<'_> {
-    /// Integrates a state over a lapse.
+    /// Integrates a state over a lapse, and returns the changes on its path.
     ///
     /// # Errors
     /// `NoConvergence` for contacts that change without end, or too many steps; `Unsupported` where nothing but slipping
@@ -127,7 +127,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(lapse)
     }
 
-    /// The equations of the contacts that slip now.
+    /// Sets up the equations of the contacts that slip at present.
     fn release(&mut self) -> Result<()> {
         let mut list = Vec::new();
         for (e, sign) in self.sign.iter().enumerate() {
@@ -139,7 +139,8 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(())
     }
 
-    /// The first θ at which a contact changes, 1 if none does; lists those that do.
+    /// The first share θ of the step at which a contact changes its state, 1 if none does; lists the contacts that
+    /// change.
     fn next_event(&mut self, state: &SliderState) -> Result<f64> {
         self.events.falls.clear();
         self.events.changing.clear();
@@ -194,7 +195,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(until.min(1.0))
     }
 
-    /// Changes contacts at θ of the last step.
+    /// Changes the states of contacts at θ of the last step.
     fn switch(&mut self, theta: f64, state: &mut SliderState, path: &mut Path) -> Result<()> {
         for at in 0..self.events.changing.len() {
             let e = self.events.changing[at];

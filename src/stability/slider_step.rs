@@ -19,13 +19,13 @@ pub(super) const SLIDER_STEP_TERMS: usize = 16;
 /// Kind: rounding.
 const SLIDER_STEP_NEGLIGIBLE: f64 = 1e-17;
 
-/// Memory of one lapse, and its state beside coordinates, velocities and places of sliders.
+/// Memory of one lapse, with the states of the contacts.
 pub(super) struct Lapse<'m, 'a> {
     pub motion: &'m SliderMotion<'a>,
     /// Sign of the slip of each contact; 0: it sticks.
     pub sign: Vec<f64>,
     pub slipping: Slipping<f64>,
-    /// p_S, G p_S and Rᴴ p_S, until a contact changes.
+    /// Forces p_S of sticking sliders with G p_S and Rᴴ p_S, constant until a contact changes.
     held: [DVector<f64>; 3],
     pub powers: Powers,
     pub length: f64,
@@ -48,7 +48,7 @@ pub(super) struct Powers {
 pub(super) struct StepEvents {
     /// Zeros by construction of the margins at the begin of the step.
     pub zeros: Vec<usize>,
-    /// Contacts that reach an event within the step, with the share at which they do; and those that change first.
+    /// Contacts that reach an event within the step, with the share of the step; and those that change first.
     pub falls: Vec<(f64, usize)>,
     pub changing: Vec<usize>,
 }
@@ -65,7 +65,7 @@ pub(super) struct Terms {
 }
 
 impl<'m, 'a> Lapse<'m, 'a> {
-    /// The memory, with all contacts sticking.
+    /// Memory for a motion, with all contacts sticking.
     pub fn stuck(motion: &'m SliderMotion<'a>) -> Result<Self> {
         let ring = motion.ring;
         let (order, all) = (ring.order(), ring.all());
@@ -100,7 +100,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         })
     }
 
-    /// Forces of the sliders at rest.
+    /// Computes the forces of the sticking sliders.
     fn hold(&mut self, state: &SliderState) -> Result<()> {
         let ring = self.motion.ring;
         let all = ring.all();
@@ -120,7 +120,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(())
     }
 
-    /// Relative motions and forces of slipping sliders at the time 0 of a lapse.
+    /// Computes relative motions and forces of slipping sliders at the beginning of a lapse.
     pub fn relative_at_begin(&mut self, state: &SliderState) -> Result<()> {
         self.hold(state)?;
         self.terms.forced.fill(0.0);
@@ -134,7 +134,8 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(())
     }
 
-    /// Term k of the forces of slipping sliders and of relative motions, from that of the coordinates.
+    /// Computes term k of the forces of slipping sliders and of relative motions, from the same term of the
+    /// coordinates.
     fn follow(&mut self, k: usize) {
         let ring = self.motion.ring;
         let list = &self.slipping.list;
@@ -235,7 +236,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(())
     }
 
-    /// Factor on the length at which the last two terms are negligible.
+    /// Factor on the length of the step at which its last two terms are negligible.
     fn ratio(&self) -> Result<f64> {
         let size = |k: usize| self.powers.q.column(k).amax();
         // The largest term falls with a low power of the length.
@@ -253,7 +254,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(ratio)
     }
 
-    /// The state at θ.
+    /// Moves the state to the share θ of the step.
     pub fn advance(&mut self, theta: f64, state: &mut SliderState) {
         state.q.fill(0.0);
         state.v.fill(0.0);
@@ -278,13 +279,13 @@ impl<'m, 'a> Lapse<'m, 'a> {
         r - self.sign[e] * self.motion.play[e]
     }
 
-    /// x′ of a contact at θ.
+    /// Rate x′ of a contact's relative motion at θ.
     pub fn rate(&self, e: usize, theta: f64) -> f64 {
         let terms = (1..=SLIDER_STEP_TERMS).rev();
         terms.fold(0.0, |sum, k| sum * theta + k as f64 * self.powers.r[(e, k)]) / self.length
     }
 
-    /// r − w of a contact at θ.
+    /// Stretch r − w of a contact's spring at θ.
     pub fn stretch(&self, e: usize, theta: f64, state: &SliderState) -> f64 {
         self.powers.r.row(e).iter().rev().fold(0.0, |sum, c| sum * theta + c) - state.w[e]
     }

@@ -43,7 +43,7 @@ struct RequestedTime {
 struct RequestedTimes {
     count: usize,
     sectors: usize,
-    /// g
+    /// Number g of samples at each time within a lapse.
     together: usize,
     /// Inverse of sectors/g modulo count/g.
     inverse: usize,
@@ -61,7 +61,7 @@ impl RequestedTimes {
         }
     }
 
-    /// The i-th one in the order of time.
+    /// The i-th requested time, in the order of time.
     fn get(&self, system: (f64, usize), i: usize) -> Option<RequestedTime> {
         if i >= self.count {
             return None;
@@ -97,7 +97,7 @@ pub(crate) struct HarmonicAnalysis {
     degrees: DegreeMap,
     sectors: usize,
     omega: f64,
-    /// ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
+    /// Integrals ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
     integrals: Vec<Complex64>,
     nodes: ([f64; HARMONIC_ANALYSIS_POINTS], [f64; HARMONIC_ANALYSIS_POINTS]),
     times: Times,
@@ -143,7 +143,7 @@ impl HarmonicAnalysis {
         })
     }
 
-    /// Adds the part of a step up to θ.
+    /// Adds the part of a step up to the share θ.
     pub fn add(&mut self, step: &StepPolynomial, theta: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         if theta <= 0.0 {
             return Ok(());
@@ -202,7 +202,8 @@ impl HarmonicAnalysis {
         self.finish(system).map(|(harmonics, _)| harmonics)
     }
 
-    /// The same with the samples, time by time.
+    /// The harmonics of all degrees of freedom in the caller's numbering, harmonic by harmonic; and the samples, time
+    /// by time.
     pub fn finish_all(self, system: &System<'_>, model: &Model) -> Result<(Vec<Complex64>, Vec<f64>)> {
         let given = model.ndof();
         let (independent, samples) = self.finish(system)?;
@@ -250,12 +251,12 @@ fn before(system: &System<'_>, parts: usize) -> usize {
     back(parts * system.wave.follower, system.wave.sectors)
 }
 
-/// The sector so many sectors before sector 0.
+/// The sector `count` sectors before sector 0.
 fn back(count: usize, sectors: usize) -> usize {
     (sectors - count % sectors) % sectors
 }
 
-/// ∫ θᵏ e^{−iαθ} dθ from 0 to 1, k = 0 ..= degree.
+/// Moments ∫ θᵏ e^{−iαθ} dθ from 0 to 1, k = 0 ..= degree.
 fn moments(
     (c, b): &([f64; HARMONIC_ANALYSIS_POINTS], [f64; HARMONIC_ANALYSIS_POINTS]),
     angle: f64,

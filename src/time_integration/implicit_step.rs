@@ -19,7 +19,7 @@ use crate::time_integration::unrolled_structure::System;
 /// Kind: cap.
 const IMPLICIT_STEP_MOST_ITERATIONS: usize = 30;
 
-/// Memory of the steps.
+/// Implicit steps, with their memory.
 pub(super) struct Implicit {
     tables: GaussTables,
     lu: Lu<f64>,
@@ -111,7 +111,7 @@ impl Implicit {
         }
     }
 
-    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
+    /// Factors the matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
     fn factor(&mut self, system: &System<'_>, pieces: &[TimePiece], h: f64) -> Result<()> {
         let n = self.x.len();
         let all = n * GAUSS_STAGES;
@@ -148,7 +148,8 @@ impl Implicit {
         self.lu.factor(system.interrupt)
     }
 
-    /// Newton's method for the accelerations, with the tangents at the start of the step; `false`: it failed.
+    /// Solves for the accelerations by Newton's method, with the tangents at the start of the step; `false` if it
+    /// fails.
     fn collocate(
         &mut self,
         system: &System<'_>,
@@ -188,7 +189,7 @@ impl Implicit {
         Ok(false)
     }
 
-    /// M a + C v + K x + f − F at the nodes, and the tangents there.
+    /// Evaluates M a + C v + K x + f − F at the nodes, and the tangents of smooth laws at them.
     fn evaluate(
         &mut self,
         system: &System<'_>,
@@ -277,7 +278,7 @@ impl Implicit {
         of(last * h / order, self.largest.1).max(of(last * (h / order).powi(2), self.largest.0))
     }
 
-    /// The nodes of the last step, and the tangents of smooth laws there.
+    /// The nodes of the last step, and the tangents of smooth laws at them.
     pub fn nodes(&self) -> (&GaussTables, &Smooth) {
         (&self.tables, &self.smooth)
     }

@@ -25,11 +25,11 @@ const LINEAR_STEP_ROUNDS: usize = 100;
 /// Kind: rounding.
 const LINEAR_STEP_OVERFLOW: f64 = 1e200;
 
-/// Memory of the steps.
+/// Steps by Taylor series, with their memory.
 pub(super) struct Taylor {
     force: Vec<f64>,
     turning: Vec<Complex64>,
-    /// Its values for the term before.
+    /// Values of `turning` for the term before.
     before: Vec<Complex64>,
     /// Length of the step to try next.
     trial: f64,
@@ -96,7 +96,7 @@ impl Taylor {
         }
     }
 
-    /// x_{k+2} from x_k and x_{k+1}.
+    /// Computes the term x_{k+2} from x_k and x_{k+1}.
     fn next_term(
         &mut self,
         system: &mut System<'_>,

@@ -59,15 +59,15 @@ pub(crate) fn check_shooting(order: usize) -> Result<()> {
     check_memory::<f64>(states.saturating_mul(states).saturating_mul(2), "shooting in time")
 }
 
-/// Result of a search.
+/// Result of a search for a steady state.
 pub(crate) struct Steady {
     /// The state at time 0.
     pub state: State,
     /// Largest change over a lapse, relative to the largest displacement and velocity.
     pub residual: f64,
-    /// Periods that were integrated, rounded up.
+    /// Number of periods that were integrated, rounded up.
     pub periods: usize,
-    /// `Ok` or `StoppedByCaller`.
+    /// Status: `Ok`, or `StoppedByCaller`.
     pub status: Status,
     /// Whether periods were marched.
     pub marched: bool,
@@ -79,7 +79,7 @@ enum Outcome {
     Stopped,
 }
 
-/// Memory of a search.
+/// A search for a steady state, with its memory.
 pub(crate) struct Search<'a, 'h, 's> {
     system: &'a mut System<'s>,
     event_loop: &'a mut EventLoop,
@@ -107,9 +107,9 @@ pub(crate) struct Images {
 pub(crate) struct Sought {
     /// Whether the frequency is an unknown, because no force has one.
     free: bool,
-    /// Whether the motion that is sought is near the first state.
+    /// Whether the motion must be near the first state.
     near: bool,
-    /// Whether a residual within the tolerance ends the search, which else goes on to round-off.
+    /// Whether a residual within the tolerance ends the search; else it goes on to round-off.
     quick: bool,
 }
 
@@ -225,7 +225,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         }
     }
 
-    /// Integrates one lapse from the state; the image is shifted and compared. `true`: the caller requested a stop.
+    /// Integrates one lapse from the state, shifts the image, and compares it with the state. `true`: the caller
+    /// requested a stop.
     fn lap(&mut self, sensitivity: Option<&mut Sensitivity<'s>>) -> Result<bool> {
         if self.laps >= self.most_laps {
             return fail!(
@@ -261,7 +262,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(self.hooks.report(&progress))
     }
 
-    /// Shifts the image and measures its distance from the state.
+    /// Shifts the image, so that each sector has the values of the one with the same motion a lapse later, and
+    /// measures its relative distance from the state.
     fn compare(&mut self, summary: &LapseSummary) {
         let system = &*self.system;
         shift(system, system.ndof, &self.images.image.x, &mut self.images.shifted.x);
@@ -362,8 +364,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(Outcome::Failed)
     }
 
-    /// Steps from `base` by the longest halved share of the step that reduces the error below `residual`, down to the
-    /// shortest one; `true`: the caller requested a stop.
+    /// Steps from `base` by the longest halved share of the step that reduces the error below `residual`, but not
+    /// shorter than `shortest`; `true`: the caller requested a stop.
     fn step_from(&mut self, base: &State, omega: f64, step: &[f64], (residual, shortest): (f64, f64)) -> Result<bool> {
         let mut share = 1.0;
         loop {
@@ -385,7 +387,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         }
     }
 
-    /// Whether the slider of a stretch rests in all sectors, which then has a fixed place and no equation.
+    /// Whether the slider of a stretch does not move in any sector, so that it has a fixed place and no equation.
     fn rests(&self, i: usize) -> bool {
         let n = self.state.x.len();
         i >= 2 * n
@@ -486,7 +488,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(pair)
     }
 
-    /// state = base + share·step, and the frequency where it is free.
+    /// state ← base + share·step, and the frequency where it is an unknown.
     fn advance(&mut self, base: &State, omega: f64, step: &[f64], share: f64) {
         let n = base.x.len();
         let (x, rest) = step.split_at(n);

@@ -41,7 +41,7 @@ impl Sparse {
         Ok(real)
     }
 
-    /// y += s·A x
+    /// y ← y + s·A x.
     pub fn multiply_add(&self, s: f64, x: &[f64], y: &mut [f64]) {
         for (j, &x) in x.iter().enumerate() {
             let sx = s * x;
@@ -53,7 +53,7 @@ impl Sparse {
         }
     }
 
-    /// Adds s·A to a dense block: `put(row, column, value)`.
+    /// Visits the entries of the matrix: `put(row, column, value)`.
     pub fn each(&self, mut put: impl FnMut(usize, usize, f64)) {
         for j in 0..self.starts.len() - 1 {
             for k in self.starts[j]..self.starts[j + 1] {
@@ -65,7 +65,7 @@ impl Sparse {
 
 /// Factors of the mass matrix.
 enum Mass {
-    /// 1/mᵢᵢ of a diagonal one.
+    /// Reciprocals 1/mᵢᵢ of a diagonal mass matrix.
     Diagonal(Vec<f64>),
     General {
         factor: Box<Factor>,
@@ -73,7 +73,7 @@ enum Mass {
     },
 }
 
-/// A force Re(value·e^{i·harmonic·ωt}).
+/// A harmonic force Re(value·e^{i·harmonic·ωt}).
 #[derive(Clone)]
 pub(crate) struct Load {
     pub dof: usize,
@@ -83,11 +83,11 @@ pub(crate) struct Load {
 
 /// The equations of motion of all carried sectors.
 pub(crate) struct System<'s> {
-    /// Asked by every loop of the integration.
+    /// Interrupt that every loop of the integration checks.
     pub interrupt: &'s Interrupt<'s>,
-    /// Independent degrees of freedom of a sector.
+    /// Number of independent degrees of freedom of a sector.
     pub ndof: usize,
-    /// The map from those of the caller.
+    /// Map from the caller's degrees of freedom to the independent ones.
     pub degrees: DegreeMap,
     pub wave: CarriedSectors,
     /// Angular frequency of harmonic 1, at time 0 where it changes.
@@ -106,11 +106,11 @@ pub(crate) struct System<'s> {
 pub(crate) struct CarriedSectors {
     /// Sectors that are carried.
     pub sectors: usize,
-    /// Lapses of a period.
+    /// Number of lapses in a period.
     pub lapses: usize,
-    /// Whether the motion past the carried sectors is theirs with the opposite sign.
+    /// Whether only half of the sectors are carried, and the others move opposite to them.
     pub folded: bool,
-    /// x_{s+j}(t + T/sectors) = x_s(t) with this j.
+    /// Number j of sectors with x_{s+j}(t + T/sectors) = x_s(t).
     pub follower: usize,
 }
 
@@ -119,9 +119,9 @@ pub(crate) struct Matrices {
     solver: Mass,
     /// M
     pub inertia: Sparse,
-    /// C
+    /// Damping matrix C of all carried sectors.
     pub damping: Sparse,
-    /// K with springs and contacts that always stick.
+    /// Stiffness matrix K with springs and contacts that always stick.
     pub stiffness: Sparse,
 }
 
@@ -133,7 +133,7 @@ impl<'s> System<'s> {
         Ok(system)
     }
 
-    /// The same without the forces of the model.
+    /// The structure of a model at angular frequency `omega`, without the forces of the model.
     pub fn unforced(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         interrupt.phase(Phase::Setup, 0.0)?;
         let model = &*model.at_frequency(omega)?;
@@ -221,7 +221,7 @@ impl<'s> System<'s> {
         Ok(())
     }
 
-    /// Operations of one product with the matrices, for the checks of the interrupt.
+    /// Number of operations of one product with the matrices, for the checks of the interrupt.
     pub fn operations(&self) -> u64 {
         let entries = self.matrices.stiffness.values.len()
             + self.matrices.damping.values.len()
@@ -229,25 +229,25 @@ impl<'s> System<'s> {
         (2 * entries + OF_ONE_ELEMENT * self.elements.len()) as u64 + 1000
     }
 
-    /// Degrees of freedom of all carried sectors.
+    /// Number of degrees of freedom of all carried sectors.
     pub fn order(&self) -> usize {
         self.ndof * self.wave.sectors
     }
 
-    /// The part of the period after which every sector repeats the motion of another one.
+    /// Length of a lapse: part of the period after which every sector repeats the motion of another one.
     pub fn lapse(&self) -> f64 {
         TAU / self.omega / self.wave.lapses as f64
     }
 
-    /// The sector whose motion after a lapse is that of sector `s` now, and the sign with which it is.
+    /// The sector whose motion after a lapse equals the present one of sector `s`, and the sign with which it does.
     pub fn after_lapse(&self, s: usize) -> (usize, f64) {
         let to = s + self.wave.follower;
         let opposite = self.wave.folded && !(to / self.wave.sectors).is_multiple_of(2);
         (to % self.wave.sectors, if opposite { -1.0 } else { 1.0 })
     }
 
-    /// The same structure with half the sectors, for motions whose other half moves opposite to them; the number of
-    /// sectors is even, forces have odd harmonics and laws are odd.
+    /// The equations of half the sectors, for motions whose other half moves opposite to them. The number of sectors
+    /// must be even, forces must have odd harmonics, and laws must be odd.
     pub fn folded(&self) -> Result<Self> {
         let half = self.wave.sectors / 2;
         let n = half * self.ndof;
@@ -308,7 +308,7 @@ impl<'s> System<'s> {
         !self.elements.iter().any(|e| e.smooth().is_some())
     }
 
-    /// a ← M⁻¹ a
+    /// a ← M⁻¹ a.
     pub fn accelerate(&mut self, a: &mut [f64]) -> Result<()> {
         match &mut self.matrices.solver {
             Mass::Diagonal(inverse) => {
@@ -336,7 +336,7 @@ impl<'s> System<'s> {
         }
     }
 
-    /// e^{ihφ} at time t, with the phase φ = ωt, or ωt + ω′t²/2 where the frequency changes.
+    /// Phase factor e^{ihφ} at time t, with φ = ωt, or φ = ωt + ω′t²/2 where the frequency changes.
     pub fn turn(&self, harmonic: usize, t: f64) -> Complex64 {
         let h = harmonic as f64;
         if self.omega_rate == 0.0 {
@@ -357,7 +357,7 @@ impl<'s> System<'s> {
     }
 }
 
-/// K with the springs added.
+/// Stiffness K with the springs added.
 fn with_springs(stiffness: &Csc, springs: &[Spring], interrupt: &Interrupt<'_>) -> Result<Csc> {
     let n = stiffness.rows;
     let mut entries = Vec::new();
@@ -420,8 +420,8 @@ pub(crate) fn refuse_massless(m: &Csc, ndof: usize) -> Result<()> {
     }
 }
 
-/// Structural damping defines no motion in time: its force follows the future of the motion, too (Crandall 1970,
-/// doi:10.1016/0022-460X(70)90105-5).
+/// Refuses structural damping, which defines no motion in time: its force depends on the future of the motion, too
+/// (Crandall 1970, doi:10.1016/0022-460X(70)90105-5).
 ///
 /// # Errors
 /// `Unsupported`.

@@ -23,7 +23,7 @@ const RESONANCE_BANDS_SHARE: f64 = 0.05;
 /// Kind: tuned; measured on: not recorded.
 const RESONANCE_BANDS_APPROACH: f64 = 0.5;
 
-/// The bands of the harmonics in which forces act.
+/// Bands of frequency in which the harmonics with forces may resonate.
 pub(crate) struct ResonanceBands {
     bands: Vec<(f64, f64)>,
     /// Change of the frequency in a step within a band.
@@ -31,8 +31,8 @@ pub(crate) struct ResonanceBands {
 }
 
 impl ResonanceBands {
-    /// The bands of a model whose forces act in the harmonics `forced`, for a sweep over `range`. Where natural frequencies
-    /// cannot be had, all frequencies are a band.
+    /// The bands of a model whose forces act in the harmonics `forced`, for a sweep over `range`. Where natural
+    /// frequencies cannot be computed, one band holds all frequencies.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -75,7 +75,7 @@ impl ResonanceBands {
         continuation.change_at_most(self.most_change(point.parameter(), rises));
     }
 
-    /// The largest change of the frequency from `omega` on, in the sense in which it rises or falls.
+    /// Largest change of the frequency that a step may make from `omega`; `rises`: towards higher frequencies.
     fn most_change(&self, omega: f64, rises: bool) -> f64 {
         let distance = |&(low, high): &(f64, f64)| match rises {
             true if omega <= high => Some(low - omega),

@@ -30,11 +30,11 @@ const RESONANCE_GRID_UNDAMPED: f64 = 1e-4;
 
 const CONTEXT: &str = "the frequencies of a linear response";
 
-/// Where the linear response is computed.
+/// Parameter values at which the linear response is computed.
 pub(crate) struct LinearGrid {
-    /// Parameter values, ascending.
+    /// Parameter values of the grid, ascending.
     values: Vec<f64>,
-    /// Undamped resonances, where the response is unbounded.
+    /// Parameter values of undamped resonances, where the response is unbounded.
     pub undamped: Vec<f64>,
 }
 
@@ -54,7 +54,7 @@ impl LinearGrid {
         })
     }
 
-    /// The next value beyond another one, at a distance of at most `most`.
+    /// The next value of the grid after `value`, or a nearer one at the distance `most`.
     pub fn after(&self, value: f64, rising: bool, most: f64) -> Option<f64> {
         if rising {
             let next = self.values.partition_point(|&x| x <= value);

@@ -12,17 +12,17 @@ use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::results::{Record, Resolution, SeenWithError};
 use num_complex::Complex64;
 
-/// The equations at one resolution.
+/// The equations of a forced response at one resolution, with their corrector.
 pub(crate) struct Equations<'a> {
     pub resolution: &'a Resolution,
     pub problem: HarmonicBalance<'a>,
     pub corrector: Box<Corrector>,
-    /// Response of each harmonic, as it was computed last.
+    /// Response of each carried harmonic, as computed last.
     pub response: Vec<Complex64>,
 }
 
 impl<'a> Equations<'a> {
-    /// The solution with linear contacts at a frequency, see `Discretised::linear_at`.
+    /// The solution with linear contacts at a frequency; see `Discretised::linear_at`.
     pub fn linear_at(
         &mut self,
         settings: &Settings,
@@ -37,7 +37,7 @@ impl<'a> Equations<'a> {
         Ok(found?.filter(|_| problem.forces().all_linear()))
     }
 
-    /// The equations over the range of the settings, with further responses.
+    /// The equations over the range of the settings, with the further responses to read.
     pub fn new(
         resolution: &'a Resolution,
         settings: &Settings,

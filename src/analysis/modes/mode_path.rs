@@ -25,7 +25,7 @@ const BEYOND_ONSET: f64 = 1.02;
 /// Kind: tuned; measured on: not recorded.
 const BELOW_ONSET: f64 = 3.0;
 
-/// log₁₀ of the amplitudes up to which the mode is linear, and up to which it nearly is.
+/// Amplitudes, as log₁₀, up to which the mode is linear, and up to which it nearly is.
 #[derive(Clone, Copy)]
 pub(crate) struct Onset {
     pub linear_up_to: f64,
@@ -33,7 +33,7 @@ pub(crate) struct Onset {
 }
 
 impl Onset {
-    /// Amplitude just beyond the onset of slip.
+    /// Amplitude, as log₁₀, just beyond the onset of slip.
     fn beyond(self) -> f64 {
         self.linear_up_to + BEYOND_ONSET.log10()
     }
@@ -130,7 +130,7 @@ pub(crate) fn trace(
     }
 }
 
-/// Records the branch from the point at the start of the range that a guess leads to.
+/// Records the branch from the point, at the start of the range, to which a guess leads.
 fn from_guess(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,
@@ -146,7 +146,8 @@ fn from_guess(
     tracer.trace(mode, point, hooks)
 }
 
-/// Solutions at the requested amplitudes of the linear range, and of the gap between it and the first point beyond.
+/// Records solutions at the requested amplitudes of the linear range, and of the gap between this range and the first
+/// point beyond.
 fn requested_below(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,

@@ -25,7 +25,7 @@ pub(crate) struct ModeStart {
 }
 
 impl ModeStart {
-    /// The mode that the options select, about the static state.
+    /// The linear mode that the options select, about the static state.
     pub fn new(
         model: &Model,
         solver: &SolverOptions,
@@ -54,7 +54,7 @@ impl ModeStart {
         Ok(Self { linear, gauge, chosen })
     }
 
-    /// Whether several modes have its frequency.
+    /// Whether several linear modes share its frequency.
     pub fn is_repeated(&self) -> bool {
         self.chosen.multiplicity > 1
     }
@@ -77,8 +77,8 @@ impl ModeStart {
         Ok(())
     }
 
-    /// The data of the mode. Like all parts of a run it is a function of its own, so that they take their share of a small
-    /// stack one after the other.
+    /// The data of the mode for its branch. Like all parts of a run it is a function of its own, so that they use a
+    /// small stack one after the other.
     #[inline(never)]
     pub fn data(&self, model: &Model, range: &ModeOptions<'_>, linear_up_to: f64) -> Result<ModeData> {
         const CONTEXT: &str = "the nonlinear mode";

@@ -25,7 +25,7 @@ const STUCK: f64 = -60.0;
 /// Kind: tuned; measured on: not recorded.
 const FROM_ONSET: (f64, f64) = (-0.1, 3.0);
 
-/// Follows the maximum from the first value of the parameter, at which the model is `first`.
+/// Follows the largest damping ratio from the first value of the parameter, at which the model is `first`.
 ///
 /// # Errors
 /// Those of [`nonlinear_mode`]; `Argument` where no contact sticks at small amplitudes and no range was given;
@@ -134,7 +134,7 @@ pub(crate) fn follow(
     Ok(found)
 }
 
-/// The result of a run that was stopped while it followed the mode of the first value: it has no point.
+/// The result of a run that was stopped while it followed the mode at the first value: it has no point.
 fn without_points(first: &Model, solver: &SolverOptions, mode: &Branch) -> Result<Branch> {
     let mut found = Branch::stopped(first, solver)?;
     if let Some(data) = mode.mode_data() {
@@ -150,7 +150,7 @@ fn without_points(first: &Model, solver: &SolverOptions, mode: &Branch) -> Resul
     Ok(found)
 }
 
-/// The range of amplitude from the onset of slip, or the branch of a mode that was stopped.
+/// Range of amplitude, as log₁₀, about the onset of slip; or the branch of a mode that was stopped.
 fn from_onset<'a>(
     first: &Model,
     solver: &SolverOptions,

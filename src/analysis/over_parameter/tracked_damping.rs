@@ -41,7 +41,7 @@ const AMPLITUDE_UNIT: f64 = 0.1;
 /// Kind: tuned; measured on: not recorded.
 const MODE_STEP: f64 = 1e-4;
 
-/// The largest damping ratio over a parameter.
+/// The largest damping ratio of a nonlinear mode over a parameter.
 pub(crate) struct TrackedDamping<'a> {
     model: &'a Model,
     parameter: Parameter<'a>,
@@ -50,9 +50,9 @@ pub(crate) struct TrackedDamping<'a> {
     /// The linear mode at the first value, whose frequency, damping and shape give the units at all values.
     linear: &'a LinearMode,
     gauge: &'a Gauge,
-    /// log₁₀ of the amplitude where its unknown is 0.
+    /// Amplitude, as log₁₀, at which its unknown is 0.
     log10_amplitude: f64,
-    /// Unit of lengths of the unknowns.
+    /// Unit of length of the motions among the unknowns.
     length: f64,
     unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
@@ -119,7 +119,7 @@ impl<'a> TrackedDamping<'a> {
         })
     }
 
-    /// log₁₀ of the amplitude that belongs to unknowns.
+    /// Amplitude, as log₁₀, from the unknowns.
     fn log10(&self, u: &[f64]) -> f64 {
         self.log10_amplitude + AMPLITUDE_UNIT * u[u.len() - 1]
     }
@@ -147,7 +147,7 @@ impl<'a> TrackedDamping<'a> {
         })
     }
 
-    /// Unknowns of the mode in the unit of lengths of a condensed model.
+    /// Unknowns of the mode in the unit of length of a condensed model.
     fn own(&self, u: &[f64], condensed: &Condensed) -> Result<Vec<f64>> {
         let mut own = try_copy(&u[..u.len() - 1], CONTEXT)?;
         for y in &mut own[..self.motions()] {
@@ -156,7 +156,7 @@ impl<'a> TrackedDamping<'a> {
         Ok(own)
     }
 
-    /// Packed relative motions of unknowns, static ones included.
+    /// Packed relative motions from the unknowns: about the static state, and in total.
     fn motion(&self, own: &[f64], log10: f64, at: &At) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut vibration = try_copy(&own[..self.motions()], CONTEXT)?;
         for y in &mut vibration {
@@ -455,7 +455,7 @@ impl Problem for TrackedDamping<'_> {
         Ok(())
     }
 
-    /// The damping ratio, which in its maximum changes with the parameter alone.
+    /// Observes the damping ratio. At its maximum it changes with the parameter alone.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         let change = self.last.d_damping * direction[u.len()];
         self.unknowns.observe(self.last.damping, change)

@@ -9,8 +9,8 @@ use crate::options::Range;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::{Branch, FreedomOfPoints};
 
-/// Computes the free sliders of all stored points of a branch and of its children, those of another period aside, whose freedom is
-/// unknown. A caller who stops it has a branch that ended early, with the freedom of the points before.
+/// Computes the free sliders of all stored points of a branch and of its children (except those with another period),
+/// where they are unknown. If the caller stops it, the branch ends early, with the free sliders of the points before.
 ///
 /// # Errors
 /// Those of the model; `OutOfMemory`.

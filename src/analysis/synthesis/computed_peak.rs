@@ -36,20 +36,20 @@ const COMPUTED_PEAK_MOST_POINTS: usize = 100;
 /// Kind: tuned; measured on: not recorded.
 const COMPUTED_PEAK_STEP: f64 = 0.01;
 
-/// A synthesised resonance with the motion of the mode there.
+/// A synthesised resonance, with the motion of the mode at that amplitude.
 pub(crate) struct AtPeak<'a> {
     pub state: &'a State,
     /// Angular frequency of the force.
     pub omega: f64,
-    /// The condensed mode, its samples and the packed total motion in its units.
+    /// The condensed mode, the samples of its laws, and the packed total motion in its units.
     pub condensed: &'a Condensed,
     pub samples: usize,
     pub motion: &'a [f64],
-    /// Degree of freedom whose amplitude counts, in the caller's numbering.
+    /// Degree of freedom whose amplitudes are compared, in the caller's numbering.
     pub response_dof: usize,
 }
 
-/// Amplitude of the synthesised resonance over that of the computed one next to it, minus 1; NaN if none was found.
+/// Ratio of the synthesised amplitude to that of the computed resonance next to it, minus 1; NaN if none was found.
 ///
 /// # Errors
 /// `OutOfMemory`; those of callbacks that give up; `StoppedByCaller`.
@@ -143,8 +143,8 @@ fn computed(
     Ok(None)
 }
 
-/// Newton's method from the motion of the mode, at its frequency or at its phase. Contacts far from where the force acts
-/// may move otherwise than in the mode, so that the solution need not be near.
+/// Solves by Newton's method from the motion of the mode, at its frequency or at its phase. Contacts far from where
+/// the force acts may move otherwise than in the mode, so that the solution need not be near.
 fn solve(
     problem: &mut dyn Problem,
     corrector: &mut Corrector,
@@ -170,7 +170,7 @@ fn solve(
     )
 }
 
-/// The motion of the mode with the phase that the force gives it, and the frequency.
+/// The motion of the mode with the phase that the force gives it, followed by the frequency.
 fn turned(peak: &AtPeak<'_>, n: usize) -> Result<Vec<f64>> {
     let set = peak.condensed.set();
     let turn = peak.state.turn(peak.omega);

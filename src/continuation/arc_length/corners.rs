@@ -73,8 +73,8 @@ impl Continuation {
         Ok(None)
     }
 
-    /// Leaves the direction of the linearisation at `probe` as the row of the plane. Returns whether the bordered
-    /// determinant is positive there.
+    /// Leaves the direction of the linearisation at `probe` as the row that defines the plane of the correction.
+    /// Returns whether the bordered determinant is positive at `probe`; `None` where the direction is not found.
     fn direction_beyond(
         &mut self,
         problem: &mut dyn Problem,
@@ -95,8 +95,8 @@ impl Continuation {
         Ok(found)
     }
 
-    /// A point beyond the current one along the row of the plane, from which the branch goes on in that direction;
-    /// with the sign of the bordered determinant kept if `keeps_sense`.
+    /// A point beyond the current one along the row, from which the branch continues in that direction; with the sign
+    /// of the bordered determinant kept if `keeps_sense`.
     fn beyond_corner(
         &mut self,
         problem: &mut dyn Problem,
@@ -138,9 +138,10 @@ impl Continuation {
         Ok(None)
     }
 
-    /// The next point beyond a corner that the branch reaches along the surface of the event, where no step in its
-    /// direction crosses that: friction in a plane, whose slider at rest is held by two circles that cease to meet. The
-    /// linearisation is taken at other parameters, and its sense is that in which a point is found; straight back is none.
+    /// The next point beyond a corner that the branch reaches along the surface of an event, where no step in its
+    /// direction crosses that surface: friction in a plane, whose sticking slider is held by two circles that cease
+    /// to meet. The linearisation is taken at other parameters. Its sense is the one in which a point is found,
+    /// straight back excepted.
     fn leave_along_surface(
         &mut self,
         problem: &mut dyn Problem,
@@ -174,9 +175,10 @@ impl Continuation {
         Ok(None)
     }
 
-    /// The next point beyond a corner at which the branch has a direction on one side only near the corner itself: where circles that hold
-    /// a slider at rest cease to meet, its place goes with the root of the distance in the parameter, and the linearisation beside the
-    /// corner, on either side, tells the direction from which the branch came.
+    /// The next point beyond a corner at which the branch has a direction on one side only near the corner itself.
+    /// Where two circles that hold a sticking slider cease to meet, its position changes with the root of the
+    /// distance in the parameter, and the linearisation beside the corner, on either side, shows the direction from
+    /// which the branch came.
     ///
     /// A point at another parameter, solved for from the corner, is on the branch beyond if the branch there leads straight away from the
     /// corner, and not back to where it came from.
@@ -227,21 +229,21 @@ impl Continuation {
         Ok(None)
     }
 
-    /// Cosine between the row of the plane and the direction at the current point.
+    /// Cosine of the angle between the row and the direction at the current point.
     fn onwards(&self, metric: Metric) -> Result<f64> {
         let row = self.unscaled_row(metric)?;
         Ok(metric.dot(&row, &self.current.tangent) / metric.norm(&self.current.tangent))
     }
 
-    /// The row of the plane in unscaled numbers.
+    /// The row that defines the plane of the correction, in unscaled numbers.
     fn unscaled_row(&self, metric: Metric) -> Result<Vec<f64>> {
         let mut row = try_copy(&self.memory.row, CONTEXT)?;
         metric.unscale(&mut row);
         Ok(row)
     }
 
-    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the direction
-    /// of the branch: that of contacts which are nearly rigid.
+    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the
+    /// direction of the branch, as with contacts that are nearly rigid.
     pub(super) fn leave_corner(
         &mut self,
         problem: &mut dyn Problem,

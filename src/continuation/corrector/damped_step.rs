@@ -9,7 +9,7 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 
 impl Corrector {
-    /// Tries λ = min(1, 4·last), halving; returns the accepted λ.
+    /// Tries damping factors λ = min(1, 4·last), halving; returns the accepted one.
     pub(super) fn damped_step(
         &mut self,
         problem: &mut dyn Problem,

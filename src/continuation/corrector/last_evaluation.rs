@@ -26,8 +26,8 @@ const LAST_EVALUATION_SMALL: f64 = 1e-5;
 const LAST_EVALUATION_MOST_ROUNDS: usize = 3;
 
 impl Corrector {
-    /// Solves for the last Newton step, in `step`, and for the tangent, in `next`, by the factors of the iteration before, whose
-    /// step had this length over the motion. `false` where new ones are needed.
+    /// Solves for the last Newton step, in `step`, and the tangent, in `next`, with the factors of the iteration
+    /// before, whose step had this length over the motion. `false` where new factors are needed.
     pub(super) fn ends_by_earlier_factors(
         &mut self,
         problem: &mut dyn Problem,
@@ -54,7 +54,8 @@ impl Corrector {
         Ok(is_near && self.refine_tangent(problem, (metric, row), interrupt)?)
     }
 
-    /// The tangent of the current matrix in `next`, by the factors of an earlier one.
+    /// Computes the tangent of the current matrix in `next` by iteration with the factors of an earlier one; `false`
+    /// where that does not converge.
     fn refine_tangent(
         &mut self,
         problem: &mut dyn Problem,

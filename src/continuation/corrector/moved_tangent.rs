@@ -29,7 +29,8 @@ const MOVED_TANGENT_SMALL: f64 = 1e-6;
 const MOVED_TANGENT_NEGLIGIBLE: f64 = 1e-9;
 
 impl Corrector {
-    /// Weights of the matrix here and of those at the points before in K′; `None` where they are not of one branch.
+    /// Weights of the current matrix and of those at the two points before in the slope K′; `None` where they do not
+    /// belong to one branch.
     pub(super) fn slope_weights(&self, metric: Metric, row: &[f64]) -> Option<[f64; 3]> {
         let [here, before, oldest] = &self.matrices_at;
         let way = |from: &[f64], to: &[f64]| {

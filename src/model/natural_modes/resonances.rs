@@ -20,9 +20,9 @@ use num_complex::Complex64;
 /// A pole p = ω + iσ of the response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
-    /// Angular frequency.
+    /// Angular frequency ω of the resonance.
     pub omega: f64,
-    /// Half width: the response is 1/√2 of its peak at ω ± σ. Zero without damping.
+    /// Half width σ: the response is 1/√2 of its peak at ω ± σ. Zero without damping.
     pub half_width: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct Resonance {
 const RESONANCES_UNDAMPED: f64 = 1e-13;
 
 impl Resonance {
-    /// Whether nothing but rounding damps it.
+    /// Whether the half width is rounding.
     pub fn is_undamped(&self) -> bool {
         self.half_width <= RESONANCES_UNDAMPED * self.omega
     }
@@ -244,7 +244,7 @@ pub fn damped_frequencies(
     Ok(Some(found))
 }
 
-/// The Hermitian part of K, and −i times the skew one.
+/// Hermitian part of K; and its skew-Hermitian part times −i.
 fn parts(k: &Csc) -> Result<(Csc, Csc)> {
     let half = Complex64::new(0.5, 0.0);
     let turned = Complex64::new(0.0, -0.5);
@@ -255,7 +255,7 @@ fn parts(k: &Csc) -> Result<(Csc, Csc)> {
     Ok((combine(half, half)?, combine(turned, -turned)?))
 }
 
-/// All modes within a range of frequencies, and some others; `None` if there are too many of them.
+/// All modes within a range of frequencies, and some others; `None` if there are too many.
 fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
     let (low, high) = (range.low(), range.high());
     if let Some(moving) = MovingRows::of(k)? {
@@ -287,14 +287,14 @@ fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Re
     eigen::generalised(&dense(k), &dense(m), interrupt).map(Some)
 }
 
-/// The damping from which half widths follow.
+/// Damping matrices, from which half widths follow.
 struct Widths {
     damping: Csc,
     skew: Csc,
 }
 
 impl Widths {
-    /// φᴴ(C + Im K/ω)φ between two shapes.
+    /// Coupling φᴴ(C + Im K/ω)φ of two shapes by damping.
     fn between(&self, a: &[Complex64], b: &[Complex64], omega: f64) -> Result<Complex64> {
         let mut sum = Complex64::ZERO;
         for (matrix, factor) in [(&self.damping, 1.0), (&self.skew, omega.recip())] {

@@ -15,7 +15,7 @@ impl Branch {
         self.harmonics_at_with(point, x, &Interrupt::none())
     }
 
-    /// The same as [`Self::harmonics_at`], and the caller may stop it.
+    /// Harmonics as [`Self::harmonics_at`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::harmonics_at`]; `StoppedByCaller`.

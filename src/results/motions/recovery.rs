@@ -9,7 +9,8 @@ use crate::problem::contact_forces::ContactForces;
 use crate::results::stored::branch::Branch;
 use num_complex::Complex64;
 
-/// A solution: packed relative motions in the solver's units, angular frequency, and the ratio of artificial damping.
+/// A solution: packed relative motions in the solver's units, angular frequency, and damping ratio of the artificial
+/// damping.
 type Solution<'a> = (&'a [f64], f64, f64);
 
 impl Branch {
@@ -42,7 +43,7 @@ pub(crate) struct Recovery<'a> {
 const CONTEXT: &str = "the harmonics";
 
 impl<'a> Recovery<'a> {
-    /// Memory for the points of a branch, with a stored point selected; see [`Self::go_to`].
+    /// A recovery for the points of a branch, with a stored point selected; see [`Self::go_to`].
     ///
     /// # Errors
     /// `Index` for an unknown point, `OutOfMemory`; those of callbacks; `StoppedByCaller`.
@@ -53,7 +54,7 @@ impl<'a> Recovery<'a> {
         Self::of(resolution, Self::stored(branch, point), interrupt)
     }
 
-    /// Memory for the points of one resolution, with a solution selected that need not be stored.
+    /// A recovery for the points of one resolution, with a solution selected that need not be stored.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
@@ -146,7 +147,8 @@ impl<'a> Recovery<'a> {
         Ok(())
     }
 
-    /// The same for the coordinates of the harmonic: the independent degrees of freedom, or those of its basis.
+    /// Motion of the coordinates in the i-th carried harmonic: independent degrees of freedom, or columns of the
+    /// basis.
     ///
     /// # Errors
     /// As [`Self::harmonic`].

@@ -29,9 +29,9 @@ pub struct Branch {
     pub(crate) errors: PointErrors,
     pub(crate) stability: PointStability,
     pub(crate) special: SpecialLists,
-    /// The responses that were asked for.
+    /// The requested responses at the stored points.
     pub(crate) responses: Vec<ResponseSeries>,
-    /// With the solver option `freedom`.
+    /// Free sliders of the stored points, with the solver option `freedom`; else `None`.
     pub(crate) freedom: Option<Box<FreedomOfPoints>>,
     pub(crate) mode: Option<ModeData>,
     pub(crate) parameter: Option<ParameterData>,
@@ -85,25 +85,26 @@ impl Branch {
         self.table.omega.get(point).copied()
     }
 
-    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point, or the measure of the first response that
-    /// was asked for.
+    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point, or the measure of the first
+    /// requested response.
     #[must_use]
     pub fn amplitude(&self) -> &[f64] {
         &self.table.amplitude[..self.curve]
     }
 
-    /// The same at a stored point; NaN where there is none.
+    /// Amplitude of a stored point; NaN where there is no such point.
     pub(crate) fn stored_amplitude(&self, point: usize) -> f64 {
         self.table.amplitude.get(point).copied().unwrap_or(f64::NAN)
     }
 
-    /// Relative residual of each point, before a last Newton correction; a bound of that behind it where it is foreseen.
+    /// Relative residual of each point, before a last Newton correction; or a bound of the residual after that
+    /// correction, where it was foreseen.
     #[must_use]
     pub fn residual(&self) -> &[f64] {
         &self.table.residual[..self.curve]
     }
 
-    /// Newton iterations of each point.
+    /// Number of Newton iterations of each point.
     #[must_use]
     pub fn newton_iterations(&self) -> &[f64] {
         &self.table.iterations[..self.curve]
@@ -154,7 +155,7 @@ impl Branch {
         self.resolutions[0].condensed.contacts()
     }
 
-    /// Degrees of freedom (of one sector).
+    /// Number of degrees of freedom (of one sector).
     #[must_use]
     pub fn ndof(&self) -> usize {
         self.resolutions[0].condensed.degrees().given()
@@ -167,7 +168,7 @@ impl Branch {
         self.run.harmonics
     }
 
-    /// Harmonic numbers that are carried at a stored point; all others are zero.
+    /// Carried harmonics of a stored point, by their numbers; all other harmonics are zero.
     #[must_use]
     pub fn carried_at(&self, point: usize) -> Option<&[usize]> {
         Some(self.resolution_at(point)?.condensed.set().numbers())
@@ -206,12 +207,12 @@ impl Branch {
         }
     }
 
-    /// Number of the resolution of a stored point; that of the first where there is no such point.
+    /// Index of the resolution of a stored point; that of the first one where there is no such point.
     pub(crate) fn resolution_index(&self, point: usize) -> usize {
         self.table.places.get(point).map_or(0, |p| p.resolution)
     }
 
-    /// The resolution of a number.
+    /// The resolution with an index.
     pub(crate) fn numbered_resolution(&self, index: usize) -> &Resolution {
         &self.resolutions[index]
     }

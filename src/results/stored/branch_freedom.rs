@@ -5,14 +5,14 @@ use crate::results::Branch;
 use crate::results::stored::freedom_of_points::FreedomOfPoints;
 
 impl Branch {
-    /// Whether freedom was requested.
+    /// Whether the free sliders of the points were requested.
     #[must_use]
     pub fn tells_freedom(&self) -> bool {
         self.freedom.is_some()
     }
 
-    /// Number of free sliders at each point of the curve, as [`crate::freedom()`] lists them; NaN where it is unknown, and none without
-    /// the solver option `freedom`.
+    /// Number of free sliders at each point of the curve, as [`crate::freedom()`] lists them; NaN where it is
+    /// unknown. Empty without the solver option `freedom`.
     #[must_use]
     pub fn free_sliders(&self) -> &[f64] {
         let all = self.freedom.as_ref().map_or(&[][..], |freedom| freedom.count());

@@ -17,12 +17,12 @@ use std::sync::Arc;
 /// Kind: tuned; measured on: not recorded.
 const FIRST_ROOM: (usize, usize) = (32, 4096);
 
-/// Numbers of one point.
+/// Data of one point to be stored.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
     /// Resolution with which the point was solved.
     pub resolution: &'a Resolution,
-    /// Angular frequency.
+    /// Angular frequency of the point.
     pub omega: f64,
     /// Packed relative motions, in the solver's units.
     pub motion: &'a [f64],
@@ -30,9 +30,9 @@ pub struct Record<'a> {
     pub amplitude: Complex64,
     /// Carried harmonics of the response degree of freedom, in the solver's units.
     pub response: &'a [Complex64],
-    /// Relative residual.
+    /// Relative residual of the point.
     pub residual: f64,
-    /// Newton iterations.
+    /// Number of Newton iterations of the point.
     pub iterations: usize,
     /// Share of the period that each law slips.
     pub slip_fractions: &'a [f64],
@@ -41,23 +41,23 @@ pub struct Record<'a> {
     /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
     /// damping ratio; NaN if unknown.
     pub errors: (f64, f64),
-    /// The responses of the run, in the solver's units, with their errors; empty without any.
+    /// Values of the requested responses, in the solver's units, with their errors; empty without such.
     pub seen: &'a [SeenWithError],
 }
 
-/// List to which a special point belongs.
+/// List in which a special point is stored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SpecialKind {
     Peak,
-    /// A peak of a further response.
+    /// A peak of the further response with this index.
     PeakOf(usize),
-    /// One side of a kink of a response; the other one follows or comes before.
+    /// One side of a kink of the response with this index; the other side follows or comes before.
     KinkOf(usize),
     Fold,
     At(usize),
-    /// Any but a fold, with the numbers of unstable directions before and after it.
+    /// A bifurcation other than a fold, with the numbers of unstable directions before and after it.
     Bifurcation(BifurcationKind, [Option<usize>; 2]),
-    /// With the derivative of the damping ratio by log₁₀ of the amplitude.
+    /// A limit cycle, with the derivative of the damping ratio by log₁₀ of the amplitude.
     LimitCycle {
         slope: f64,
     },
@@ -68,7 +68,7 @@ impl SpecialKind {
         matches!(self, Self::Fold | Self::Bifurcation(BifurcationKind::Fold, _))
     }
 
-    /// The response whose peak or kink it is.
+    /// Index of the response whose peak or kink this is; `None` for other points.
     pub fn response(self) -> Option<usize> {
         match self {
             Self::PeakOf(response) | Self::KinkOf(response) => Some(response),
@@ -137,7 +137,7 @@ impl Branch {
         self.mode = Some(data);
     }
 
-    /// Stores a point and returns its number.
+    /// Stores a point and returns its index.
     ///
     /// # Errors
     /// `OutOfMemory`; the branch then ends before this point.
@@ -311,7 +311,7 @@ impl Branch {
         )
     }
 
-    /// Tells the parts that were removed from the problem with the most harmonics.
+    /// Completes the reduction by the parts that were removed from the problem with the most harmonics.
     pub(crate) fn complete_reduction(&mut self, model: &Model, options: &SolverOptions) {
         let largest = self
             .resolutions
@@ -342,7 +342,7 @@ impl Branch {
         self.run.reason = reason;
     }
 
-    /// Number of a resolution, which is stored if it is new.
+    /// Index of a resolution, which is stored if it is new.
     pub(crate) fn resolution_of(&mut self, resolution: &Resolution) -> Result<usize> {
         let known = |kept: &Resolution| Arc::ptr_eq(&kept.condensed, &resolution.condensed);
         if let Some(found) = self.resolutions.iter().position(known) {

@@ -4,7 +4,7 @@ use crate::error::{Result, Status, try_push};
 use crate::results::{Branch, Descent, Searched};
 
 impl Branch {
-    /// The solutions that were sought beside this response; `None` where none were asked for.
+    /// Extent of the search for solutions beside this response; `None` where none were requested.
     #[must_use]
     pub fn searched(&self) -> Option<Searched> {
         self.family.searched
@@ -21,7 +21,7 @@ impl Branch {
         &self.family.children
     }
 
-    /// The same, writable.
+    /// The children of this branch, writable.
     pub(crate) fn children_mut(&mut self) -> &mut [Self] {
         &mut self.family.children
     }
@@ -36,13 +36,13 @@ impl Branch {
         self.status() == Status::StoppedByCaller || self.family.children.iter().any(Self::was_stopped)
     }
 
-    /// Where the branch comes from; `None` for one that was asked for.
+    /// Origin of a branch that was found beside another one; `None` for a requested branch.
     #[must_use]
     pub fn descent(&self) -> Option<Descent> {
         self.family.descent
     }
 
-    /// Periods of the parent in one of this branch.
+    /// Number of periods of the parent in one period of this branch.
     pub(crate) fn periods(&self) -> usize {
         self.family.descent.map_or(1, |descent| descent.periods)
     }

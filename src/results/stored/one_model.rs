@@ -7,7 +7,7 @@ use crate::results::Branch;
 use crate::results::stored::origin::Origin;
 
 impl Branch {
-    /// Notes the model, whose wave the branch has unless it was given one of its own.
+    /// Notes the model of the branch; `on_wave`: the branch has the wave of the model.
     pub(crate) fn set_origin(&mut self, model: &Model, on_wave: bool) {
         self.family.origin = Some(Origin {
             model: model.fingerprint(),
@@ -15,7 +15,7 @@ impl Branch {
         });
     }
 
-    /// Refuses another model than that of the branch, at one of its points.
+    /// Refuses another model than that of the branch, for use with one of its points.
     ///
     /// # Errors
     /// `Argument`, naming what differs; a branch over a parameter.
@@ -33,7 +33,8 @@ impl Branch {
         )
     }
 
-    /// The same for a synthesis, which has vibrating forces and damping of its own.
+    /// Refuses another model than that of the branch, for a synthesis, which may have other vibrating forces and
+    /// damping.
     pub(crate) fn check_model_of_synthesis(&self, model: &Model) -> Result<()> {
         self.check_origin(model, Use::Synthesis)
     }

@@ -30,8 +30,8 @@ impl Branch {
         &self.errors.truncation[..self.curve]
     }
 
-    /// The same of one stored point, the special ones included; NaN at a fold, at whose frequency the solution is
-    /// not isolated.
+    /// Estimated relative error, as `error_estimate` has it, of one stored point, the special ones included; NaN at a
+    /// fold, at whose frequency the solution is not isolated.
     #[must_use]
     pub fn error_estimate_at(&self, point: usize) -> Option<f64> {
         self.errors.truncation.get(point).copied()
@@ -44,7 +44,7 @@ impl Branch {
         &self.errors.damping[..self.curve]
     }
 
-    /// The same of one stored point, the special ones included.
+    /// Estimated relative error of the damping ratio at one stored point, the special ones included.
     #[must_use]
     pub fn damping_error_estimate_at(&self, point: usize) -> Option<f64> {
         self.errors.damping.get(point).copied()

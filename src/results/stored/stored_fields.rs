@@ -4,22 +4,22 @@ use crate::error::{Error, Result};
 use crate::results::Branch;
 use crate::results::stored::mode_branch::ModeField;
 
-/// A number that each stored point has.
+/// Field of values that each stored point has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointField {
-    /// Angular frequency.
+    /// Angular frequency of the point.
     Omega,
     /// Amplitude of the response degree of freedom.
     Amplitude,
-    /// Relative residual.
+    /// Relative residual of the point.
     Residual,
-    /// Newton iterations.
+    /// Number of Newton iterations of the point.
     NewtonIterations,
     /// Highest harmonic number carried.
     HarmonicsUsed,
     /// Share of the period that each contact slips, for each contact.
     SlipFraction,
-    /// Error by sampling.
+    /// Relative change of the sampled forces with the number of samples.
     SamplingError,
     /// Estimated error of the response, in a nonlinear mode of the frequency.
     ErrorEstimate,
@@ -39,12 +39,12 @@ pub enum PointField {
     DAmplitude,
     /// Total derivative of the largest damping ratio by the parameter.
     DDamping,
-    /// A number of a nonlinear mode.
+    /// A value of a nonlinear mode.
     Mode(ModeField),
 }
 
 impl Branch {
-    /// A number of all stored points; `None` where the branch does not have it.
+    /// A field of all stored points; `None` where the branch does not have it.
     pub(crate) fn stored_field(&self, field: PointField) -> Option<&[f64]> {
         let is_mode = self.mode.is_some();
         match field {
@@ -75,7 +75,7 @@ impl Branch {
         }
     }
 
-    /// Gives the points without stability, those beside the curve among them, NaN for it.
+    /// Completes the fields of stability by NaN for points without it, including those beside the curve.
     pub(crate) fn complete_stability(&mut self) -> Result<()> {
         if !self.run.tells_stability {
             return Ok(());

@@ -47,14 +47,14 @@ impl Branch {
         Ok(found)
     }
 
-    /// Leaves the bifurcations at these points out of the list.
+    /// Removes the bifurcations at these points from the list.
     pub(crate) fn leave_bifurcations(&mut self, points: &[usize]) {
         self.special
             .bifurcations
             .retain(|located| !points.contains(&located.bifurcation.point));
     }
 
-    /// A bifurcation of a kind at most one point of the curve away.
+    /// A bifurcation of the given kind that is at most one point of the curve away.
     fn beside(&self, from: &Located, kind: BifurcationKind) -> Option<Beside> {
         let near = |other: &&Located| other.bifurcation.kind == kind && other.after.abs_diff(from.after) <= 1;
         let found = self.special.bifurcations.iter().find(near)?;
@@ -74,8 +74,8 @@ impl Branch {
         [at(after.checked_sub(1)), at(Some(after))]
     }
 
-    /// The curve for a figure, in stretches that meet at the bifurcations, or at a point of the curve. Without stability
-    /// there is one stretch.
+    /// The curve for a plot, in stretches of constant stability that meet at bifurcations, or at a point of the
+    /// curve. Without stability there is one stretch.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -132,8 +132,8 @@ impl Branch {
         self.run.tells_stability = true;
     }
 
-    /// Largest modulus of the ordinary Floquet multipliers at each point of the curve; NaN where it is not known, and
-    /// none without the solver option `stability`.
+    /// Largest modulus of the ordinary Floquet multipliers at each point of the curve; NaN where it is not known.
+    /// Empty without the solver option `stability`.
     #[must_use]
     pub fn floquet_radius(&self) -> &[f64] {
         &self.stability.floquet_radius[..self.points().min(self.stability.floquet_radius.len())]

@@ -11,7 +11,7 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the responses";
 
-/// The gauges on the condensed model of some points.
+/// Gauges of the responses on the condensed model of some points.
 struct OnModel<'a> {
     condensed: &'a Condensed,
     gauges: Vec<Gauge>,
@@ -37,7 +37,7 @@ impl<'a> OnModel<'a> {
         })
     }
 
-    /// Writes the signals of the point that is selected, at the angular frequency ω.
+    /// Writes the signals of the selected point at the angular frequency ω.
     fn fill(&mut self, recovery: &mut Recovery<'_>, omega: f64) -> Result<()> {
         let (set, m) = (self.condensed.set(), self.condensed.set().packed_len());
         self.signals.fill(0.0);
@@ -55,9 +55,9 @@ impl<'a> OnModel<'a> {
 }
 
 impl Branch {
-    /// Reads responses at all stored points, whatever the branch was asked for: the values of a nonlinear mode, of a result over a
-    /// parameter, or of further gauges of a forced response. They have no peaks and no errors. A response without degrees of
-    /// freedom is that of the response degree of freedom.
+    /// Reads responses at all stored points, whether or not the branch was computed with them: for a nonlinear mode,
+    /// a result over a parameter, or further gauges of a forced response. They have no peaks and no errors. A
+    /// response without degrees of freedom reads the response degree of freedom.
     ///
     /// # Errors
     /// Those of the responses, naming their numbers; those of [`Self::harmonics_at`].
@@ -65,7 +65,7 @@ impl Branch {
         self.read_responses_with(responses, &Interrupt::none())
     }
 
-    /// The same as [`Self::read_responses`], and the caller may stop it.
+    /// Reads responses as [`Self::read_responses`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::read_responses`]; `StoppedByCaller`.

@@ -21,12 +21,12 @@ use crate::options::{ForcedOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
 
-/// The equations of a forced response that lose the sense of one point.
+/// Test equations of a forced response that reverse the sense of one resolved point.
 struct Misled<'a, 'b> {
     response: &'a mut ForcedDiscretised<'b>,
-    /// Points of the branch at which the sense of the next resolved point is reversed.
+    /// Number of points of the branch after which the sense of the next resolved point is reversed.
     at: usize,
-    /// Solutions that are found after that, before all others are refused.
+    /// Number of solutions that are found after this, before all others are refused.
     found_then: usize,
     reversed: bool,
 }
@@ -146,7 +146,7 @@ fn model() -> Model {
     model
 }
 
-/// The branch with the sense of a point reversed from the `at`-th on, and whether the log tells of a correction.
+/// The branch with the sense of a point reversed from the `at`-th on; and whether the log reports a correction.
 fn misled(at: usize, found_then: usize, (from, to): (f64, f64)) -> (Branch, bool) {
     let range = ForcedOptions {
         omega_start: from,
