@@ -10,8 +10,8 @@ use crate::contact::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::Interrupt;
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 /// Number of products g ⊗ c per pass over the Jacobian, which at many harmonics exceeds the caches.
 /// Kind: block.

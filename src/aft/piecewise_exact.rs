@@ -12,8 +12,8 @@ use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// Tables and memory of the exact evaluation for one harmonic set.

@@ -16,7 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::inner;
-use nalgebra::DMatrix;
+use crate::linalg::libraries::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
 

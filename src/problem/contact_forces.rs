@@ -10,11 +10,11 @@ use crate::condense::{Condensed, LoadedLaw};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
+use crate::linalg::libraries::Arch;
 use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
 use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
-use pulp::Arch;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {

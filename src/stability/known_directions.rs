@@ -6,10 +6,10 @@
 //! the variational equations as a constant. The rate of an autonomous motion is a perturbation that returns as itself.
 
 use crate::error::{Error, Result, Status};
+use crate::linalg::libraries::{ColPivQR, ComplexField, DMatrix, DVector, SVD};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::stability::perturbations::Perturbations;
 use crate::stability::ring::Row;
-use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD};
 use num_complex::Complex64;
 
 /// Singular values below this share of the largest are rounding: the displacement strains nothing.

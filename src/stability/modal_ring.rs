@@ -15,11 +15,11 @@
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, zeros};
+use crate::linalg::libraries::DMatrix;
 use crate::model::matrices::structure::Structure;
 use crate::model::natural_modes::contact_modes::ContactModes;
 use crate::stability::closure::Closure;
 use crate::time_integration::Number;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::SQRT_2;
 

@@ -9,11 +9,11 @@ use crate::error::{Result, check_memory, try_copy, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigenvalues;
 use crate::linalg::dense::general_eigen;
+use crate::linalg::libraries::{ColPivQR, ComplexField, DMatrix, DVector};
 use crate::model::matrices::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;
-use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the Floquet multipliers";

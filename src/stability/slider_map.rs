@@ -12,11 +12,11 @@ use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, product, zeros};
 use crate::linalg::factors::lu::Scalar;
+use crate::linalg::libraries::DMatrix;
 use crate::stability::modal_ring::ModalRing;
 use crate::stability::slider_motion::{Change, Path};
 use crate::stability::slipping::Slipping;
 use crate::time_integration::Number;
-use nalgebra::DMatrix;
 
 const CONTEXT: &str = "the perturbations on modes";
 

@@ -4,8 +4,8 @@ use crate::contact::time_piece::Grazing;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::copy_of_vector;
+use crate::linalg::libraries::DVector;
 use crate::stability::modal_ring::{ModalRing, Sliders};
-use nalgebra::DVector;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -4,10 +4,10 @@ use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::zero_vector;
 use crate::linalg::factors::lu::Lu;
+use crate::linalg::libraries::DVector;
 use crate::model::matrices::structure::Structure;
 use crate::stability::slider_map::SliderMap;
 use crate::stability::slider_motion::{Path, SliderMotion, SliderState};
-use nalgebra::DVector;
 
 const CONTEXT: &str = "shooting on modes";
 

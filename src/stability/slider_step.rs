@@ -4,9 +4,9 @@
 
 use crate::error::{Result, fail, try_room, try_vec};
 use crate::linalg::dense::fallible_matrix::{zero_vector, zeros};
+use crate::linalg::libraries::{DMatrix, DVector};
 use crate::stability::slider_motion::{SliderMotion, SliderState};
 use crate::stability::slipping::Slipping;
-use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the motion on modes";

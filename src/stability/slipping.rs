@@ -13,9 +13,9 @@ use crate::linalg::dense::fallible_matrix::{
     add_product, adjoint, filled, invert_definite, product, zero_vector, zeros,
 };
 use crate::linalg::factors::lu::Scalar;
+use crate::linalg::libraries::{DMatrix, DVector};
 use crate::stability::modal_ring::ModalRing;
 use crate::time_integration::Number;
-use nalgebra::{DMatrix, DVector};
 
 const CONTEXT: &str = "the slipping contacts";
 

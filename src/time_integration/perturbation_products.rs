@@ -8,11 +8,11 @@
 
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use crate::time_integration::variational_equations::{
     Number, Numbers, VARIATIONAL_EQUATIONS_LANES, VariationalElement, VariationalEquations,
 };
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 const CONTEXT: &str = "a step of perturbations";
 

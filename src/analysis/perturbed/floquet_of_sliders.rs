@@ -10,6 +10,7 @@ use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{filled, zero_vector};
+use crate::linalg::libraries::DVector;
 use crate::model::Model;
 use crate::model::few_motions::on_modes::forces_of_harmonics;
 use crate::model::matrices::structure::Structure;
@@ -21,7 +22,6 @@ use crate::stability::{
     orbit, scale_of_sliders,
 };
 use crate::time_integration::Number;
-use nalgebra::DVector;
 use num_complex::Complex64;
 use std::f64::consts::{SQRT_2, TAU};
 

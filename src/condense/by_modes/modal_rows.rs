@@ -13,13 +13,10 @@
 use crate::condense::by_modes::sum_terms::{Denominator, Source};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push, try_vec};
+use crate::linalg::libraries::{Accum, Arch, MatMut, MatRef, Par, Simd, WithSimd, cast_slice, matmul};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::few_motions::reduced_wave::MotionRow;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
-use pulp::bytemuck::cast_slice;
-use pulp::{Arch, Simd, WithSimd};
 use std::sync::{Arc, OnceLock};
 
 const CONTEXT: &str = "the flexibility from modes";

@@ -26,7 +26,7 @@ use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::cholesky::entries_by_degrees;
 use crate::linalg::factors::factor::is_dense;
 use crate::linalg::factors::lu::Lu;
-use nalgebra::DMatrix;
+use crate::linalg::libraries::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
 

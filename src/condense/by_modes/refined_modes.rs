@@ -14,11 +14,9 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum, terms_of_moduli};
+use crate::linalg::libraries::{Accum, DMatrix, MatMut, MatRef, Par, matmul};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::sparse_storage::triangle::Entry;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the structure";

@@ -6,8 +6,8 @@
 use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::sum_terms::Frequency;
 use crate::error::{Result, try_room};
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 /// Entries of the table: of the contact and the response by the contact, of both by the excitation.
 /// Kind: fixed.

@@ -8,9 +8,9 @@ use crate::condense::by_modes::modal_table::ModalTable;
 use crate::condense::by_modes::sum_terms::Factors;
 use crate::condense::by_modes::wave_modes::NEAR_RESONANCE;
 use crate::error::{Result, try_push, try_room};
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use core::array::from_fn;
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 /// Harmonics of a group: a multiple of the numbers in a vector of any processor.
 /// Kind: block.

@@ -10,6 +10,7 @@
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::shifted_inverse::Inverse;
+use crate::linalg::libraries::DMatrix;
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::{inner, remove};
@@ -18,7 +19,6 @@ use crate::model::few_motions::shape_basis::ShapeBasis;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::linear_modes::ContactState;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the stuck structure";

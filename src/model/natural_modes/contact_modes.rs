@@ -16,6 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{filled, zeros};
 use crate::linalg::dense::hermitian;
 use crate::linalg::factors::shifted_inverse::Inverse;
+use crate::linalg::libraries::{DMatrix, SymmetricEigen};
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::{inner, remove};
@@ -23,7 +24,6 @@ use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::linear_modes::ContactState;
-use nalgebra::{DMatrix, SymmetricEigen};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the contacts";

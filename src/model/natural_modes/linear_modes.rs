@@ -8,6 +8,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, form, quadratic, terms};
 use crate::linalg::iterative::lanczos;
+use crate::linalg::libraries::DMatrix;
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
@@ -16,7 +17,6 @@ use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::model::natural_modes::static_tangents::StaticTangents;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::borrow::Cow;
 

@@ -11,11 +11,11 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::quadratic;
 use crate::linalg::factors::factor::Factor;
+use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
-use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which all modes are found by dense algebra: 0.1 s for a mode or for all; the search takes less above.

@@ -6,6 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::about_quadratic;
 use crate::linalg::iterative::lanczos;
+use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
@@ -14,7 +15,6 @@ use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::options::Range;
-use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 /// A pole p = ω + iσ of the response.

@@ -5,10 +5,10 @@
 
 use crate::error::Result;
 use crate::linalg::add_product;
+use crate::linalg::libraries::{Simd, WithSimd};
 use crate::problem::contact_forces::ContactForces;
 use core::ops::Range;
 use num_complex::Complex64;
-use pulp::{Simd, WithSimd};
 
 /// Term added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact does not
 /// resist a mean motion; where nothing else does, as for a ring free to turn, the mean is indeterminate and the

@@ -4,9 +4,9 @@
 
 use crate::condense::by_factors::flexibility::Table;
 use crate::error::Result;
+use crate::linalg::libraries::{Simd, WithSimd};
 use crate::problem::contact_forces::ContactForces;
 use num_complex::Complex64;
-use pulp::{Simd, WithSimd};
 
 /// Numbers of the matrix that are written between two checks.
 /// Kind: block.
