@@ -3,7 +3,7 @@
 
 use crate::common::{Blisk, SECTORS, Wheel, all_harmonics, phase};
 use hbvib::{
-    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, SolverOptions, Status,
+    Branch, Constant, Contact, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, SolverOptions, Status,
     nonlinear_mode,
 };
 use nalgebra::{DMatrix, DVector};
@@ -211,7 +211,7 @@ impl Skewed {
     pub fn stuck_stiffness(&self) -> DMatrix<Complex64> {
         let mut k = self.matrices(1).stiffness;
         for (i, contact) in self.contacts.iter().enumerate() {
-            k += spring(&self.row(i), contact.kt.into());
+            k += spring(&self.row(i), contact.constant(Constant::Kt).into());
         }
         k
     }

@@ -3,8 +3,8 @@
 
 use crate::common::{all_harmonics, harmonics, solve_at};
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Status, contact_evaluate,
-    forced_response, nonlinear_mode,
+    Branch, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Status,
+    contact_evaluate, forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -83,10 +83,11 @@ fn a_stop_that_never_opens_is_a_spring_about_the_static_position() {
     // The same by a preload: gap = −preload/kn.
     let mut other = oscillator(0.2);
     other
-        .add_contact(&Contact {
-            preload: 500.0,
-            ..Contact::unilateral(None, Some(0), 1000.0, 0.0)
-        })
+        .add_contact(
+            &Contact::unilateral(None, Some(0), 1000.0, 0.0)
+                .with(Constant::Preload, 500.0)
+                .unwrap(),
+        )
         .unwrap();
     let (a, b) = (
         solve_at(&model, &harmonics(3), 1.1),

@@ -24,10 +24,8 @@ fn well(k: f64, mean: f64) -> Model {
     let law = if k <= -1.0 {
         Contact::cubic(0, None, 0.0, 1.0)
     } else {
-        Contact {
-            kind: ContactKind::Polynomial(Polynomial::scalar(&[-1.0 - k, 0.0, 1.0], &[]).unwrap()),
-            ..Contact::cubic(0, None, 0.0, 0.0)
-        }
+        let law = Polynomial::scalar(&[-1.0 - k, 0.0, 1.0], &[]).unwrap();
+        Contact::between(0, None, ContactKind::Polynomial(law))
     };
     model.add_contact(&law).unwrap();
     model.add_force(0, 1, 0.1.into()).unwrap();

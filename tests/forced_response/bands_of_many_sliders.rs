@@ -3,8 +3,8 @@
 
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Contact, ContactKind, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, TimeOptions,
-    band, forced_response, freedom, time_response,
+    BandOf, BandOptions, Contact, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, TimeOptions, band,
+    forced_response, freedom, time_response,
 };
 use num_complex::Complex64;
 use std::cell::Cell;
@@ -28,13 +28,11 @@ fn wheel(parts: usize) -> Model {
     diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3]);
     let r = FRAC_1_SQRT_2;
     let face = |side: f64, mu: f64, share: f64, sector_offset: i64| Contact {
-        kind: ContactKind::Friction2d,
         dof_a: [Some(1), Some(2), None],
         dof_b: [Some(0), None, None],
         frame: Some(Frame::new([side * r, -r, 0.0], Some([side * r, r, 0.0])).unwrap()),
         sector_offset,
-        kn: 1.5 * share,
-        ..Contact::jenkins(0, None, share, mu, 0.0)
+        ..Contact::friction_2d([None; 2], [None; 2], (share, 1.5 * share), mu, 0.0)
     };
     for _ in 0..parts {
         model.add_contact(&face(1.0, 0.6, 1.0 / parts as f64, 0)).unwrap();
@@ -221,12 +219,10 @@ fn blade_with_two_dampers(second: f64) -> Model {
             ([-r, -r, 0.0], [-r, r, 0.0], Some(0), blade),
         ] {
             let contact = Contact {
-                kind: ContactKind::Friction2d,
                 dof_a: damper,
                 dof_b: [other, None, None],
                 frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-                kn: 1.5,
-                ..Contact::jenkins(0, None, 1.0, mu, 0.0)
+                ..Contact::friction_2d([None; 2], [None; 2], (1.0, 1.5), mu, 0.0)
             };
             model.add_contact(&contact).unwrap();
         }

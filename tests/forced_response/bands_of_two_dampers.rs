@@ -3,8 +3,7 @@
 use crate::bands_of_many_sliders::diagonal;
 use crate::common::{harmonics, solve_at};
 use hbvib::{
-    BandOptions, Contact, ContactKind, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, band,
-    forced_response, freedom,
+    BandOptions, Contact, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, band, forced_response, freedom,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -41,12 +40,10 @@ fn any_dampers(numbers: &mut Numbers) -> (Model, f64) {
             ([-r, -r, 0.0], [-r, r, 0.0], Some(0), blade),
         ] {
             let contact = Contact {
-                kind: ContactKind::Friction2d,
                 dof_a: [Some(u), Some(u + 1), None],
                 dof_b: [other, None, None],
                 frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-                kn,
-                ..Contact::jenkins(0, None, kt, mu, 0.0)
+                ..Contact::friction_2d([None; 2], [None; 2], (kt, kn), mu, 0.0)
             };
             model.add_contact(&contact).unwrap();
         }
@@ -157,16 +154,15 @@ fn any_contacts(numbers: &mut Numbers) -> (Model, f64) {
         let along = (n as f64 * numbers.next()) as usize;
         let out = (along + 1 + ((n - 1) as f64 * numbers.next()) as usize) % n;
         let (sine, cosine) = numbers.within(0.0, std::f64::consts::TAU).sin_cos();
+        let kn = numbers.within(0.5, 3.0);
         let contact = Contact {
-            kind: ContactKind::Friction2d,
             dof_a: [Some(along), Some(out), None],
             dof_b: [None; 3],
             frame: Some(Frame::new([cosine, sine, 0.0], Some([-sine, cosine, 0.0])).unwrap()),
-            kn: numbers.within(0.5, 3.0),
-            ..Contact::jenkins(
-                0,
-                None,
-                numbers.within(0.3, 2.0),
+            ..Contact::friction_2d(
+                [None; 2],
+                [None; 2],
+                (numbers.within(0.3, 2.0), kn),
                 numbers.within(0.1, 0.8),
                 numbers.within(0.0, 0.3),
             )

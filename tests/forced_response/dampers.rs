@@ -4,8 +4,8 @@
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Contact, ContactKind, Damper, DamperFace, Frame, Hooks, Interrupt, LoadHistory, MatrixKind,
-    MatrixView, Model, Parameter, Quantity, SolverOptions, Speed, Status, band, freedom, sensitivity, static_history,
+    BandOf, BandOptions, Contact, Damper, DamperFace, Frame, Hooks, Interrupt, LoadHistory, MatrixKind, MatrixView,
+    Model, Parameter, Quantity, SolverOptions, Speed, Status, band, freedom, sensitivity, static_history,
 };
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, TAU};
@@ -79,12 +79,10 @@ fn wedge_by_hand() -> Model {
         ([-r, -r, 0.0], [-r, r, 0.0], Some(0), 0.15),
     ] {
         let contact = Contact {
-            kind: ContactKind::Friction2d,
             dof_a: [Some(1), Some(2), None],
             dof_b: [blade, None, None],
             frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-            kn: 1.5,
-            ..Contact::jenkins(0, None, 1.0, mu, 0.0)
+            ..Contact::friction_2d([None; 2], [None; 2], (1.0, 1.5), mu, 0.0)
         };
         model.add_contact(&contact).unwrap();
     }

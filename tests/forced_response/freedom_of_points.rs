@@ -4,8 +4,8 @@
 use crate::common::{harmonics, solve_at, sweep};
 use crate::residual_band::{across, peak_wedge, wedge};
 use hbvib::{
-    Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Phase, PhaseReport, SolverOptions,
-    Speed, Status, forced_response, freedom,
+    Contact, ContactKind, ForcedOptions, Friction2d, Hooks, MatrixKind, MatrixView, Model, Phase, PhaseReport,
+    SolverOptions, Speed, Status, forced_response, freedom,
 };
 use num_complex::Complex64;
 
@@ -40,7 +40,7 @@ fn a_sweep_has_the_freedom_of_each_of_its_points() {
         freedom: true,
         ..harmonics(7)
     };
-    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     for (model, from, to) in [(line, 0.95, 1.6), (across(0.1), 1.1, 1.4), (peak_wedge(), 1.23, 1.27)] {
         let branch = sweep(&model, &solver, from, to, &[]);
         assert!(branch.tells_freedom() && branch.free_sliders().len() == branch.points());
@@ -146,7 +146,7 @@ fn freedom_under_a_load_that_follows_the_frequency_is_that_of_its_speed() {
         ..harmonics(7)
     };
     let found = [Speed::PerOmega(0.5), Speed::Fixed(0.5 * omega)].map(|speed| {
-        let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+        let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
         model.set_preload_at_speed(0, 0.05, 0.1).unwrap();
         model.set_speed(speed).unwrap();
         let branch = solve_at(&model, &solver, omega);

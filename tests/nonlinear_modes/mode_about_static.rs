@@ -6,8 +6,8 @@ use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
 use hbvib::internals::linear_modes;
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeGuess,
-    ModeOptions, Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
+    Branch, Constant, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice,
+    ModeGuess, ModeOptions, Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
 };
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -107,10 +107,7 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
         ("constant forces", vec![in_line(0.3, 1.0)], [0.1, -0.3, 0.2], 1),
         (
             "pressed by a force over a gap",
-            vec![Contact {
-                gap: 0.2,
-                ..in_line(0.3, 0.0)
-            }],
+            vec![in_line(0.3, 0.0).with(Constant::Gap, 0.2).unwrap()],
             [0.1, -2.0, 0.0],
             0,
         ),
@@ -276,10 +273,11 @@ fn whirling(speed: Speed) -> Model {
         model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
     }
     model
-        .add_contact(&Contact {
-            preload: 0.4,
-            ..Contact::unilateral(Some(0), None, 1.5, 0.0)
-        })
+        .add_contact(
+            &Contact::unilateral(Some(0), None, 1.5, 0.0)
+                .with(Constant::Preload, 0.4)
+                .unwrap(),
+        )
         .unwrap();
     model.add_force(1, 0, 0.2.into()).unwrap();
     model.set_speed(speed).unwrap();

@@ -3,8 +3,8 @@
 
 use crate::common::harmonics;
 use hbvib::{
-    Contact, ContactKind, Frame, Hooks, LinearContacts, MatrixKind, MatrixView, ModeBandOf, ModeOptions, Model,
-    SolverOptions, damped_modes, mode_band, nonlinear_mode,
+    Contact, Frame, Hooks, LinearContacts, MatrixKind, MatrixView, ModeBandOf, ModeOptions, Model, SolverOptions,
+    damped_modes, mode_band, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -22,12 +22,10 @@ fn wedge(parts: usize) -> Model {
     }
     let r = FRAC_1_SQRT_2;
     let face = |normal, tangent, blade, mu, share| Contact {
-        kind: ContactKind::Friction2d,
         dof_a: [Some(1), Some(2), None],
         dof_b: [blade, None, None],
         frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-        kn: 1.5 * share,
-        ..Contact::jenkins(0, None, share, mu, 0.0)
+        ..Contact::friction_2d([None; 2], [None; 2], (share, 1.5 * share), mu, 0.0)
     };
     model
         .add_contact(&face([-r, -r, 0.0], [-r, r, 0.0], Some(0), 0.15, 1.0))

@@ -3,7 +3,7 @@
 
 use crate::common::mode_cases::{follow, only};
 use crate::common::{all_harmonics, harmonics};
-use hbvib::{Contact, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions};
+use hbvib::{Constant, Contact, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions};
 use std::f64::consts::PI;
 
 /// ẍ + kx = F + max(kn(−x − c), 0).
@@ -27,10 +27,9 @@ impl Stop {
         for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, self.k)] {
             model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
         }
-        let stop = Contact {
-            preload: self.preload,
-            ..Contact::unilateral(Some(0), None, self.kn, self.gap)
-        };
+        let stop = Contact::unilateral(Some(0), None, self.kn, self.gap)
+            .with(Constant::Preload, self.preload)
+            .unwrap();
         model.add_contact(&stop).unwrap();
         model.add_force(0, 0, self.force.into()).unwrap();
         model

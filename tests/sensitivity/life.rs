@@ -3,8 +3,8 @@
 
 use crate::common::{data, number};
 use hbvib::{
-    Contact, Duty, Error, ForcedOptions, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, MatrixKind, MatrixView,
-    Model, SolverOptions, Status, Wear, best_load_for_life, forced_response, life,
+    Constant, Contact, Duty, Error, ForcedOptions, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, MatrixKind,
+    MatrixView, Model, SolverOptions, Status, Wear, best_load_for_life, forced_response, life,
 };
 use std::f64::consts::PI;
 
@@ -115,7 +115,7 @@ fn by_runge_kutta(
         (0..n).map(row).collect()
     };
     let step = cycles / steps as f64;
-    let mut loads: Vec<f64> = model.contacts().iter().map(|c| c.preload).collect();
+    let mut loads: Vec<f64> = model.contacts().iter().map(|c| c.constant(Constant::Preload)).collect();
     let moved = |loads: &[f64], by: f64, slope: &[f64]| -> Vec<f64> {
         loads.iter().zip(slope).map(|(n, s)| n + by * s).collect()
     };

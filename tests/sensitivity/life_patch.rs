@@ -1,8 +1,8 @@
 //! Wear of patches: contacts with a normal stiffness, whose loads vary within the period and with the gap that wear opens.
 
 use hbvib::{
-    Contact, Duty, ForcedOptions, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model, SolverOptions, Status,
-    Wear, forced_response, life,
+    Constant, Contact, Duty, ForcedOptions, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model,
+    SolverOptions, Status, Wear, forced_response, life,
 };
 
 fn solver(harmonics: usize) -> SolverOptions {
@@ -69,7 +69,7 @@ impl Patch {
                     constants.2,
                 ),
             };
-            contact.gap = (-load).max(0.0) / self.kn;
+            contact.set(Constant::Gap, (-load).max(0.0) / self.kn).unwrap();
             model.add_contact(&contact).unwrap();
         }
         for &(dof, harmonic, value) in &self.forces {

@@ -9,7 +9,7 @@ use crate::capi::crossing::indices::index;
 use crate::capi::crossing::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::contact::laws::user_law::{Call, User, UserForce};
+use crate::contact::laws::{Call, User, UserForce};
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
