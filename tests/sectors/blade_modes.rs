@@ -2,7 +2,7 @@
 //! friction, and sectors that cannot be reduced.
 
 use crate::common::refusal::refused;
-use crate::common::{all_harmonics, harmonics, solve_at};
+use crate::common::{all_harmonics, harmonics, omega_range, solve_at};
 use hbvib::{
     BladeProperty, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, Mistuning, Model,
     Response, Status, forced_response,
@@ -115,10 +115,8 @@ fn tips(sector: &Model, dofs: &[usize], tip: (&[usize], &[f64])) -> Vec<f64> {
     let mut all = Vec::new();
     for factor in [0.97, 1.0, 1.02] {
         let range = ForcedOptions {
-            omega_start: factor * tuned,
-            omega_stop: factor * tuned,
             responses: &responses,
-            ..ForcedOptions::default()
+            ..omega_range(factor * tuned, factor * tuned)
         };
         let found = forced_response(&wheel, &harmonics(3), &range, &mut Hooks::default()).unwrap();
         all.extend(found.responses().iter().map(|one| one.values()[0]));

@@ -1,12 +1,14 @@
 //! Forced responses and modes of a sector with faces against the same sector from K₀ and K₁.
 
 use crate::boundary_sector::{BoundarySector, N, dofs};
+use crate::common::models::sector_of_faces;
 use crate::common::refusal::refused;
-use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
+use crate::common::{
+    all_harmonics, amplitude_range, at_dof, harmonics, omega_range, relative_gap, slip, solve_at, sweep,
+};
 use hbvib::{
-    Contact, ContactState, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions,
-    Model, Part, SectorFrame, SolverOptions, Status, VerifyOptions, forced_residual, forced_response, nonlinear_mode,
-    verify,
+    Contact, ContactState, Hooks, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, Part,
+    SectorFrame, SolverOptions, Status, VerifyOptions, forced_residual, forced_response, nonlinear_mode, verify,
 };
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -107,10 +109,7 @@ fn contacts_inside_and_across_the_faces_give_the_response_of_the_sector_from_its
         }
         let natural = reference.linear_modes(3, ContactState::Stuck).unwrap().omega[0];
         for ratio in [0.93, 0.985, 1.02] {
-            let solver = SolverOptions {
-                response_dof: Some(r),
-                ..harmonics(5)
-            };
+            let solver = at_dof(r, harmonics(5));
             let branch = solve_at(&model, &solver, ratio * natural);
             let expected = solve_at(&reference, &harmonics(5), ratio * natural);
             let (x, y) = (all_harmonics(&branch, 0), all_harmonics(&expected, 0));
@@ -141,15 +140,8 @@ fn contacts_inside_and_across_the_faces_give_the_response_of_the_sector_from_its
 #[test]
 fn a_fixed_degree_of_freedom_has_no_response() {
     let (model, _) = lumped(1);
-    let solver = SolverOptions {
-        response_dof: Some(3),
-        ..harmonics(3)
-    };
-    let range = ForcedOptions {
-        omega_start: 0.8,
-        omega_stop: 1.0,
-        ..ForcedOptions::default()
-    };
+    let solver = at_dof(3, harmonics(3));
+    let range = omega_range(0.8, 1.0);
     let words = ["response_dof = 3 is fixed"];
     refused(
         forced_response(&model, &solver, &range, &mut Hooks::default()),
@@ -158,9 +150,7 @@ fn a_fixed_degree_of_freedom_has_no_response() {
     );
     let mode = ModeOptions {
         reference_dof: Some(2),
-        log10_start: -2.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-2.0, 0.0)
     };
     let words = ["reference_dof = 2 lies on the right face"];
     refused(
@@ -174,10 +164,7 @@ fn a_fixed_degree_of_freedom_has_no_response() {
 #[test]
 fn the_response_in_time_agrees_on_the_right_face() {
     let (model, right) = lumped(1);
-    let solver = SolverOptions {
-        response_dof: Some(right),
-        ..harmonics(21)
-    };
+    let solver = at_dof(right, harmonics(21));
     let branch = solve_at(&model, &solver, 0.9);
     let options = VerifyOptions::default();
     let found = verify(&model, &branch, 0, &options, &mut Hooks::default()).unwrap();
@@ -195,17 +182,10 @@ fn the_response_in_time_agrees_on_the_right_face() {
 fn lumped(engine_order: i64) -> (Model, usize) {
     use hbvib::SectorDescription;
     let mut model = Model::sector(&SectorDescription {
-        ndof: 4,
-        sectors: 6,
         engine_order,
         components: 1,
-        left: &[Some(0)],
-        right: &[Some(2)],
         fixed: &[3],
-        frame: SectorFrame::Cylindrical,
-        axis: [0.0, 0.0, 1.0],
-        forward: true,
-        coordinates: None,
+        ..sector_of_faces(4, 6, [&[Some(0)], &[Some(2)]])
     })
     .unwrap();
     let dense = |entries: &[(usize, usize, f64)]| {
@@ -304,9 +284,7 @@ fn a_nonlinear_mode_is_that_of_the_sector_from_its_blocks() {
         };
         let range = ModeOptions {
             choice: ModeChoice::Index(1),
-            log10_start: -2.0,
-            log10_stop: 0.5,
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 0.5)
         };
         nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
     };
@@ -418,10 +396,8 @@ fn a_complex_symmetric_stiffness_with_faces_has_the_modes_of_the_loss_factor() {
     let mode = |model: &Model| {
         let at = [-0.5, -0.2];
         let range = ModeOptions {
-            log10_start: -2.0,
-            log10_stop: 0.0,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 0.0)
         };
         let branch = nonlinear_mode(model, &harmonics(3), &range, &mut Hooks::default()).unwrap();
         assert_eq!(branch.status(), Status::Ok);

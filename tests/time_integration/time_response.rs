@@ -1,6 +1,7 @@
 //! Periodic responses by integration in time against closed forms, against event-driven integrations
 //! made by other programs, and against harmonic balance with many harmonics.
 
+use crate::common::chains::driven_mass;
 use crate::common::{
     BASE, Blisk, SECTORS, all_harmonics, complex, data, harmonics, largest, number, phase, relative_gap, solve_at,
     sweep,
@@ -26,23 +27,7 @@ fn solve(model: &Model, options: &TimeOptions<'_>) -> TimeResponse {
 
 /// Mass 1, damping 0.02, stiffness 1, with a contact to the ground.
 fn oscillator(contact: &Contact, forces: &[(usize, f64)]) -> Model {
-    damped_oscillator(0.02, contact, forces)
-}
-
-fn damped_oscillator(damping: f64, contact: &Contact, forces: &[(usize, f64)]) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[a])).unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    for &(harmonic, force) in forces {
-        model.add_force(0, harmonic, force.into()).unwrap();
-    }
-    model
+    driven_mass(0.02, contact, forces)
 }
 
 fn jenkins(kt: f64, limit: f64) -> Contact {
@@ -130,7 +115,7 @@ fn friction_agrees_with_event_driven_integrations_of_others() {
         ),
         (
             "undamped at resonance",
-            damped_oscillator(0.0, &jenkins(1.0, 0.3), &[(1, 0.35)]),
+            driven_mass(0.0, &jenkins(1.0, 0.3), &[(1, 0.35)]),
             1.0,
             0.490_802_178_303_386_2,
             1e-9,
@@ -184,7 +169,7 @@ fn both_states_of_a_gap_oscillator_are_found_from_their_side() {
 
 #[test]
 fn duffings_peak_is_that_of_two_other_methods() {
-    let model = damped_oscillator(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)]);
+    let model = driven_mass(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)]);
     let omega = 1.268_716_736_0;
     let start = swept(&model, 7, 1.0, omega);
     let found = solve(
@@ -327,7 +312,7 @@ fn the_wheel_comes_into_the_wave_from_rest() {
 fn marching_and_shooting_end_in_the_same_motion() {
     let contacts = [jenkins(1.0, 0.3), stop(3.0, 0.1), Contact::cubic(0, None, 0.5, 0.2)];
     for contact in contacts {
-        let model = damped_oscillator(0.1, &contact, &[(0, 0.05), (1, 1.0)]);
+        let model = driven_mass(0.1, &contact, &[(0, 0.05), (1, 1.0)]);
         let options = TimeOptions {
             method: SteadyMethod::Marching,
             ..at(0.8)

@@ -103,7 +103,7 @@ fn friction_with_separation_moves_as_in_small_steps() {
 fn friction_under_a_load_that_stays_is_a_jenkins_contact() {
     // The normal motion is free of the others and not forced: its load is shared by two springs.
     let (m, k, c) = ([1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 2.0], [0.05, 0.0, 0.0, 0.3]);
-    let of = |contact| model(2, [&m, &c, &k], &[contact], &[(0, 1, 0.5.into())]);
+    let of = |contact| model([&m, &c, &k], &[contact], &[(0, 1, 0.5.into())]);
     let varying = Contact::friction_2d([Some(0), Some(1)], [None, None], (2.0, 3.0), 0.5, 1.0);
     let constant = Contact::jenkins(0, None, 2.0, 0.5, 1.0 * 2.0 / (2.0 + 3.0));
     for omega in [0.6, 1.1] {
@@ -207,7 +207,7 @@ fn masses_pressed_statically_that_lift_off_are_what_harmonic_balance_tends_to() 
         (3, 1, Complex64::new(0.2, 0.7)),
         (5, 1, 0.5.into()),
     ];
-    let model = model(n, [&m, &c, &k], &contacts, &forces);
+    let model = model([&m, &c, &k], &contacts, &forces);
     let mut most = 0;
     for omega in [0.9, 1.6] {
         let branch = sweep(&model, &harmonics(15), 0.5, omega, &[]);
