@@ -26,8 +26,8 @@ pub fn dense(mass: &[f64], stiffness: &[f64]) -> Structure {
     Structure::plain(mass.len().isqrt()).mass(mass).stiffness(stiffness)
 }
 
-/// Masses in a row: spring i holds mass i on the side of the one before, the first and the last one at the ground. A last spring of 0 leaves
-/// the end free.
+/// Masses in a row: spring i holds mass i on the side of the one before, the first and the last spring end at the ground. A last spring of
+/// 0 leaves the end free.
 pub fn chain(mass: &[f64], springs: &[f64]) -> Structure {
     assert_eq!(springs.len(), mass.len() + 1);
     dense(&diagonal(mass), &chain_stiffness(springs))
@@ -106,8 +106,8 @@ pub fn add_spring(a: &mut [f64], n: usize, (i, j): (usize, usize), k: f64) {
     }
 }
 
-/// A face of a damper that moves by `u` along the platform and by `v` outward: friction on a plane at 45°, on the side +1 or −1, against the
-/// ground or a blade.
+/// A face of a damper that moves by `u` along the platform and by `v` outward: friction on a plane at 45°, on the side +1 or −1, against
+/// the ground or a blade.
 pub fn damper_face([u, v]: [usize; 2], side: f64, blade: Option<usize>, [kt, kn, mu]: [f64; 3]) -> Contact {
     let r = FRAC_1_SQRT_2;
     Contact {
@@ -255,11 +255,7 @@ impl Structure {
 }
 
 /// A sector from its faces in cylindrical axes about z, forward, nothing fixed.
-pub fn sector_of_faces<'a>(
-    ndof: usize,
-    sectors: usize,
-    [left, right]: [&'a [Option<usize>]; 2],
-) -> SectorDescription<'a> {
+pub fn sector_of_faces(ndof: usize, sectors: usize, [left, right]: [&[Option<usize>]; 2]) -> SectorDescription<'_> {
     SectorDescription {
         ndof,
         sectors,

@@ -1,10 +1,8 @@
 //! Undamped resonances forced beyond what the contacts can take: which are told, and which are not.
 
-use crate::common::models::{self, Structure};
+use crate::common::models::{self, Structure, dense, diagonal};
 use crate::common::{self, D, R, harmonics, omega_range};
-use hbvib::{
-    Branch, Contact, ContactState, Hooks, Interrupt, MatrixKind, MatrixView, Model, Result, Status, forced_response,
-};
+use hbvib::{Branch, Contact, ContactState, Hooks, Interrupt, Model, Result, Status, forced_response};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -107,16 +105,12 @@ fn what_has_a_solution_is_never_refused() {
 /// Masses alike have one frequency and many modes; the force picks the one that it drives.
 #[test]
 fn of_repeated_resonances_the_force_picks_the_one_it_drives() {
-    let mut model = Model::new(3).unwrap();
-    let one: Vec<f64> = (0..9).map(|i| if i % 4 == 0 { 1.0 } else { 0.0 }).collect();
-    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model.set_matrix(kind, &MatrixView::dense(3, &one)).unwrap();
-    }
-    for dof in 0..3 {
-        model.add_contact(&Contact::jenkins(dof, None, 1.0, 1.0, 0.3)).unwrap();
-    }
+    let one = diagonal(&[1.0; 3]);
     // All of them can bear 0.9 × 4/π, but not the first alone.
-    model.add_force(0, 1, 0.5.into()).unwrap();
+    let model = dense(&one, &one)
+        .contacts((0..3).map(|dof| Contact::jenkins(dof, None, 1.0, 1.0, 0.3)))
+        .force(0, 1, 0.5)
+        .build();
     let resonance = model.resonance(1.0, 1, &Interrupt::none()).unwrap().unwrap();
     assert!((resonance.force - 0.5).abs() < 1e-12 && (resonance.slip_capacity - 1.2 / PI).abs() < 1e-12);
     assert!(refused(&model, 1.0, 3));

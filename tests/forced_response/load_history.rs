@@ -4,8 +4,8 @@
 use crate::common::models::{Structure, dense, oscillator};
 use crate::common::{harmonics, solve_at};
 use hbvib::{
-    Contact, ContactKind, Frame, Hooks, Interrupt, LoadHistory, MatrixKind, MatrixView, Model, SolverOptions, Speed,
-    SteadyMethod, TimeOptions, freedom, static_history, time_response,
+    Contact, ContactKind, Frame, Hooks, Interrupt, LoadHistory, Model, SolverOptions, Speed, SteadyMethod, TimeOptions,
+    freedom, static_history, time_response,
 };
 use num_complex::Complex64;
 
@@ -218,20 +218,17 @@ fn without_contacts_the_states_are_those_of_the_stiffness() {
 #[test]
 fn a_contact_that_closes_within_a_step_sticks_where_it_closes() {
     let (kt, kn, mu, gap) = (2.0, 5.0, 0.8, 0.3);
-    let mut model = Model::new(2).unwrap();
-    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model
-            .set_matrix(kind, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-            .unwrap();
-    }
     let contact = Contact {
         gap,
         ..Contact::friction_2d([Some(0), Some(1)], [None; 2], (kt, kn), mu, 0.0)
     };
-    model.add_contact(&contact).unwrap();
     // It closes against the ground, and the force along is half of that towards it.
-    model.add_force(0, 0, 0.5.into()).unwrap();
-    model.add_force(1, 0, (-1.0).into()).unwrap();
+    let one = [1.0, 0.0, 0.0, 1.0];
+    let model = dense(&one, &one)
+        .contact(&contact)
+        .force(0, 0, 0.5)
+        .force(1, 0, -1.0)
+        .build();
     // Displacement along and place of the slider under the load f: closed from f = gap on, at the displacement gap/2.
     let exact = |f: f64| {
         let place = if f > gap { 0.5 * gap } else { 0.5 * f };

@@ -2,7 +2,7 @@
 //! its constant forces and the force that does the work of the artificial damping answers with the mode itself.
 
 use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic, only};
-use crate::common::models::dense;
+use crate::common::models::{dense, oscillator};
 use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, amplitude_range, harmonics, omega_range, phase, relative_gap};
 use hbvib::internals::linear_modes;
@@ -311,12 +311,7 @@ fn a_static_state_that_changes_with_a_tied_speed_is_refused_by_the_analysis_that
 fn the_onset_of_slip_counts_from_the_load_that_the_contact_carries_at_rest() {
     // m = k = kt = 1: a constant force of 0.2 leaves 0.1 in the contact, whose limit is 0.3. It slips when the amplitude
     // exceeds (0.3 − 0.1)/kt = 0.2; then it sticks again about a lower load, until the range 2a kt exceeds 2 · 0.3.
-    let mut model = Model::new(1).unwrap();
-    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[1.0])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
-    model.add_force(0, 0, 0.2.into()).unwrap();
+    let model = oscillator(1.0, 1.0).slider(0, 1.0, 0.3, 1.0).force(0, 0, 0.2).build();
     let range = amplitude_range(-2.0, 0.5);
     let branch = follow(&model, &harmonics(5), &range);
     let mode = branch.mode().unwrap();

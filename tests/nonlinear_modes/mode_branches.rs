@@ -1,10 +1,10 @@
 //! Curves that branch off from nonlinear modes, against closed forms.
 
-use crate::common::models::dense;
+use crate::common::models::{dense, oscillator};
 use crate::common::{all_harmonics, amplitude_range, harmonics};
 use hbvib::{
-    BifurcationKind, Branch, Contact, ContactKind, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions,
-    Model, Polynomial, nonlinear_mode,
+    BifurcationKind, Branch, Contact, ContactKind, Hooks, ModeChoice, ModeGuess, ModeOptions, Model, Polynomial,
+    nonlinear_mode,
 };
 use num_complex::Complex64;
 
@@ -113,16 +113,11 @@ fn a_mode_without_branch_points_has_no_children() {
 fn a_guess_is_taken_beside_polynomial_springs() {
     let models = [0, 1].map(|kind| {
         let spring = Polynomial::scalar(&[0.0, 0.0, 1.0], &[]).unwrap();
-        let mut model = Model::new(1).unwrap();
-        for matrix in [MatrixKind::Mass, MatrixKind::Stiffness] {
-            model.set_matrix(matrix, &MatrixView::dense(1, &[1.0])).unwrap();
-        }
         let contacts = [
             Contact::cubic(0, None, 0.0, 1.0),
             Contact::between(0, None, ContactKind::Polynomial(spring)),
         ];
-        model.add_contact(&contacts[kind]).unwrap();
-        model
+        oscillator(1.0, 1.0).contact(&contacts[kind]).build()
     });
     let motion = [Complex64::ZERO, 1.0.into()];
     let range = ModeOptions {

@@ -1,7 +1,7 @@
 //! Forced responses and modes of a sector with faces against the same sector from K₀ and K₁.
 
 use crate::boundary_sector::{BoundarySector, N, dofs};
-use crate::common::models::sector_of_faces;
+use crate::common::models::{Structure, sector_of_faces};
 use crate::common::refusal::refused;
 use crate::common::{
     all_harmonics, amplitude_range, at_dof, harmonics, omega_range, relative_gap, slip, solve_at, sweep,
@@ -181,7 +181,7 @@ fn the_response_in_time_agrees_on_the_right_face() {
 /// Three masses per sector, the last of them the first of the next sector; another one is fixed.
 fn lumped(engine_order: i64) -> (Model, usize) {
     use hbvib::SectorDescription;
-    let mut model = Model::sector(&SectorDescription {
+    let model = Model::sector(&SectorDescription {
         engine_order,
         components: 1,
         fixed: &[3],
@@ -204,21 +204,16 @@ fn lumped(engine_order: i64) -> (Model, usize) {
     let k = springs(&[(0, 1, 1.0), (1, 2, 0.7), (0, 3, 0.5), (1, 3, 0.2)]);
     let c = springs(&[(0, 1, 0.03), (1, 2, 0.02)]);
     let m = dense(&[(0, 0, 0.8), (1, 1, 0.5), (2, 2, 0.4), (3, 3, 1.0)]);
-    for (kind, a) in [
-        (MatrixKind::Stiffness, k),
-        (MatrixKind::Damping, c),
-        (MatrixKind::Mass, m),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(4, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(1, Some(2), 1.0, 1.0, 0.1)).unwrap();
-    model
-        .add_contact(&Contact {
-            sector_offset: 1,
-            ..Contact::jenkins(1, Some(1), 0.5, 1.0, 0.2)
-        })
-        .unwrap();
-    model.add_force(2, 1, Complex64::new(0.3, 0.1)).unwrap();
+    let across = Contact {
+        sector_offset: 1,
+        ..Contact::jenkins(1, Some(1), 0.5, 1.0, 0.2)
+    };
+    let model = Structure::on(4, model)
+        .matrices([&m, &c, &k])
+        .contact(Contact::jenkins(1, Some(2), 1.0, 1.0, 0.1))
+        .contact(across)
+        .force(2, 1, Complex64::new(0.3, 0.1))
+        .build();
     (model, 2)
 }
 
@@ -260,23 +255,23 @@ fn the_residual_and_its_jacobian_keep_the_numbering_of_the_sector() {
 #[test]
 fn a_nonlinear_mode_is_that_of_the_sector_from_its_blocks() {
     let (model, right) = lumped(1);
-    let mut reference = Model::cyclic(2, 6).unwrap();
-    reference.set_wave(1);
-    for (kind, own, next) in [
-        (MatrixKind::Stiffness, [2.2, -1.0, -1.0, 1.9], [0.0, -0.7, 0.0, 0.0]),
-        (MatrixKind::Damping, [0.05, -0.03, -0.03, 0.05], [0.0, -0.02, 0.0, 0.0]),
-        (MatrixKind::Mass, [1.2, 0.0, 0.0, 0.5], [0.0; 4]),
-    ] {
-        reference.set_matrix(kind, &MatrixView::dense(2, &own)).unwrap();
-        reference.set_coupling(kind, &MatrixView::dense(2, &next)).unwrap();
-    }
-    for (a, b, kt, limit) in [(1, 0, 1.0, 0.1), (1, 1, 0.5, 0.2)] {
-        let contact = Contact {
-            sector_offset: 1,
-            ..Contact::jenkins(a, Some(b), kt, 1.0, limit)
-        };
-        reference.add_contact(&contact).unwrap();
-    }
+    let across = |a: usize, b: usize, kt: f64, limit: f64| Contact {
+        sector_offset: 1,
+        ..Contact::jenkins(a, Some(b), kt, 1.0, limit)
+    };
+    let reference = Structure::cyclic(2, 6)
+        .wave(1)
+        .matrices([
+            &[1.2, 0.0, 0.0, 0.5],
+            &[0.05, -0.03, -0.03, 0.05],
+            &[2.2, -1.0, -1.0, 1.9],
+        ])
+        .next(MatrixKind::Mass, &[0.0; 4])
+        .next(MatrixKind::Damping, &[0.0, -0.02, 0.0, 0.0])
+        .next(MatrixKind::Stiffness, &[0.0, -0.7, 0.0, 0.0])
+        .contact(across(1, 0, 1.0, 0.1))
+        .contact(across(1, 1, 0.5, 0.2))
+        .build();
     let mode = |model: &Model, response_dof| {
         let solver = SolverOptions {
             response_dof,

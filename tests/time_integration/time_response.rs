@@ -2,13 +2,12 @@
 //! made by other programs, and against harmonic balance with many harmonics.
 
 use crate::common::chains::driven_mass;
+use crate::common::models::dense;
 use crate::common::{
     BASE, Blisk, SECTORS, all_harmonics, complex, data, harmonics, largest, number, phase, relative_gap, solve_at,
     sweep,
 };
-use hbvib::{
-    Contact, Hooks, MatrixKind, MatrixView, Model, Part, Status, SteadyMethod, TimeOptions, TimeResponse, time_response,
-};
+use hbvib::{Contact, Hooks, MatrixKind, Model, Part, Status, SteadyMethod, TimeOptions, TimeResponse, time_response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -43,22 +42,16 @@ fn stop(kn: f64, gap: f64) -> Contact {
 fn a_linear_structure_moves_as_its_frequency_response_says() {
     // Mass with coupling, damping without symmetry, forces in three harmonics and a constant one.
     let (m, c, k) = ([2.0, 0.3, 0.3, 1.0], [0.3, 0.1, -0.05, 0.2], [5.0, -2.0, -2.0, 4.0]);
-    let mut model = Model::new(2).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &m)).unwrap();
-    let general = MatrixView::dense(2, &c).part(Part::General);
-    model.set_matrix(MatrixKind::Damping, &general).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &k))
-        .unwrap();
     let forces = [
         (0, 0, Complex64::new(0.7, 0.0)),
         (0, 1, Complex64::new(1.0, -0.4)),
         (1, 2, Complex64::new(0.2, 0.9)),
         (1, 5, Complex64::new(-0.5, 0.1)),
     ];
-    for (dof, h, value) in forces {
-        model.add_force(dof, h, value).unwrap();
-    }
+    let model = dense(&m, &k)
+        .part(MatrixKind::Damping, &c, Part::General)
+        .forces(forces)
+        .build();
     for omega in [0.3, 1.1, 1.9] {
         let options = TimeOptions {
             harmonics: 6,

@@ -2,13 +2,13 @@
 //! over the motion itself, and against where the points come from.
 
 use crate::common::chains::driven_mass;
-use crate::common::models::dense;
+use crate::common::models::{Structure, dense};
 use crate::common::{
     B2, BASE, Blisk, Wheel, all_harmonics, at_dof, complex, data, harmonics, number, phase, relative_gap, sweep,
 };
 use hbvib::{
-    Branch, Contact, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, SteadyMethod, TimeOptions,
-    Verification, VerifyOptions, estimate_at, time_response, verify,
+    Branch, Contact, Hooks, MatrixKind, Model, SolverOptions, Status, SteadyMethod, TimeOptions, Verification,
+    VerifyOptions, estimate_at, time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -297,23 +297,18 @@ fn sector_and_wheel() -> (Model, Model) {
     let damping = [0.1, 0.0, 0.0, 0.08];
     let mut across = Contact::jenkins(0, Some(1), 1.5, 0.5, 0.4);
     across.sector_offset = 1;
-    let mut sector = Model::cyclic(2, SECTORS).unwrap();
+    let sector = Structure::cyclic(2, SECTORS)
+        .matrices([&mass, &damping, &own])
+        .next(MatrixKind::Stiffness, &next)
+        .wave(1)
+        .contact(&across)
+        .force(1, 1, 0.5)
+        .build();
     let mut full_wheel = Wheel::new(2, SECTORS);
-    for (which, a, coupling) in [
-        (MatrixKind::Mass, mass, None),
-        (MatrixKind::Damping, damping, None),
-        (MatrixKind::Stiffness, own, Some(next)),
-    ] {
-        sector.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-        if let Some(next) = coupling {
-            sector.set_coupling(which, &MatrixView::dense(2, &next)).unwrap();
-        }
-        full_wheel.set(which, &a, coupling.as_ref().map(<[f64; 4]>::as_slice), None);
-    }
-    sector.set_wave(1);
-    sector.add_contact(&across).unwrap();
+    full_wheel.set(MatrixKind::Mass, &mass, None, None);
+    full_wheel.set(MatrixKind::Damping, &damping, None, None);
+    full_wheel.set(MatrixKind::Stiffness, &own, Some(&next), None);
     full_wheel.add_contact(&across);
-    sector.add_force(1, 1, 0.5.into()).unwrap();
     full_wheel.add_force(1, 1, 0.5.into(), 1);
     (sector, full_wheel.model)
 }
