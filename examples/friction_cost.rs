@@ -3,10 +3,10 @@
 //!
 //! `cargo run --release --example friction_cost`
 
-use hbvib::internals::Friction2d;
-use hbvib::internals::Friction3d;
 use hbvib::internals::HarmonicSet;
 use hbvib::internals::Law;
+use hbvib::internals::ScaledFriction2d;
+use hbvib::internals::ScaledFriction3d;
 use hbvib::internals::{Evaluation, Evaluator};
 use hbvib::{Interrupt, Result};
 use std::time::Instant;
@@ -56,14 +56,14 @@ fn main() -> Result<()> {
                 signal(&set, closing, 2.6),
             );
             let (kt, kn, mu, load) = (1.0, 1.0, 0.5, 1.0);
-            let one = Friction2d {
+            let one = ScaledFriction2d {
                 kt,
                 kn,
                 mu,
                 load,
                 slider: 0.0,
             };
-            let plane = Friction3d {
+            let plane = ScaledFriction3d {
                 kt,
                 kn,
                 mu,

@@ -77,14 +77,12 @@ mod time_integration;
 mod tracing;
 
 // Models.
-pub use contact::laws::iwan::Iwan;
-pub use contact::laws::polynomial::{Monomial, Polynomial};
-pub use contact::laws::table::Table;
-pub use contact::laws::user_law::{Call, States, User, UserForce};
+pub use contact::Contact;
+pub use contact::iwan::Iwan;
+pub use contact::laws::*;
 pub use contact::patch::Patch;
 pub use contact::relative_motion::{Direction, Frame};
 pub use contact::rigid_point::RigidPoint;
-pub use contact::{Contact, ContactKind};
 #[doc(inline)]
 pub use linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
@@ -99,7 +97,7 @@ pub use model::wheels::blade_modes::BladeModes;
 pub use model::wheels::mistuning::{BladeProperty, Mistuning};
 
 // Parameters.
-pub use contact::force_derivative::Constant;
+pub use contact::constants::Constant;
 pub use sensitivity::{Parameter, Reason};
 
 // Analyses.

@@ -9,7 +9,6 @@ mod common;
 use crate::common::models::unit_chain;
 use common::{BASE, harmonics};
 use hbvib::internals::Evaluation;
-use hbvib::internals::Friction3d;
 use hbvib::internals::HarmonicBalance;
 use hbvib::internals::HarmonicSet;
 use hbvib::internals::HystereticEvaluator;
@@ -17,6 +16,7 @@ use hbvib::internals::Jacobian;
 use hbvib::internals::Memoryless;
 use hbvib::internals::MemorylessEvaluator;
 use hbvib::internals::PlaneFrictionEvaluator;
+use hbvib::internals::ScaledFriction3d;
 use hbvib::internals::StaticState;
 use hbvib::internals::StepControl;
 use hbvib::internals::TanhFriction;
@@ -390,7 +390,7 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
     let set = HarmonicSet::all(5).unwrap();
     // With separation, with slip alone, and stuck.
     for load in [0.4, 4.0, 1e3] {
-        let law = Friction3d {
+        let law = ScaledFriction3d {
             kt: 1.3,
             kn: 0.9,
             mu: 0.4,

@@ -13,7 +13,7 @@ use hbvib::capi::{
     hbvib_model_add_contact, hbvib_model_add_force, hbvib_model_free, hbvib_model_new, hbvib_model_set_matrix,
     hbvib_nonlinear_mode, hbvib_solver_options, hbvib_solver_options_init, hbvib_status, hbvib_view, hbvib_view_init,
 };
-use hbvib::{Error, Result, Status};
+use hbvib::{Constant, Error, Result, Status};
 use std::f64::consts::PI;
 use std::mem::MaybeUninit;
 use std::ptr::null_mut;
@@ -127,7 +127,9 @@ fn model(force: f64) -> Result<Model> {
     let mut contact: hbvib_contact = filled(hbvib_contact_init)?;
     contact.kind = hbvib_contact_kind::HBVIB_JENKINS as i32;
     (contact.dof_a[0], contact.dof_b[0]) = (2, 3);
-    (contact.kt, contact.mu, contact.preload) = (5e7, 1.0, 5.0);
+    for (constant, value) in [(Constant::Kt, 5e7), (Constant::Mu, 1.0), (Constant::Preload, 5.0)] {
+        contact.set(constant, value).unwrap();
+    }
     let mut handle = null_mut();
     // SAFETY: all pointers are valid.
     checked(unsafe { hbvib_model_new(4, &raw mut handle) })?;

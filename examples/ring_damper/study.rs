@@ -342,7 +342,7 @@ fn tornado(model: &Model, optimum: Optimum, folder: &Path) -> Result<f64, Box<dy
         which: MatrixKind::Mass,
         direction: MatrixView::dense(4, &ring),
     };
-    let friction = best.contacts()[CONTACT].mu;
+    let friction = best.contacts()[CONTACT].constant(Constant::Mu);
     let named = [
         ("force", Parameter::Force, 1.0),
         ("normal load", constant(Constant::Preload), optimum.parameter),

@@ -24,8 +24,6 @@ mod periodic_state;
 pub mod piecewise_exact;
 pub mod piecewise_sampled;
 pub mod plane_friction;
-mod plane_sensitivity;
-mod slip_session;
 mod spectral;
 mod toeplitz;
 pub mod varying_normal_load;

@@ -9,7 +9,7 @@ use super::indices::index;
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
-use crate::contact::laws::user_law::{Call, User, UserForce};
+use crate::contact::laws::{Call, User, UserForce};
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;

@@ -9,6 +9,7 @@ use super::indices::{self, GROUND, index};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
+use crate::contact::constants::Constant;
 use crate::contact::relative_motion::Frame;
 use crate::contact::rigid_point::RigidPoint;
 use crate::contact::{Contact, ContactKind};
@@ -231,51 +232,54 @@ pub unsafe extern "C" fn hbvib_model_set_slider(
     })
 }
 
-/// The law of a kind of the header.
-fn kind(number: i32) -> Result<ContactKind> {
-    use hbvib_contact_kind as known;
-    const JENKINS: i32 = known::HBVIB_JENKINS as i32;
-    const FRICTION_2D: i32 = known::HBVIB_FRICTION_2D as i32;
-    const FRICTION_3D: i32 = known::HBVIB_FRICTION_3D as i32;
-    const UNILATERAL: i32 = known::HBVIB_UNILATERAL as i32;
-    const CUBIC: i32 = known::HBVIB_CUBIC as i32;
-    const REGULARISED: i32 = known::HBVIB_REGULARISED as i32;
-    Ok(match number {
-        JENKINS => ContactKind::Jenkins,
-        FRICTION_2D => ContactKind::Friction2d,
-        FRICTION_3D => ContactKind::Friction3d,
-        UNILATERAL => ContactKind::Unilateral,
-        CUBIC => ContactKind::Cubic,
-        REGULARISED => ContactKind::Regularised,
-        other => {
-            return fail!(
-                Argument,
-                "hbvib_contact: kind = {other}, needs {JENKINS} .. {REGULARISED} = HBVIB_JENKINS .. HBVIB_REGULARISED"
-            );
-        }
-    })
+/// The law of a kind of the header, its constants 0.
+fn kind(requested: i32) -> Result<ContactKind> {
+    const FIRST: i32 = hbvib_contact_kind::HBVIB_JENKINS as i32;
+    const LAST: i32 = hbvib_contact_kind::HBVIB_REGULARISED as i32;
+    let mut laws = ContactKind::named().into_iter();
+    let Some(kind) = laws.find(|kind| number(kind) as i32 == requested) else {
+        return fail!(
+            Argument,
+            "hbvib_contact: kind = {requested}, needs {FIRST} .. {LAST} = HBVIB_JENKINS .. HBVIB_REGULARISED"
+        );
+    };
+    Ok(kind)
+}
+
+/// The kind of the header.
+pub(super) fn number(kind: &ContactKind) -> hbvib_contact_kind {
+    match kind {
+        ContactKind::Jenkins(_) => hbvib_contact_kind::HBVIB_JENKINS,
+        ContactKind::Friction2d(_) => hbvib_contact_kind::HBVIB_FRICTION_2D,
+        ContactKind::Friction3d(_) => hbvib_contact_kind::HBVIB_FRICTION_3D,
+        ContactKind::Unilateral(_) => hbvib_contact_kind::HBVIB_UNILATERAL,
+        ContactKind::Cubic(_) => hbvib_contact_kind::HBVIB_CUBIC,
+        ContactKind::Regularised(_) => hbvib_contact_kind::HBVIB_REGULARISED,
+        ContactKind::Table(_) => hbvib_contact_kind::HBVIB_TABLE,
+        ContactKind::Polynomial(_) => hbvib_contact_kind::HBVIB_POLYNOMIAL,
+        ContactKind::User(_) => hbvib_contact_kind::HBVIB_CALLER_LAW,
+    }
 }
 
 /// The law of a description, without its degrees of freedom, which only a model can check, and
 /// without its directions.
 pub(super) fn law(c: &hbvib_contact) -> Result<Contact> {
-    Ok(Contact {
-        kind: kind(c.kind)?,
-        dof_a: [None; 3],
-        dof_b: [None; 3],
-        frame: None,
+    let mut contact = Contact {
         sector_offset: c.sector_offset,
-        kt: c.kt,
-        kn: c.kn,
-        mu: c.mu,
-        preload: c.preload,
-        gap: c.gap,
-        cubic: c.cubic,
-        velocity: c.velocity,
-        slider: [0.0; 2],
-        dofs: Vec::new(),
-        rigid: None,
-    })
+        ..Contact::of_sides(kind(c.kind)?, [None; 3], [None; 3])
+    };
+    for (constant, value) in [
+        (Constant::Kt, c.kt),
+        (Constant::Kn, c.kn),
+        (Constant::Mu, c.mu),
+        (Constant::Preload, c.preload),
+        (Constant::Gap, c.gap),
+        (Constant::Cubic, c.cubic),
+        (Constant::Velocity, c.velocity),
+    ] {
+        contact.set(constant, value)?;
+    }
+    Ok(contact)
 }
 
 /// The directions of a description; none where normal and tangent are zero.

@@ -7,7 +7,7 @@ use super::indices::{Sides, side, with_named_argument};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::contact::Contact;
-use crate::contact::laws::iwan::Iwan;
+use crate::contact::iwan::Iwan;
 use crate::error::{Status, try_room};
 use crate::model::Model;
 

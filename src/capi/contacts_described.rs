@@ -2,13 +2,13 @@
 
 use super::arrays::check_pointer;
 use super::boundary::call;
-use super::contacts::{hbvib_contact, hbvib_contact_kind};
+use super::contacts::{hbvib_contact, number};
 use super::handles::read;
 use super::indices::{GROUND, index};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out};
-use crate::contact::ContactKind;
+use crate::contact::constants::Constant;
 use crate::error::Status;
 use crate::model::Model;
 
@@ -46,13 +46,13 @@ pub unsafe extern "C" fn hbvib_model_contact(
             dof_a: places(contact.dof_a),
             dof_b: places(contact.dof_b),
             sector_offset: contact.sector_offset,
-            kt: contact.kt,
-            kn: contact.kn,
-            mu: contact.mu,
+            kt: contact.constant(Constant::Kt),
+            kn: contact.constant(Constant::Kn),
+            mu: contact.constant(Constant::Mu),
             preload,
             gap,
-            cubic: contact.cubic,
-            velocity: contact.velocity,
+            cubic: contact.constant(Constant::Cubic),
+            velocity: contact.constant(Constant::Velocity),
             normal,
             tangent,
             rotation: places(rigid.rotations),
@@ -66,19 +66,4 @@ pub unsafe extern "C" fn hbvib_model_contact(
         }
         Ok(Status::Ok)
     })
-}
-
-/// The kind of the header.
-fn number(kind: &ContactKind) -> hbvib_contact_kind {
-    match kind {
-        ContactKind::Jenkins => hbvib_contact_kind::HBVIB_JENKINS,
-        ContactKind::Friction2d => hbvib_contact_kind::HBVIB_FRICTION_2D,
-        ContactKind::Friction3d => hbvib_contact_kind::HBVIB_FRICTION_3D,
-        ContactKind::Unilateral => hbvib_contact_kind::HBVIB_UNILATERAL,
-        ContactKind::Cubic => hbvib_contact_kind::HBVIB_CUBIC,
-        ContactKind::Regularised => hbvib_contact_kind::HBVIB_REGULARISED,
-        ContactKind::Table(_) => hbvib_contact_kind::HBVIB_TABLE,
-        ContactKind::Polynomial(_) => hbvib_contact_kind::HBVIB_POLYNOMIAL,
-        ContactKind::User(_) => hbvib_contact_kind::HBVIB_CALLER_LAW,
-    }
 }

@@ -12,6 +12,7 @@ use super::version_and_errors::hbvib_status;
 use super::versioned_struct::load;
 use crate::at_a_point;
 use crate::contact::ContactKind;
+use crate::contact::constants::Constant;
 use crate::error::{Error, Result, Status, fail};
 use crate::model::Model;
 use core::ffi::{c_char, c_uchar};
@@ -116,7 +117,7 @@ pub unsafe extern "C" fn hbvib_contact_evaluate_with_hooks(
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 11) }?;
         let mut contact = law(&unsafe { load(c, 1) }?).with_argument(1)?;
-        if matches!(contact.kind, ContactKind::Friction3d) && contact.kn != 0.0 {
+        if matches!(contact.kind, ContactKind::Friction3d(_)) && contact.constant(Constant::Kn) != 0.0 {
             // A degree of freedom along n declares that the load varies.
             contact.dof_a[2] = Some(0);
         }

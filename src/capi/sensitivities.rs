@@ -13,7 +13,7 @@ use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::at_a_point::{self, Quantity};
-use crate::contact::force_derivative::Constant;
+use crate::contact::constants::Constant;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;

@@ -163,7 +163,7 @@ impl Condensed {
             if contact.normal_direction() == Some(at.direction) && stiffness > 0.0 {
                 motion = motion.max(contact.normal_load(0.0) / stiffness);
             }
-            motion = contact.slider.iter().fold(motion, |m, place| m.max(place.abs()));
+            motion = contact.slider().iter().fold(motion, |m, place| m.max(place.abs()));
         }
         let length = power_of_two(motion);
         for f in condensed.blocks.iter_mut().flat_map(|block| &mut block.force) {

@@ -1,28 +1,16 @@
-//! Contacts: their description by the caller, and the laws that they obey.
+//! Contacts in three rooms: [`forms`], the parts that laws are made of; [`laws`], one file or folder each; and [`described`], contacts as
+//! the caller gives them.
 
-pub mod constants;
-mod constructors;
-mod contact_checks;
-pub mod contact_state;
-pub mod coupled_search;
-mod description;
-pub mod force_derivative;
-pub mod law;
+pub mod described;
+pub mod forms;
 pub mod laws;
-pub mod linearisation;
-pub mod march;
-pub mod onset;
-pub mod patch;
-pub mod piece;
-pub mod plane_path;
-pub mod radau;
-pub mod relative_motion;
-pub mod rigid_point;
-pub mod samples;
-mod saved_contact;
-pub mod time_piece;
 
-pub use constants::Role;
-pub use description::Contact;
-pub use law::{Form, Law};
-pub use laws::registry::ContactKind;
+pub use described::description::Contact;
+pub use described::{description, iwan, patch, relative_motion, rigid_point};
+pub use forms::constants::Role;
+pub use forms::law::{Form, Law};
+pub use forms::{
+    constants, contact_state, coupled_search, force_derivative, law, linearisation, march, onset, piece, plane_path,
+    radau, samples, time_piece,
+};
+pub use laws::ContactKind;

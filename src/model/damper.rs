@@ -6,6 +6,7 @@
 //! 2003, 219 to 228).
 
 use crate::contact::Contact;
+use crate::contact::constants::Constant;
 use crate::contact::relative_motion::Frame;
 use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, fail, try_push, try_vec};
@@ -283,7 +284,6 @@ impl Damper<'_> {
                     dof_b: face.dofs,
                     frame: Some(frame),
                     sector_offset: face.sector_offset,
-                    gap: face.gap,
                     rigid: Some(RigidPoint {
                         rotations,
                         arm,
@@ -291,6 +291,7 @@ impl Damper<'_> {
                     }),
                     ..law
                 };
+                let contact = contact.with(Constant::Gap, face.gap)?;
                 try_push(&mut contacts, contact, CONTEXT)?;
             }
         }

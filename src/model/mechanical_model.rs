@@ -1,7 +1,8 @@
 //! The model: a structure with its contacts, springs and forces.
 
 use crate::contact::Contact;
-use crate::contact::laws::iwan::Iwan;
+use crate::contact::constants::Constant;
+use crate::contact::iwan::Iwan;
 use crate::contact::patch::Patch;
 use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push, try_room};
@@ -339,11 +340,10 @@ impl Model {
                 "preload of contact id = {id}, but that is a {kind}, which has none"
             );
         }
-        let changed = Contact {
-            preload,
-            gap,
-            ..contact.clone()
-        };
+        let changed = contact
+            .clone()
+            .with(Constant::Preload, preload)?
+            .with(Constant::Gap, gap)?;
         changed.check_constants()?;
         *contact = changed;
         Ok(())

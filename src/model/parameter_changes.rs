@@ -1,6 +1,6 @@
 //! Changes of a model by the parameters of a design study: constants of contacts, matrices, forces.
 
-use crate::contact::force_derivative::Constant;
+use crate::contact::constants::Constant;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
@@ -64,9 +64,8 @@ impl Model {
                 contact.law_name()
             );
         }
-        if let Constant::Slider(k) = constant {
-            let mut changed = contact.clone();
-            changed.slider[k] = value;
+        if let Constant::Slider(_) = constant {
+            let changed = contact.clone().with(constant, value)?;
             changed.check_constants()?;
             if let Some(place) = self.contact_mut(id) {
                 *place = changed;
@@ -74,16 +73,10 @@ impl Model {
             return Ok(());
         }
         let load = self.speed_loads().iter().find(|load| load.contact == id).copied();
-        let mut changed = contact.clone();
-        match (constant, &load) {
-            (Constant::Preload, Some(load)) => return self.set_preload_at_speed(id, value, load.per_speed2),
-            (Constant::Preload, None) => changed.preload = value,
-            (Constant::Mu, _) => changed.mu = value,
-            (Constant::Kt, _) => changed.kt = value,
-            (Constant::Kn, _) => changed.kn = value,
-            (Constant::Gap, _) => changed.gap = value,
-            (Constant::Slider(k), _) => changed.slider[k] = value,
+        if let (Constant::Preload, Some(load)) = (constant, &load) {
+            return self.set_preload_at_speed(id, value, load.per_speed2);
         }
+        let changed = contact.clone().with(constant, value)?;
         changed.check_constants()?;
         changed.check_stiffness()?;
         if let Some(place) = self.contact_mut(id) {

@@ -91,7 +91,7 @@ impl ContactMotion {
             }
             None => None,
         };
-        let slider = contact.slider.map(|w| w / length);
+        let slider = contact.slider().map(|w| w / length);
         // J x over the tangential motions, J y over the normal one, J e of a unit normal motion, J e of unit motions along t1
         // and t2.
         let mut parts = [(); 5].map(|()| Vec::new());

@@ -1,8 +1,8 @@
 //! Tests of perturbations.
 
 use super::*;
-use crate::contact::laws::polynomial::{Monomial, Polynomial};
-use crate::contact::laws::table::Table;
+use crate::contact::laws::Table;
+use crate::contact::laws::{Monomial, Polynomial};
 use crate::contact::{Contact, ContactKind};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;

@@ -5,17 +5,21 @@ use crate::common::random;
 use hbvib::Interrupt;
 use hbvib::internals::CoupledPiece;
 use hbvib::internals::Evaluation;
-use hbvib::internals::Friction2d;
 use hbvib::internals::HarmonicSet;
 use hbvib::internals::Piece;
+use hbvib::internals::ScaledFriction2d;
 use hbvib::internals::VaryingNormalLoadEvaluator;
 use std::f64::consts::TAU;
 
-pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
+pub fn evaluate(law: &ScaledFriction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     pieces(law, set, motion).0
 }
 
-pub fn pieces(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> (Evaluation, Vec<CoupledPiece>, Vec<Piece>) {
+pub fn pieces(
+    law: &ScaledFriction2d,
+    set: &HarmonicSet,
+    motion: &[f64],
+) -> (Evaluation, Vec<CoupledPiece>, Vec<Piece>) {
     let mut out = Evaluation::new(set, 2).unwrap();
     let mut way = VaryingNormalLoadEvaluator::new(set).unwrap();
     way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
@@ -48,9 +52,9 @@ impl Random {
     }
 
     /// A motion in both directions, and a law that it makes slip or not, open or not.
-    pub fn case(&mut self, set: &HarmonicSet) -> (Friction2d, Vec<f64>) {
+    pub fn case(&mut self, set: &HarmonicSet) -> (ScaledFriction2d, Vec<f64>) {
         let motion = [self.signal(set, 0.5), self.signal(set, 0.5)].concat();
-        let law = Friction2d {
+        let law = ScaledFriction2d {
             kt: 1.0 + 0.9 * self.next(),
             kn: 1.0 + 0.9 * self.next(),
             mu: 0.6 + 0.5 * self.next(),
@@ -62,7 +66,7 @@ impl Random {
 }
 
 /// A law and a motion given as cosine and sine coefficients [a0, a1, b1, …] of x and of the closing.
-pub fn case(constants: [f64; 4], x: &[f64], closing: &[f64]) -> (Friction2d, HarmonicSet, Vec<f64>) {
+pub fn case(constants: [f64; 4], x: &[f64], closing: &[f64]) -> (ScaledFriction2d, HarmonicSet, Vec<f64>) {
     let [kt, kn, mu, load] = constants;
     let set = HarmonicSet::all((x.len() - 1) / 2).unwrap();
     let packed = |c: &[f64], sign: f64| -> Vec<f64> {
@@ -71,7 +75,7 @@ pub fn case(constants: [f64; 4], x: &[f64], closing: &[f64]) -> (Friction2d, Har
     };
     let motion = [packed(x, 1.0), packed(closing, -1.0)].concat();
     (
-        Friction2d {
+        ScaledFriction2d {
             kt,
             kn,
             mu,
@@ -86,7 +90,7 @@ pub fn case(constants: [f64; 4], x: &[f64], closing: &[f64]) -> (Friction2d, Har
 pub const CONSTANTS: [f64; 4] = [1.0, 1.3, 0.4, 0.6];
 
 /// Opens, and slips as soon as it closes.
-pub fn slipping_at_closing() -> (Friction2d, HarmonicSet, Vec<f64>) {
+pub fn slipping_at_closing() -> (ScaledFriction2d, HarmonicSet, Vec<f64>) {
     case(
         CONSTANTS,
         &[0.1, 1.0, 0.2, 0.0, 0.0, 0.1, -0.05],
@@ -95,7 +99,7 @@ pub fn slipping_at_closing() -> (Friction2d, HarmonicSet, Vec<f64>) {
 }
 
 /// Opens, and sticks when it closes.
-pub fn sticking_at_closing() -> (Friction2d, HarmonicSet, Vec<f64>) {
+pub fn sticking_at_closing() -> (ScaledFriction2d, HarmonicSet, Vec<f64>) {
     case(
         CONSTANTS,
         &[0.0, 0.35, 0.1, 0.0, 0.0, 0.05, 0.0],
@@ -107,7 +111,7 @@ pub fn sticking_at_closing() -> (Friction2d, HarmonicSet, Vec<f64>) {
 /// the marched force, column-major. With `located`, the time of closing is interpolated between two samples;
 /// without, the slider begins at the first closed sample, as a sampled evaluation has it.
 pub struct March<'a> {
-    pub law: &'a Friction2d,
+    pub law: &'a ScaledFriction2d,
     pub set: &'a HarmonicSet,
     pub samples: usize,
     pub located: bool,
@@ -115,7 +119,7 @@ pub struct March<'a> {
 
 impl March<'_> {
     pub fn run(&self, motion: &[f64], jacobian: Option<&mut [f64]>) -> Vec<f64> {
-        let Friction2d { kt, kn, mu, load, .. } = *self.law;
+        let ScaledFriction2d { kt, kn, mu, load, .. } = *self.law;
         let (n, m) = (self.samples, self.set.packed_len());
         let mut basis = vec![0.0; m];
         let mut force = vec![0.0; 2 * m];

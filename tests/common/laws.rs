@@ -3,7 +3,7 @@
 use crate::common::energy::exactly;
 use crate::common::models::dense;
 use crate::common::solve_at;
-use hbvib::{Branch, Call, Contact, ContactKind, Model, Polynomial, SolverOptions, Table, User, UserForce};
+use hbvib::{Branch, Call, Constant, Contact, ContactKind, Model, Polynomial, SolverOptions, Table, User, UserForce};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -97,10 +97,7 @@ pub fn cases() -> Vec<Case> {
     let over = |kind| Contact::over(vec![0, 1], kind);
     let (tangents, all) = ([Some(0), Some(1), None], [Some(0), Some(1), Some(2)]);
     let plane = |dofs, load| Contact::friction_3d(dofs, ground, (2.5, 1.5), 0.4, load);
-    let flat = |load| Contact {
-        kn: 0.0,
-        ..plane(tangents, load)
-    };
+    let flat = |load| plane(tangents, load).with(Constant::Kn, 0.0).unwrap();
     let pair = |load| Contact::friction_2d([Some(0), Some(2)], [None; 2], (2.5, 1.5), 0.4, load);
     let table = Table::new(&[-0.5, -0.1, 0.2, 0.6], &[-1.4, -0.1, 0.3, 0.5]).unwrap();
     let damper = Polynomial::scalar(&[0.5, 0.3, 0.2], &[0.02, 0.0, 0.05]).unwrap();
@@ -124,12 +121,12 @@ pub fn cases() -> Vec<Case> {
         ),
         with(pulled(), case("friction, pulled and separating", pair(0.5))),
         fine(4096, with(pulled(), case("plane, pulled", plane(all, 0.5)))),
-        case("friction, stuck", Contact { mu: 40.0, ..pair(1.5) }),
-        case("friction, a gap at rest", Contact { gap: 0.1, ..pair(0.0) }),
+        case("friction, stuck", pair(1.5).with(Constant::Mu, 40.0).unwrap()),
+        case("friction, a gap at rest", pair(0.0).with(Constant::Gap, 0.1).unwrap()),
         fine(4096, case("plane, separating", plane(all, 0.5))),
         fine(4096, case("plane, pressed", plane(all, 1.5))),
         fine(4096, case("plane, constant load", flat(0.5))),
-        case("plane, stuck", Contact { mu: 40.0, ..flat(1.0) }),
+        case("plane, stuck", flat(1.0).with(Constant::Mu, 40.0).unwrap()),
         fine(
             4096,
             with(

@@ -3,7 +3,7 @@
 
 use crate::common::models::dense;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at};
-use hbvib::{Contact, Error, Hooks, Model, Status, TimeOptions, TimeResponse, time_response};
+use hbvib::{Constant, Contact, Error, Hooks, Model, Status, TimeOptions, TimeResponse, time_response};
 use num_complex::Complex64;
 
 /// Harmonics that are compared.
@@ -48,10 +48,7 @@ pub const KN: f64 = 3.0;
 /// gap.
 pub fn friction(mu: f64, preload: f64) -> Contact {
     let contact = Contact::friction_2d([Some(0), Some(1)], [None, None], (KT, KN), mu, preload.max(0.0));
-    Contact {
-        gap: (-preload).max(0.0) / KN,
-        ..contact
-    }
+    contact.with(Constant::Gap, (-preload).max(0.0) / KN).unwrap()
 }
 
 /// A force along the surface and one a quarter of a period ahead along the normal.

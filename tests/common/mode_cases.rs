@@ -3,7 +3,9 @@
 
 use crate::common::models::Structure;
 use crate::common::{Blisk, SECTORS, Wheel, all_harmonics, phase};
-use hbvib::{Branch, Contact, Hooks, MatrixKind, ModeField, ModeOptions, Model, SolverOptions, Status, nonlinear_mode};
+use hbvib::{
+    Branch, Constant, Contact, Hooks, MatrixKind, ModeField, ModeOptions, Model, SolverOptions, Status, nonlinear_mode,
+};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
@@ -203,7 +205,7 @@ impl Skewed {
     pub fn stuck_stiffness(&self) -> DMatrix<Complex64> {
         let mut k = self.matrices(1).stiffness;
         for (i, contact) in self.contacts.iter().enumerate() {
-            k += spring(&self.row(i), contact.kt.into());
+            k += spring(&self.row(i), contact.constant(Constant::Kt).into());
         }
         k
     }

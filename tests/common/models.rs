@@ -3,9 +3,7 @@
 //! `oscillator(1.0, 1.0).damping(&[0.02]).slider(0, 0.2, 0.1, 1.0).force(0, 1, 0.1).build()` is a mass on a spring that rubs on the ground.
 //! Contacts and forces have the order of their calls. A number that the library refuses ends the test.
 
-use hbvib::{
-    Contact, ContactKind, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Speed, Spring,
-};
+use hbvib::{Contact, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Speed, Spring};
 use num_complex::Complex64;
 use std::borrow::Borrow;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -111,12 +109,10 @@ pub fn add_spring(a: &mut [f64], n: usize, (i, j): (usize, usize), k: f64) {
 pub fn damper_face([u, v]: [usize; 2], side: f64, blade: Option<usize>, [kt, kn, mu]: [f64; 3]) -> Contact {
     let r = FRAC_1_SQRT_2;
     Contact {
-        kind: ContactKind::Friction2d,
         dof_a: [Some(u), Some(v), None],
         dof_b: [blade, None, None],
         frame: Some(Frame::new([side * r, -r, 0.0], Some([side * r, r, 0.0])).unwrap()),
-        kn,
-        ..Contact::jenkins(0, None, kt, mu, 0.0)
+        ..Contact::friction_2d([None; 2], [None; 2], (kt, kn), mu, 0.0)
     }
 }
 

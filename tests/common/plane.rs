@@ -4,10 +4,10 @@ use crate::common::random;
 use hbvib::Interrupt;
 
 use hbvib::internals::Evaluation;
-use hbvib::internals::Friction3d;
 use hbvib::internals::HarmonicSet;
 use hbvib::internals::Law;
 use hbvib::internals::PlaneFrictionEvaluator;
+use hbvib::internals::ScaledFriction3d;
 
 pub const OMEGA: f64 = 1.7;
 
@@ -36,8 +36,8 @@ impl Random {
     }
 }
 
-pub fn law(load: f64, has_normal: bool) -> Friction3d {
-    Friction3d {
+pub fn law(load: f64, has_normal: bool) -> ScaledFriction3d {
+    ScaledFriction3d {
         kt: 1.3,
         kn: if has_normal { 0.9 } else { 0.0 },
         mu: 0.4,
@@ -47,7 +47,7 @@ pub fn law(load: f64, has_normal: bool) -> Friction3d {
     }
 }
 
-pub fn evaluate(law: &Friction3d, set: &HarmonicSet, motion: &[f64]) -> (Evaluation, PlaneFrictionEvaluator) {
+pub fn evaluate(law: &ScaledFriction3d, set: &HarmonicSet, motion: &[f64]) -> (Evaluation, PlaneFrictionEvaluator) {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
     let mut way = PlaneFrictionEvaluator::new(set, law).unwrap();
     way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();

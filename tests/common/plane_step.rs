@@ -2,9 +2,9 @@
 //! second order in the length of a step.
 
 use crate::common::plane::{gap, largest};
-use hbvib::internals::Friction3d;
 use hbvib::internals::HarmonicSet;
 use hbvib::internals::Law;
+use hbvib::internals::ScaledFriction3d;
 use std::f64::consts::TAU;
 
 fn scaled(a: [f64; 2], factor: f64) -> [f64; 2] {
@@ -16,7 +16,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Force harmonics over `samples` steps a period, and the share of the steps with slip; periods are followed until the force returns.
-pub fn stepped(law: &Friction3d, set: &HarmonicSet, motion: &[f64], samples: usize) -> (Vec<f64>, f64) {
+pub fn stepped(law: &ScaledFriction3d, set: &HarmonicSet, motion: &[f64], samples: usize) -> (Vec<f64>, f64) {
     let (m, d) = (set.packed_len(), law.directions());
     let mut row = vec![0.0; m];
     let mut at = |j: usize| {
@@ -66,7 +66,7 @@ pub fn stepped(law: &Friction3d, set: &HarmonicSet, motion: &[f64], samples: usi
 }
 
 /// One step; `true` if the contact slips in it.
-fn step(law: &Friction3d, force: &mut [f64; 2], travel: [f64; 2], load: [f64; 2]) -> bool {
+fn step(law: &ScaledFriction3d, force: &mut [f64; 2], travel: [f64; 2], load: [f64; 2]) -> bool {
     if load[1] <= 0.0 {
         *force = [0.0; 2];
         return false;

@@ -1,6 +1,6 @@
 //! Terms that depend on speed, and structural damping, added to random models.
 
-use hbvib::{MatrixKind, MatrixView, Model, Speed};
+use hbvib::{Constant, MatrixKind, MatrixView, Model, Speed};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -45,7 +45,7 @@ pub fn rotate(model: &mut Model, speed: Speed, per_diameter: bool, mut real: imp
         }
     }
     model.set_loss_factor(0.04).unwrap();
-    let preload = model.contacts()[0].preload;
+    let preload = model.contacts()[0].constant(Constant::Preload);
     model.set_preload_at_speed(0, preload, 0.3).unwrap();
     model.add_unbalance(0, 1, 0.2 * real(), real()).unwrap();
     model.set_speed(speed).unwrap();

@@ -4,11 +4,11 @@
 use crate::common::depth::{some_of, thorough};
 use crate::common::friction::{March, Random, distance, evaluate, pieces, slipping_at_closing};
 use hbvib::internals::CoupledPiece;
-use hbvib::internals::Friction2d;
 use hbvib::internals::HarmonicSet;
-use hbvib::internals::Jenkins;
 use hbvib::internals::Law;
-use hbvib::internals::Unilateral;
+use hbvib::internals::ScaledFriction2d;
+use hbvib::internals::ScaledJenkins;
+use hbvib::internals::ScaledUnilateral;
 use hbvib::internals::{Evaluation, Evaluator};
 use hbvib::{Interrupt, State};
 use std::f64::consts::{PI, TAU};
@@ -106,17 +106,17 @@ fn a_constant_load_is_a_jenkins_contact() {
     let mut random = Random(31);
     let (mut dragged, mut stuck) = (0, 0);
     for i in 0..60 {
-        // Odd harmonics alone are folded for Jenkins, walked around for a load that varies.
+        // Odd harmonics alone are folded for ScaledJenkins, walked around for a load that varies.
         let set = HarmonicSet::excited(&[1], [1, 3, 7][i % 3], true, i % 2 == 0, false).unwrap();
         let (law, motion) = random.case(&set);
-        let law = Friction2d {
+        let law = ScaledFriction2d {
             kn: 0.0,
             load: 2.0 * law.load.abs(),
             ..law
         };
         let m = set.packed_len();
         let out = evaluate(&law, &set, &motion);
-        let jenkins = Jenkins {
+        let jenkins = ScaledJenkins {
             stiffness: law.kt,
             limit: law.mu * law.load,
             slider: 0.0,
@@ -151,7 +151,7 @@ fn the_normal_force_is_that_of_a_unilateral_spring() {
         let (law, motion) = random.case(&set);
         let m = set.packed_len();
         let out = evaluate(&law, &set, &motion);
-        let spring = Unilateral {
+        let spring = ScaledUnilateral {
             stiffness: law.kn,
             gap: -law.load / law.kn,
         };
@@ -169,7 +169,7 @@ fn the_normal_force_is_that_of_a_unilateral_spring() {
 #[test]
 fn a_contact_that_sticks_is_linear_and_is_dragged_along_by_its_bounds_alone() {
     let set = HarmonicSet::all(1).unwrap();
-    let law = Friction2d {
+    let law = ScaledFriction2d {
         kt: 2.0,
         kn: 1.0,
         mu: 0.5,
@@ -201,7 +201,7 @@ fn a_load_in_phase_with_the_motion_has_its_closed_form() {
         motion
     };
     let (kn, mu) = (2.0, 0.5);
-    let law = Friction2d {
+    let law = ScaledFriction2d {
         kt: 1.0,
         kn,
         mu,
@@ -236,7 +236,7 @@ fn a_load_that_just_vanishes_is_the_limit_from_both_sides() {
         let mut motion = random.case(&set).1;
         motion[7..].copy_from_slice(&[0.0, 0.8, 0.0, 0.15, 0.0, 0.05, 0.0]);
         let at = |load: f64| {
-            let law = Friction2d {
+            let law = ScaledFriction2d {
                 kt: 1.0,
                 kn: 1.0,
                 mu: 0.7,
@@ -266,7 +266,7 @@ fn constants_without_friction_or_contact_give_no_force_and_no_nan() {
     let mut random = Random(61);
     let motion = random.case(&set).1;
     let still = [0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let law = Friction2d {
+    let law = ScaledFriction2d {
         kt: 1.0,
         kn: 1.0,
         mu: 0.5,
@@ -274,15 +274,15 @@ fn constants_without_friction_or_contact_give_no_force_and_no_nan() {
         slider: 0.0,
     };
     for law in [
-        Friction2d { mu: 0.0, ..law },
-        Friction2d { kt: 0.0, ..law },
-        Friction2d { load: -9.0, ..law },
-        Friction2d {
+        ScaledFriction2d { mu: 0.0, ..law },
+        ScaledFriction2d { kt: 0.0, ..law },
+        ScaledFriction2d { load: -9.0, ..law },
+        ScaledFriction2d {
             kn: 0.0,
             load: 0.0,
             ..law
         },
-        Friction2d {
+        ScaledFriction2d {
             kn: 0.0,
             load: -1.0,
             ..law
@@ -305,7 +305,7 @@ fn constants_without_friction_or_contact_give_no_force_and_no_nan() {
             for mean in [0.3, -0.3, 0.4] {
                 let mut whole = [x, y].concat();
                 whole[7] += mean - 0.3;
-                let law = Friction2d { kn, ..law };
+                let law = ScaledFriction2d { kn, ..law };
                 let out = evaluate(&law, &set, &whole);
                 let march = March {
                     law: &law,
@@ -340,7 +340,7 @@ fn ties_of_events_leave_the_force_right() {
             for x in &mut motion {
                 *x = (3.0 * *x).round() * 0.5;
             }
-            law = Friction2d {
+            law = ScaledFriction2d {
                 kt: 1.0,
                 kn: 1.0,
                 mu: 0.5,

@@ -3,11 +3,11 @@
 
 use crate::common::friction::{March, Random, distance, evaluate, pieces, slipping_at_closing, sticking_at_closing};
 use hbvib::internals::Evaluation;
-use hbvib::internals::Friction2d;
 use hbvib::internals::HarmonicSet;
+use hbvib::internals::ScaledFriction2d;
 
 /// Column by column differences of the force, by the four-point rule.
-fn differences(law: &Friction2d, set: &HarmonicSet, motion: &[f64], step: f64) -> Vec<f64> {
+fn differences(law: &ScaledFriction2d, set: &HarmonicSet, motion: &[f64], step: f64) -> Vec<f64> {
     let mut columns = Vec::new();
     for j in 0..motion.len() {
         let at = |s: f64| {
@@ -77,7 +77,7 @@ fn every_block_of_the_jacobian_is_that_of_differences() {
         // Homogeneity of degree 1 in motion and load: the offset is load·∂F/∂load.
         let at = |s: f64| {
             let load = law.load * (1.0 + s * 1e-4);
-            evaluate(&Friction2d { load, ..law }, &set, &motion).force
+            evaluate(&ScaledFriction2d { load, ..law }, &set, &motion).force
         };
         let (far, near) = ((at(2.0), at(-2.0)), (at(1.0), at(-1.0)));
         let by_load: Vec<f64> = (0..motion.len())

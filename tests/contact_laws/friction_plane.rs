@@ -4,11 +4,11 @@
 use crate::common::plane::{OMEGA, Random, evaluate, gap, largest, law, short};
 use crate::common::plane_step::stepped;
 use hbvib::Interrupt;
-use hbvib::internals::Friction2d;
-use hbvib::internals::Friction3d;
 use hbvib::internals::HarmonicSet;
-use hbvib::internals::Jenkins;
 use hbvib::internals::Law;
+use hbvib::internals::ScaledFriction2d;
+use hbvib::internals::ScaledFriction3d;
+use hbvib::internals::ScaledJenkins;
 use hbvib::internals::{Evaluation, Evaluator};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -100,7 +100,7 @@ fn straight_motion_obeys_the_law_of_one_direction() {
         let m = set.packed_len();
         let law = law([1.5, 0.6, 0.1][round / 3 % 3], true);
         let motion = random.motion(&set, 2, 3.0);
-        let line = Friction2d {
+        let line = ScaledFriction2d {
             kt: law.kt,
             kn: law.kn,
             mu: law.mu,
@@ -145,7 +145,7 @@ fn constant_load_on_a_line_is_the_jenkins_element_its_dragged_mean_included() {
     let set = HarmonicSet::all(3).unwrap();
     let m = set.packed_len();
     let law = law(1.0, false);
-    let jenkins = Jenkins {
+    let jenkins = ScaledJenkins {
         stiffness: law.kt,
         limit: law.mu * law.load,
         slider: 0.0,
@@ -221,7 +221,7 @@ fn without_a_limit_the_contact_is_a_spring_and_without_friction_it_has_no_tangen
     let mut random = Random(5);
     let motion = random.motion(&set, 2, 2.0);
     for (mu, load) in [(1e12, 1.0), (0.4, 1e15), (0.4, f64::INFINITY)] {
-        let law = Friction3d {
+        let law = ScaledFriction3d {
             mu,
             load,
             ..law(1.0, false)
@@ -237,15 +237,15 @@ fn without_a_limit_the_contact_is_a_spring_and_without_friction_it_has_no_tangen
     }
     let motion = random.motion(&set, 3, 2.0);
     for law in [
-        Friction3d {
+        ScaledFriction3d {
             mu: 0.0,
             ..law(0.5, true)
         },
-        Friction3d {
+        ScaledFriction3d {
             kt: 0.0,
             ..law(0.5, true)
         },
-        Friction3d {
+        ScaledFriction3d {
             load: -9.0,
             ..law(0.5, true)
         },

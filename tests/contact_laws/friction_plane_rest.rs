@@ -3,15 +3,15 @@
 
 use crate::common::plane::{Random, evaluate, gap, largest, law};
 use crate::common::rest::{Disc, nearest_of_many, outside};
-use hbvib::internals::Friction3d;
 use hbvib::internals::HarmonicSet;
 use hbvib::internals::Law;
 use hbvib::internals::PlaneFrictionEvaluator;
 use hbvib::internals::Repetition;
+use hbvib::internals::ScaledFriction3d;
 use std::f64::consts::TAU;
 
 /// The discs in which the slider may rest, at equidistant times.
-fn discs(law: &Friction3d, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Vec<Disc> {
+fn discs(law: &ScaledFriction3d, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Vec<Disc> {
     let m = set.packed_len();
     let mut row = vec![0.0; m];
     let of = |j: usize| {
@@ -28,7 +28,7 @@ fn discs(law: &Friction3d, set: &HarmonicSet, samples: usize, motion: &[f64]) ->
 }
 
 /// Where a slider at rest is, from the force at τ = 0.
-fn slider(law: &Friction3d, way: &PlaneFrictionEvaluator, x: [f64; 2]) -> [f64; 2] {
+fn slider(law: &ScaledFriction3d, way: &PlaneFrictionEvaluator, x: [f64; 2]) -> [f64; 2] {
     let f = way.path().force(0.0).0;
     [x[0] - f[0] / law.kt, x[1] - f[1] / law.kt]
 }

@@ -2,7 +2,7 @@
 
 use crate::common::models::oscillator;
 use crate::common::{harmonics, solve_at};
-use hbvib::{Contact, Iwan, contact_evaluate};
+use hbvib::{Constant, Contact, Iwan, contact_evaluate};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -34,7 +34,7 @@ fn stiffness_at_rest_and_slip_force_are_exact_for_any_number_of_elements() {
     for n in [2, 7, 100] {
         let elements = JOINT.elements(&sides(), n).unwrap();
         assert_eq!(elements.len(), n);
-        let stiffness: f64 = elements.iter().map(|c| c.kt).sum();
+        let stiffness: f64 = elements.iter().map(|c| c.constant(Constant::Kt)).sum();
         let slip: f64 = elements.iter().map(Contact::slip_limit).sum();
         assert!((stiffness / JOINT.stiffness - 1.0).abs() < 1e-13);
         assert!((slip / JOINT.slip_force - 1.0).abs() < 1e-13);

@@ -3,7 +3,10 @@
 use crate::common::refusal::{refused, unharmed};
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
 use hbvib::internals::Role;
-use hbvib::{Contact, ContactKind, Frame, MatrixKind, MatrixView, Model, Patch, Polynomial, Status};
+use hbvib::{
+    Constant, Contact, ContactKind, Frame, Friction2d, Friction3d, MatrixKind, MatrixView, Model, Patch, Polynomial,
+    Status,
+};
 use num_complex::Complex64;
 
 type Vector = [f64; 3];
@@ -70,13 +73,17 @@ fn nodes(r: &Rotation) -> Model {
 }
 
 fn law(kind: ContactKind) -> Contact {
-    Contact {
-        kind,
-        kn: 3.0,
-        preload: 0.7,
-        gap: 0.01,
-        ..Contact::jenkins(0, None, 2.0, 0.4, 0.0)
-    }
+    [
+        (Constant::Kt, 2.0),
+        (Constant::Kn, 3.0),
+        (Constant::Mu, 0.4),
+        (Constant::Preload, 0.7),
+        (Constant::Gap, 0.01),
+    ]
+    .into_iter()
+    .fold(Contact::between(0, None, kind), |law, (constant, value)| {
+        law.with(constant, value).unwrap()
+    })
 }
 
 fn patch<'a>(law: &'a Contact, normal: &'a [Vector], tangent: Option<&'a [Vector]>) -> Patch<'a> {
@@ -103,7 +110,10 @@ const STRAIGHT: Rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 #[test]
 fn a_patch_is_its_contacts_added_one_by_one() {
-    for kind in [ContactKind::Friction2d, ContactKind::Friction3d] {
+    for kind in [
+        ContactKind::Friction2d(Friction2d::default()),
+        ContactKind::Friction3d(Friction3d::default()),
+    ] {
         let law = law(kind);
         let (mut at_once, mut one_by_one) = (nodes(&STRAIGHT), nodes(&STRAIGHT));
         assert_eq!(at_once.add_patch(&patch(&law, &NORMALS, Some(&TANGENTS))).unwrap(), 0);
@@ -112,12 +122,16 @@ fn a_patch_is_its_contacts_added_one_by_one() {
                 dof_a: NODES[i],
                 dof_b: [None; 3],
                 frame: Some(Frame::new(NORMALS[i], Some(TANGENTS[i])).unwrap()),
-                kt: 2.0 * AREAS[i],
-                kn: 3.0 * AREAS[i],
-                preload: PRESSURES[i] * AREAS[i],
-                gap: GAPS[i],
                 ..law.clone()
-            };
+            }
+            .with(Constant::Kt, 2.0 * AREAS[i])
+            .unwrap()
+            .with(Constant::Kn, 3.0 * AREAS[i])
+            .unwrap()
+            .with(Constant::Preload, PRESSURES[i] * AREAS[i])
+            .unwrap()
+            .with(Constant::Gap, GAPS[i])
+            .unwrap();
             one_by_one.add_contact(&contact).unwrap();
         }
         let (a, b) = (response(&at_once), response(&one_by_one));
@@ -130,14 +144,20 @@ fn a_patch_is_its_contacts_added_one_by_one() {
         };
         assert_eq!(at_once.add_patch(&plain).unwrap(), 2);
         let added = &at_once.contacts()[3];
-        assert!((added.preload - 1.4).abs() < 1e-15 && added.gap.to_bits() == 0.01_f64.to_bits());
+        assert!(
+            (added.constant(Constant::Preload) - 1.4).abs() < 1e-15
+                && added.constant(Constant::Gap).to_bits() == 0.01_f64.to_bits()
+        );
     }
 }
 
 #[test]
 fn a_patch_that_turns_with_its_structure_gives_the_response_that_turns() {
     let axis = [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0];
-    for kind in [ContactKind::Friction2d, ContactKind::Friction3d] {
+    for kind in [
+        ContactKind::Friction2d(Friction2d::default()),
+        ContactKind::Friction3d(Friction3d::default()),
+    ] {
         let law = law(kind);
         let mut straight = nodes(&STRAIGHT);
         straight.add_patch(&patch(&law, &NORMALS, Some(&TANGENTS))).unwrap();
@@ -164,7 +184,7 @@ fn a_patch_that_turns_with_its_structure_gives_the_response_that_turns() {
 
 #[test]
 fn friction_in_a_plane_does_not_mind_which_tangents_are_chosen() {
-    let law = law(ContactKind::Friction3d);
+    let law = law(ContactKind::Friction3d(Friction3d::default()));
     let turned = [[-3.0, 1.6, -1.2], [2.0, 5.0, -1.0]];
     let solve = |tangent| {
         let mut model = nodes(&STRAIGHT);
@@ -182,8 +202,12 @@ fn friction_in_a_plane_does_not_mind_which_tangents_are_chosen() {
 #[test]
 fn pairs_without_area_have_no_force_whatever_presses_on_them() {
     let mut jenkins = Contact::jenkins(0, None, 2.0, 0.4, f64::INFINITY);
-    jenkins.gap = 0.0;
-    for law in [law(ContactKind::Friction2d), law(ContactKind::Friction3d), jenkins] {
+    jenkins.set(Constant::Gap, 0.0).unwrap();
+    for law in [
+        law(ContactKind::Friction2d(Friction2d::default())),
+        law(ContactKind::Friction3d(Friction3d::default())),
+        jenkins,
+    ] {
         let patch = Patch {
             area: &[0.0, 0.0],
             pressure: None,
@@ -208,7 +232,7 @@ fn rejects(case: &Patch<'_>, status: Status, words: &[&str]) {
 
 #[test]
 fn arrays_of_another_length_are_refused_by_name() {
-    let law = law(ContactKind::Friction2d);
+    let law = law(ContactKind::Friction2d(Friction2d::default()));
     let good = patch(&law, &NORMALS, Some(&TANGENTS));
     let (dof_b, normal) = (Some(&NODES[..1]), &NORMALS[..1]);
     let (tangent, area) = (Some(&TANGENTS[..0]), &[1.0; 3]);
@@ -226,7 +250,7 @@ fn arrays_of_another_length_are_refused_by_name() {
 
 #[test]
 fn bad_entries_are_refused_by_number_and_the_law_by_itself() {
-    let law = law(ContactKind::Friction2d);
+    let law = law(ContactKind::Friction2d(Friction2d::default()));
     let good = patch(&law, &NORMALS, Some(&TANGENTS));
     let dof_a = &[NODES[0], [Some(3), Some(4), Some(6)]];
     rejects(
@@ -247,20 +271,14 @@ fn bad_entries_are_refused_by_number_and_the_law_by_itself() {
     let no_area = Contact::between(0, None, polynomial);
     let words = &["law", "per unit of area"];
     rejects(&Patch { law: &no_area, ..good }, Status::Unsupported, words);
-    let soft = Contact {
-        kt: -1.0,
-        ..law.clone()
-    };
+    let soft = law.clone().with(Constant::Kt, -1.0).unwrap();
     rejects(
         &Patch { law: &soft, ..good },
         Status::Argument,
         &["patch, law", "kt = -1"],
     );
     // Right by itself, but not with the second area, and not with a pressure.
-    let stiff = Contact {
-        kt: 1e308,
-        ..law.clone()
-    };
+    let stiff = law.clone().with(Constant::Kt, 1e308).unwrap();
     rejects(
         &Patch { law: &stiff, ..good },
         Status::NotFinite,

@@ -4,8 +4,8 @@
 use crate::common::models::oscillator;
 use crate::common::{all_harmonics, amplitude_range, harmonics, omega_range, solve_at};
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, contact_evaluate, forced_response,
-    nonlinear_mode,
+    Branch, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, contact_evaluate,
+    forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -70,10 +70,11 @@ fn a_stop_that_never_opens_is_a_spring_about_the_static_position() {
     // The same by a preload: gap = −preload/kn.
     let mut other = oscillator(1.0, 1.0).damping(&[0.02]).force(0, 1, 0.2).build();
     other
-        .add_contact(&Contact {
-            preload: 500.0,
-            ..Contact::unilateral(None, Some(0), 1000.0, 0.0)
-        })
+        .add_contact(
+            &Contact::unilateral(None, Some(0), 1000.0, 0.0)
+                .with(Constant::Preload, 500.0)
+                .unwrap(),
+        )
         .unwrap();
     let (a, b) = (
         solve_at(&model, &harmonics(3), 1.1),

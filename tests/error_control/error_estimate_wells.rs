@@ -16,10 +16,8 @@ fn well(k: f64, mean: f64) -> Model {
     let law = if k <= -1.0 {
         Contact::cubic(0, None, 0.0, 1.0)
     } else {
-        Contact {
-            kind: ContactKind::Polynomial(Polynomial::scalar(&[-1.0 - k, 0.0, 1.0], &[]).unwrap()),
-            ..Contact::cubic(0, None, 0.0, 0.0)
-        }
+        let law = Polynomial::scalar(&[-1.0 - k, 0.0, 1.0], &[]).unwrap();
+        Contact::between(0, None, ContactKind::Polynomial(law))
     };
     let mut model = oscillator(1.0, k)
         .damping(&[0.2])

@@ -4,8 +4,8 @@
 use crate::common::{all_harmonics, amplitude_range, at_dof, harmonics, omega_range, processor_time, relative_gap};
 use crate::sector::{Interface, Sector, Size};
 use hbvib::{
-    Branch, Contact, Error, ForcedOptions, Hooks, MatrixKind, ModeChoice, ModeField, ModeOptions, Model, SolverOptions,
-    Spring, Status, SynthesisOptions, forced_response, nonlinear_mode, synthesise,
+    Branch, Constant, Contact, Error, ForcedOptions, Hooks, MatrixKind, ModeChoice, ModeField, ModeOptions, Model,
+    SolverOptions, Spring, Status, SynthesisOptions, forced_response, nonlinear_mode, synthesise,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -29,16 +29,19 @@ fn with_preload(sector: &Sector, force: f64, balanced: bool) -> (Model, usize) {
         let contact = Contact::friction_3d(
             [along.dof_a[0], across.dof_a[0], pair.normal.dof_a],
             [along.dof_b[0], across.dof_b[0], pair.normal.dof_b],
-            (along.kt, pair.normal.stiffness),
-            along.mu,
-            along.preload,
+            (along.constant(Constant::Kt), pair.normal.stiffness),
+            along.constant(Constant::Mu),
+            along.constant(Constant::Preload),
         );
         model.add_contact(&contact).unwrap();
         if !balanced {
             continue;
         }
         // The preload of the table acts in the deformed state: constant forces keep the structure there.
-        for (dof, force) in [(pair.normal.dof_a, -along.preload), (pair.normal.dof_b, along.preload)] {
+        for (dof, force) in [
+            (pair.normal.dof_a, -along.constant(Constant::Preload)),
+            (pair.normal.dof_b, along.constant(Constant::Preload)),
+        ] {
             model.add_force(dof.unwrap(), 0, Complex64::from(force)).unwrap();
         }
     }

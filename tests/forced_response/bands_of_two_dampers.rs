@@ -4,7 +4,7 @@ use crate::bands_of_many_sliders::two_dampers;
 use crate::common::models::{coupled, damper_face};
 use crate::common::random;
 use crate::common::{harmonics, omega_range, solve_at};
-use hbvib::{BandOptions, Contact, ContactKind, Frame, Hooks, Model, band, forced_response, freedom};
+use hbvib::{BandOptions, Contact, Frame, Hooks, Model, band, forced_response, freedom};
 use num_complex::Complex64;
 
 /// Numbers without pattern between 0 and 1.
@@ -125,16 +125,15 @@ fn any_contacts(numbers: &mut Numbers) -> (Model, f64) {
         let along = (n as f64 * numbers.next()) as usize;
         let out = (along + 1 + ((n - 1) as f64 * numbers.next()) as usize) % n;
         let (sine, cosine) = numbers.within(0.0, std::f64::consts::TAU).sin_cos();
+        let kn = numbers.within(0.5, 3.0);
         let contact = Contact {
-            kind: ContactKind::Friction2d,
             dof_a: [Some(along), Some(out), None],
             dof_b: [None; 3],
             frame: Some(Frame::new([cosine, sine, 0.0], Some([-sine, cosine, 0.0])).unwrap()),
-            kn: numbers.within(0.5, 3.0),
-            ..Contact::jenkins(
-                0,
-                None,
-                numbers.within(0.3, 2.0),
+            ..Contact::friction_2d(
+                [None; 2],
+                [None; 2],
+                (numbers.within(0.3, 2.0), kn),
                 numbers.within(0.1, 0.8),
                 numbers.within(0.0, 0.3),
             )

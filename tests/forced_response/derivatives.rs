@@ -9,7 +9,9 @@ use hbvib::internals::Condensed;
 use hbvib::internals::HarmonicBalance;
 use hbvib::internals::Role;
 use hbvib::internals::{InitialGuess, Problem, Residual};
-use hbvib::{Contact, ContactKind, Interrupt, MatrixKind, MatrixView, Model, Part, Speed, Table, forced_residual};
+use hbvib::{
+    Constant, Contact, ContactKind, Interrupt, MatrixKind, MatrixView, Model, Part, Speed, Table, forced_residual,
+};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -155,11 +157,11 @@ fn random_model(shape: Shape, speed: Speed, engine_order: i64, feed: &mut Feed<'
         Contact::jenkins(0, Some(1), 2.0, 0.5, 0.3 + 0.2 * feed.real()),
         across.clone(),
         // Two laws on one coordinate add up.
-        Contact {
-            kt: 0.7,
-            preload: 0.1,
-            ..across
-        },
+        across
+            .with(Constant::Kt, 0.7)
+            .unwrap()
+            .with(Constant::Preload, 0.1)
+            .unwrap(),
         Contact::jenkins(1, None, 1.0, 0.4, 0.5),
         Contact::cubic(1, Some(2), 0.8, 3.0 * feed.real()),
         // A stop.
@@ -318,13 +320,15 @@ fn condensed_case(
         .contacts()
         .iter()
         .filter(|contact| contact.role() == Role::Active)
-        .map(|contact| match contact.kind {
-            ContactKind::Jenkins | ContactKind::Friction3d => contact.slip_limit() / contact.kt,
+        .map(|contact| match &contact.kind {
+            ContactKind::Jenkins(_) | ContactKind::Friction3d(_) => {
+                contact.slip_limit() / contact.constant(Constant::Kt)
+            }
             // Its inner points.
             ContactKind::Table(_) => 0.2,
             // The cubic term equals the linear one.
-            ContactKind::Cubic => (contact.kt / contact.cubic.abs()).sqrt(),
-            _ => contact.gap.abs(),
+            ContactKind::Cubic(_) => (contact.constant(Constant::Kt) / contact.constant(Constant::Cubic).abs()).sqrt(),
+            _ => contact.constant(Constant::Gap).abs(),
         })
         .fold(f64::INFINITY, f64::min)
         / condensed.length();

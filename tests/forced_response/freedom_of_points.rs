@@ -5,7 +5,8 @@ use crate::common::models::dense;
 use crate::common::{harmonics, omega_range, solve_at, sweep};
 use crate::residual_band::{across, peak_wedge, wedge};
 use hbvib::{
-    Contact, ContactKind, Hooks, Model, Phase, PhaseReport, SolverOptions, Speed, Status, forced_response, freedom,
+    Contact, ContactKind, Friction2d, Hooks, Model, Phase, PhaseReport, SolverOptions, Speed, Status, forced_response,
+    freedom,
 };
 
 /// Models without any freedom, and ranges of frequency: contacts that slip, and the ring damper.
@@ -30,7 +31,7 @@ fn a_sweep_has_the_freedom_of_each_of_its_points() {
         freedom: true,
         ..harmonics(7)
     };
-    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     for (model, from, to) in [(line, 0.95, 1.6), (across(0.1), 1.1, 1.4), (peak_wedge(), 1.23, 1.27)] {
         let branch = sweep(&model, &solver, from, to, &[]);
         assert!(branch.tells_freedom() && branch.free_sliders().len() == branch.points());
@@ -128,7 +129,7 @@ fn freedom_under_a_load_that_follows_the_frequency_is_that_of_its_speed() {
         ..harmonics(7)
     };
     let found = [Speed::PerOmega(0.5), Speed::Fixed(0.5 * omega)].map(|speed| {
-        let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+        let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
         model.set_preload_at_speed(0, 0.05, 0.1).unwrap();
         model.set_speed(speed).unwrap();
         let branch = solve_at(&model, &solver, omega);

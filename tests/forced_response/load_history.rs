@@ -4,8 +4,8 @@
 use crate::common::models::{Structure, dense, oscillator};
 use crate::common::{harmonics, solve_at};
 use hbvib::{
-    Contact, ContactKind, Frame, Hooks, Interrupt, LoadHistory, Model, SolverOptions, Speed, SteadyMethod, TimeOptions,
-    freedom, static_history, time_response,
+    Constant, Contact, ContactKind, Frame, Friction2d, Friction3d, Hooks, Interrupt, LoadHistory, Model, SolverOptions,
+    Speed, SteadyMethod, TimeOptions, freedom, static_history, time_response,
 };
 use num_complex::Complex64;
 
@@ -25,13 +25,14 @@ fn cylinder(kind: &ContactKind, across: bool) -> Model {
     let (s, c) = BETA.sin_cos();
     for side in [1.0, -1.0] {
         let contact = Contact {
-            kind: kind.clone(),
-            dof_a: [Some(0), Some(1), across.then_some(2)],
-            dof_b: [None; 3],
             frame: Some(Frame::new([side * s, -c, 0.0], Some([side * c, s, 0.0])).unwrap()),
-            kn: KN,
-            ..Contact::jenkins(0, None, KT, MU, 0.0)
+            ..Contact::of_sides(kind.clone(), [Some(0), Some(1), across.then_some(2)], [None; 3])
         };
+        let contact = [(Constant::Kt, KT), (Constant::Kn, KN), (Constant::Mu, MU)]
+            .into_iter()
+            .fold(contact, |contact, (constant, value)| {
+                contact.with(constant, value).unwrap()
+            });
         model.add_contact(&contact).unwrap();
     }
     model.add_force(1, 0, Complex64::new(1.0, 0.0)).unwrap();
@@ -66,7 +67,10 @@ fn closed_form(turns: &[f64]) -> (f64, f64) {
 fn a_cylinder_between_planes_keeps_the_force_of_its_speeds() {
     // Squares of speeds: up, down into stick, down into reversed slip, up again, further up.
     let squares = [2.0, 1.6, 0.7, 0.9, 3.0, 0.1];
-    for (kind, across) in [(ContactKind::Friction2d, false), (ContactKind::Friction3d, true)] {
+    for (kind, across) in [
+        (ContactKind::Friction2d(Friction2d::default()), false),
+        (ContactKind::Friction3d(Friction3d::default()), true),
+    ] {
         let model = cylinder(&kind, across);
         let history = LoadHistory {
             factors: &squares,
@@ -92,7 +96,7 @@ fn a_cylinder_between_planes_keeps_the_force_of_its_speeds() {
 /// A response with the places that a history has left starts from its residual forces.
 #[test]
 fn a_response_after_a_history_has_its_residual_force() {
-    let mut model = cylinder(&ContactKind::Friction2d, false);
+    let mut model = cylinder(&ContactKind::Friction2d(Friction2d::default()), false);
     let history = LoadHistory {
         factors: &[2.0, 1.0],
         speeds: &[],
@@ -131,7 +135,7 @@ fn a_slider_under_a_load_of_the_speed_is_dragged_where_the_load_falls() {
 
 #[test]
 fn histories_that_are_none_are_refused_by_name() {
-    let model = cylinder(&ContactKind::Friction2d, false);
+    let model = cylinder(&ContactKind::Friction2d(Friction2d::default()), false);
     let with = |factors: &[f64], speeds: &[f64]| {
         let history = LoadHistory { factors, speeds };
         static_history(&model, &SolverOptions::default(), &history, &Interrupt::none())
@@ -218,10 +222,9 @@ fn without_contacts_the_states_are_those_of_the_stiffness() {
 #[test]
 fn a_contact_that_closes_within_a_step_sticks_where_it_closes() {
     let (kt, kn, mu, gap) = (2.0, 5.0, 0.8, 0.3);
-    let contact = Contact {
-        gap,
-        ..Contact::friction_2d([Some(0), Some(1)], [None; 2], (kt, kn), mu, 0.0)
-    };
+    let contact = Contact::friction_2d([Some(0), Some(1)], [None; 2], (kt, kn), mu, 0.0)
+        .with(Constant::Gap, gap)
+        .unwrap();
     // It closes against the ground, and the force along is half of that towards it.
     let one = [1.0, 0.0, 0.0, 1.0];
     let model = dense(&one, &one)

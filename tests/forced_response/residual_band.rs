@@ -4,10 +4,10 @@
 use crate::common::models::{Structure, dense};
 use crate::common::{harmonics, omega_range, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, Frame, Hooks, LogLevel,
-    MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity, SolverOptions, TimeOptions,
-    VerifyOptions, band, band_curve, floquet, forced_response, freedom, parameter_response, sensitivity, time_response,
-    verify,
+    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, Frame, Friction2d, Friction3d,
+    Hooks, LogLevel, MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity,
+    SolverOptions, TimeOptions, VerifyOptions, band, band_curve, floquet, forced_response, freedom, parameter_response,
+    sensitivity, time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -39,7 +39,10 @@ pub fn across(force: f64) -> Model {
     add_faces(
         &mut model,
         [0.6, 0.2],
-        [ContactKind::Friction3d, ContactKind::Friction2d],
+        [
+            ContactKind::Friction3d(Friction3d::default()),
+            ContactKind::Friction2d(Friction2d::default()),
+        ],
         Some(3),
     );
     model
@@ -53,19 +56,20 @@ fn add_faces(model: &mut Model, mu: [f64; 2], kinds: [ContactKind; 2], third: Op
     ];
     for (((normal, tangent, blade), mu), kind) in faces.into_iter().zip(mu).zip(kinds) {
         let contact = Contact {
-            kind,
-            dof_a: [Some(1), Some(2), third],
-            dof_b: [blade, None, None],
             frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-            kn: 1.5,
-            ..Contact::jenkins(0, None, 1.0, mu, 0.0)
+            ..Contact::of_sides(kind, [Some(1), Some(2), third], [blade, None, None])
         };
+        let contact = [(Constant::Kt, 1.0), (Constant::Kn, 1.5), (Constant::Mu, mu)]
+            .into_iter()
+            .fold(contact, |contact, (constant, value)| {
+                contact.with(constant, value).unwrap()
+            });
         model.add_contact(&contact).unwrap();
     }
 }
 
 pub fn peak_wedge() -> Model {
-    wedge([0.6, 0.15], 0.02, ContactKind::Friction2d)
+    wedge([0.6, 0.15], 0.02, ContactKind::Friction2d(Friction2d::default()))
 }
 
 fn amplitude_in_time(model: &Model, branch: &Branch) -> f64 {
@@ -146,7 +150,7 @@ fn the_band_of_the_peak_reaches_from_limit_to_limit() {
 
 #[test]
 fn a_band_at_a_frequency_has_its_extrema_between_the_limits() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = harmonics(25);
     // Place and amplitude at the limits by time, and the largest amplitude.
     for (omega, low, high, most) in [
@@ -181,7 +185,7 @@ fn a_band_at_a_frequency_has_its_extrema_between_the_limits() {
         if (omega - 1.2_f64).abs() < 1e-9 {
             let place = found.upper.places[0];
             assert!(place > first.place + 0.1 && place < last.place - 0.1 && found.upper.at_limit.is_empty());
-            let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+            let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
             model.set_slider(PLATFORM, 0, place).unwrap();
             let in_time = amplitude_in_time(&model, found.upper.branch.as_ref().unwrap());
             assert!((in_time / found.upper.value - 1.0).abs() < 1e-4, "{in_time}");
@@ -234,7 +238,7 @@ const STATES: [(f64, [[f64; 2]; 3]); 4] = [
 
 /// Amplitude, and how far the slider at the platform is dragged from a place, by time.
 fn dragged_in_time(omega: f64, place: f64) -> (f64, f64) {
-    let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     model.set_slider(PLATFORM, 0, place).unwrap();
     let branch = solve_at(&model, &harmonics(31), omega);
     let start = crate::common::all_harmonics(&branch, 0);
@@ -286,7 +290,7 @@ const LIMITS: [(f64, [[f64; 2]; 2]); 4] = [
 
 #[test]
 fn limits_with_fifty_harmonics_are_those_of_exact_events() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = harmonics(51);
     for (omega, limits) in LIMITS {
         let branch = solve_at(&model, &solver, omega);
@@ -305,7 +309,7 @@ fn limits_with_fifty_harmonics_are_those_of_exact_events() {
 /// The tolerance of 1e-3 has chosen the harmonics of the point; ends and limits have more.
 #[test]
 fn ends_with_default_options_keep_the_error_that_they_tell() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = SolverOptions::default();
     for (omega, limits) in LIMITS {
         let branch = solve_at(&model, &solver, omega);
@@ -343,7 +347,7 @@ fn ends_with_default_options_keep_the_error_that_they_tell() {
 #[test]
 #[ignore = "101 harmonics at four frequencies, and integration in time"]
 fn ends_and_extrema_with_many_harmonics_are_those_in_time() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = harmonics(101);
     for (omega, rows) in STATES {
         let branch = solve_at(&model, &solver, omega);
@@ -399,7 +403,7 @@ fn ends_and_extrema_with_many_harmonics_are_those_in_time() {
 
 #[test]
 fn curves_have_the_band_of_each_point() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = harmonics(5);
     let branch = sweep(&model, &solver, 1.18, 1.22, &[]);
     let mut hooks = Hooks::default();
@@ -428,13 +432,14 @@ fn curves_have_the_band_of_each_point() {
 /// The contact with the platform as two of half its stiffness: a band of two sliders, whose limits allow no more.
 #[test]
 fn two_contacts_that_share_a_face_have_the_band_of_one() {
-    let whole = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let whole = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let mut model = structure(0.1, 0);
-    let shared = Contact {
-        kt: 0.5,
-        kn: 0.75,
-        ..whole.contacts()[PLATFORM].clone()
-    };
+    let shared = whole.contacts()[PLATFORM]
+        .clone()
+        .with(Constant::Kt, 0.5)
+        .unwrap()
+        .with(Constant::Kn, 0.75)
+        .unwrap();
     for contact in [shared.clone(), whole.contacts()[BLADE].clone(), shared] {
         model.add_contact(&contact).unwrap();
     }
@@ -467,7 +472,7 @@ fn two_contacts_that_share_a_face_have_the_band_of_one() {
 #[test]
 fn friction_in_a_plane_has_the_band_of_its_line() {
     let solver = harmonics(7);
-    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let plane = across(0.1);
     for omega in [1.2, 1.3] {
         let (one, two) = (solve_at(&line, &solver, omega), solve_at(&plane, &solver, omega));
@@ -721,7 +726,7 @@ fn states_that_are_none_are_refused_by_name() {
     );
     let loaded = Model::load(&other.save().unwrap()).unwrap();
     assert_eq!(
-        loaded.contacts()[0].slider.map(f64::to_bits),
+        loaded.contacts()[0].slider().map(f64::to_bits),
         [0.3, 0.0].map(f64::to_bits)
     );
 }
@@ -729,7 +734,7 @@ fn states_that_are_none_are_refused_by_name() {
 /// A place within the limits, and a contact with a preload that sticks beside one that slips.
 #[test]
 fn derivatives_by_the_place_and_the_constants_are_those_of_differences() {
-    let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let mut model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     model.set_slider(PLATFORM, 0, 1.1).unwrap();
     let amplitude = |model: &Model| solve_at(model, &harmonics(7), 1.3).amplitude()[0];
     let branch = solve_at(&model, &harmonics(7), 1.3);
@@ -750,15 +755,13 @@ fn derivatives_by_the_place_and_the_constants_are_those_of_differences() {
         let at = |sign: f64| {
             let mut contacts = model.contacts().to_vec();
             let changed = &mut contacts[PLATFORM];
-            match constant {
-                Constant::Slider(k) => changed.slider[k] += sign * step,
-                Constant::Kt => changed.kt += sign * step,
-                Constant::Kn => changed.kn += sign * step,
-                Constant::Mu => changed.mu += sign * step,
+            let (constant, value) = match constant {
                 // A load below zero is a gap.
-                _ if sign > 0.0 => changed.preload = step,
-                _ => changed.gap = step / changed.kn,
-            }
+                Constant::Preload if sign > 0.0 => (constant, step),
+                Constant::Preload => (Constant::Gap, step / changed.constant(Constant::Kn)),
+                _ => (constant, changed.constant(constant) + sign * step),
+            };
+            changed.set(constant, value).unwrap();
             let mut other = structure(0.1, 0);
             other.add_contacts(&contacts).unwrap();
             amplitude(&other)
@@ -773,7 +776,7 @@ fn derivatives_by_the_place_and_the_constants_are_those_of_differences() {
 
 #[test]
 fn freedom_counts_the_multipliers_that_stuck_sliders_keep_at_1() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     for omega in [1.2, 1.3] {
         let branch = solve_at(&model, &harmonics(15), omega);
         let found = floquet(&model, &branch, 0, &FloquetOptions::default(), &mut Hooks::default()).unwrap();
@@ -828,7 +831,7 @@ fn a_sweep_with_a_log_warns_of_its_band() {
 /// The result over the place, as the curve of a parameter that is followed by arc length.
 #[test]
 fn states_lie_on_the_curve_over_the_place() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = harmonics(7);
     let branch = solve_at(&model, &solver, 1.2);
     let found = band(
@@ -869,7 +872,7 @@ fn states_lie_on_the_curve_over_the_place() {
 #[test]
 #[ignore = "seconds: many harmonics"]
 fn a_band_with_many_harmonics_is_that_in_time() {
-    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d);
+    let model = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
     let solver = harmonics(101);
     let branch = solve_at(&model, &solver, 1.2);
     let found = band(

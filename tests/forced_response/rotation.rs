@@ -8,8 +8,8 @@ use hbvib::internals::Condensed;
 use hbvib::internals::HarmonicBalance;
 use hbvib::internals::{Problem, Residual};
 use hbvib::{
-    Contact, ContactState, Hooks, Interrupt, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, Status,
-    TimeOptions, forced_residual, time_response,
+    Constant, Contact, ContactState, Hooks, Interrupt, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed,
+    Status, TimeOptions, forced_residual, time_response,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -118,7 +118,9 @@ fn plain(sectors: usize, engine_order: i64, speed: f64, omega: f64) -> Model {
     }
     for (contact, preload, per_speed2) in contacts() {
         let preload = preload + per_speed2 * speed * speed;
-        model.add_contact(&Contact { preload, ..contact }).unwrap();
+        model
+            .add_contact(&contact.with(Constant::Preload, preload).unwrap())
+            .unwrap();
     }
     model.add_force(0, 1, Complex64::new(0.8, 0.3)).unwrap();
     model.add_force(2, 2, 0.2.into()).unwrap();

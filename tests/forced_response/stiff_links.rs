@@ -6,8 +6,8 @@ use crate::common::depth::some_of;
 use crate::common::models::dense;
 use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::{
-    Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Status,
-    Storage, Values, forced_response,
+    Branch, Constant, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions,
+    Status, Storage, Values, forced_response,
 };
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -217,7 +217,7 @@ fn pair(contact: &Contact, difference: f64) -> (Model, Complex64) {
 #[test]
 fn a_pressed_contact_whose_sides_move_alike_has_a_first_point() {
     let mut stop = Contact::unilateral(Some(2), Some(3), 0.4, 0.0);
-    stop.preload = 0.06;
+    stop.set(Constant::Preload, 0.06).unwrap();
     let damper = Contact::friction_2d([Some(0), Some(2)], [Some(1), Some(3)], (0.4, 0.4), 0.5, 0.06);
     let cases = [stop, damper].into_iter().flat_map(|contact| {
         let differences = [0.0, 1e-15, 1e-13, 1e-11, 1e-9];

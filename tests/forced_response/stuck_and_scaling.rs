@@ -2,7 +2,7 @@
 //! the same-H solution and the truth.
 
 use crate::common::{self, BASE, Blisk, NDOF, all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::{Contact, Model};
+use hbvib::{Constant, Contact, Model};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -89,38 +89,22 @@ fn limits_of_the_law_are_linear_systems() {
     let contact = case.contact();
     let omega = TAU * 208.9;
     for (name, contact, stiffness) in [
-        (
-            "no load",
-            Contact {
-                preload: 0.0,
-                ..contact.clone()
-            },
-            0.0,
-        ),
-        (
-            "no friction",
-            Contact {
-                mu: 0.0,
-                ..contact.clone()
-            },
-            0.0,
-        ),
+        ("no load", contact.clone().with(Constant::Preload, 0.0).unwrap(), 0.0),
+        ("no friction", contact.clone().with(Constant::Mu, 0.0).unwrap(), 0.0),
         (
             "no friction under infinite load",
-            Contact {
-                mu: 0.0,
-                preload: f64::INFINITY,
-                ..contact.clone()
-            },
+            contact
+                .clone()
+                .with(Constant::Mu, 0.0)
+                .unwrap()
+                .with(Constant::Preload, f64::INFINITY)
+                .unwrap(),
             0.0,
         ),
         (
             "infinite load",
-            Contact {
-                preload: f64::INFINITY,
-                ..contact.clone()
-            },
-            contact.kt,
+            contact.clone().with(Constant::Preload, f64::INFINITY).unwrap(),
+            contact.constant(Constant::Kt),
         ),
     ] {
         let model = with_contact(&case, &contact);
@@ -142,16 +126,10 @@ fn nearly_infinite_and_nearly_zero_limits_approach_the_linear_systems() {
     let contact = case.contact();
     let omega = TAU * 208.9;
     let at = |preload: f64| {
-        let model = with_contact(
-            &case,
-            &Contact {
-                preload,
-                ..contact.clone()
-            },
-        );
+        let model = with_contact(&case, &contact.clone().with(Constant::Preload, preload).unwrap());
         all_harmonics(&solve_at(&model, &harmonics(5), omega), 0)[NDOF..2 * NDOF].to_vec()
     };
-    assert!(relative_gap(&at(1e12), &linear(&case, contact.kt, omega)) < 1e-12);
+    assert!(relative_gap(&at(1e12), &linear(&case, contact.constant(Constant::Kt), omega)) < 1e-12);
     assert!(relative_gap(&at(1e-6), &linear(&case, 0.0, omega)) < 1e-6);
 }
 

@@ -13,7 +13,7 @@ use hbvib::internals::StaticTangents;
 use hbvib::internals::{Epmc, Gauge, LinearMode};
 use hbvib::internals::{Path, PathHomotopy};
 use hbvib::internals::{Problem, Residual};
-use hbvib::{Contact, ContactKind, DampingForm, Interrupt, SolverOptions, Speed, Table};
+use hbvib::{Constant, Contact, ContactKind, DampingForm, Interrupt, SolverOptions, Speed, Table};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -95,10 +95,11 @@ impl Loaded {
         } else {
             Contact::friction_2d([Some(0), Some(2)], [None; 2], (1.0, 1.3), 0.4, 1.0)
         };
-        skewed.contacts.push(Contact {
-            preload: 0.4,
-            ..Contact::unilateral(Some(1), None, 2.0, 0.1)
-        });
+        skewed.contacts.push(
+            Contact::unilateral(Some(1), None, 2.0, 0.1)
+                .with(Constant::Preload, 0.4)
+                .unwrap(),
+        );
         skewed.contacts.push(Contact::cubic(2, None, 0.5, 1.5));
         let table = Table::new(&[-0.9, -0.3, 0.2, 0.8], &[-0.9, -0.15, 0.1, 1.1]).unwrap();
         skewed
@@ -165,11 +166,14 @@ impl Case {
         let mut skewed = Skewed::new(self.engine_order);
         skewed.sectors = 5;
         // Two laws on one coordinate add up.
-        skewed.contacts.push(Contact {
-            kt: 0.7,
-            preload: 0.2,
-            ..skewed.contacts[1].clone()
-        });
+        skewed.contacts.push(
+            skewed.contacts[1]
+                .clone()
+                .with(Constant::Kt, 0.7)
+                .unwrap()
+                .with(Constant::Preload, 0.2)
+                .unwrap(),
+        );
         skewed.contacts.push(Contact::jenkins(1, None, 1.0, 0.4, 0.3));
         let in_plane = Contact::friction_3d([Some(0), Some(2), None], [None; 3], (0.8, 0.0), 0.4, 0.5);
         skewed.contacts.push(in_plane);
@@ -203,7 +207,7 @@ impl Case {
         let play = model
             .contacts()
             .iter()
-            .map(|c| c.slip_limit() / c.kt / condensed.length())
+            .map(|c| c.slip_limit() / c.constant(Constant::Kt) / condensed.length())
             .fold(f64::INFINITY, f64::min);
         let interrupt = Interrupt::none();
         let mut problem = Epmc::new(&condensed, &gauge, &linear, 0, &interrupt).unwrap();

@@ -7,8 +7,8 @@ use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, amplitude_range, harmonics, omega_range, phase, relative_gap};
 use hbvib::internals::linear_modes;
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeGuess,
-    ModeOptions, Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
+    Branch, Constant, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice,
+    ModeGuess, ModeOptions, Model, SolverOptions, Speed, Status, forced_response, nonlinear_mode,
 };
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -96,10 +96,7 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
         ("constant forces", vec![in_line(0.3, 1.0)], [0.1, -0.3, 0.2], 1),
         (
             "pressed by a force over a gap",
-            vec![Contact {
-                gap: 0.2,
-                ..in_line(0.3, 0.0)
-            }],
+            vec![in_line(0.3, 0.0).with(Constant::Gap, 0.2).unwrap()],
             [0.1, -2.0, 0.0],
             0,
         ),
@@ -244,10 +241,11 @@ fn wheel_of(skewed: &Skewed, sectors: usize) -> Wheel {
 fn whirling(speed: Speed) -> Model {
     dense(&[1.0, 0.0, 0.0, 1.3], &[2.0, 0.3, 0.3, 3.0])
         .set(MatrixKind::Gyroscopic, &[0.0, 0.6, -0.6, 0.0])
-        .contact(Contact {
-            preload: 0.4,
-            ..Contact::unilateral(Some(0), None, 1.5, 0.0)
-        })
+        .contact(
+            Contact::unilateral(Some(0), None, 1.5, 0.0)
+                .with(Constant::Preload, 0.4)
+                .unwrap(),
+        )
         .force(1, 0, 0.2)
         .speed(speed)
         .build()

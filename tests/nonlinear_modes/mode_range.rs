@@ -4,7 +4,7 @@
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
 use crate::common::models::dense;
 use crate::common::{self, BASE, Blisk, amplitude_range, harmonics};
-use hbvib::{Branch, Contact, ContactState, ModeChoice, ModeField, ModeOptions, Model};
+use hbvib::{Branch, Constant, Contact, ContactState, ModeChoice, ModeField, ModeOptions, Model};
 
 fn log10(branch: &Branch) -> &[f64] {
     branch.mode_field(ModeField::Log10Amplitude).unwrap()
@@ -128,7 +128,7 @@ fn contacts_of_different_slip_limits_begin_to_slip_one_after_the_other() {
                 Some(b) => (shape[0] - shape[b]).norm(),
                 None => shape[contact.dof_a[0].unwrap()].norm(),
             };
-            let expected = (limits[i] / contact.kt / motion).log10();
+            let expected = (limits[i] / contact.constant(Constant::Kt) / motion).log10();
             let (below, above) = first_slip(&branch, i);
             println!("  contact {i}: slips from 10^{below:.4} .. 10^{above:.4}, estimate 10^{expected:.4}");
             let slack = if i == 0 { 1e-9 } else { 0.02 };

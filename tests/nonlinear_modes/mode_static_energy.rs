@@ -6,7 +6,7 @@ use crate::common::mode_cases::{N, Skewed, damping, follow, wave};
 use crate::common::models::dense;
 use crate::common::{all_harmonics, amplitude_range, phase};
 use crate::mode_about_static::pressed_sector;
-use hbvib::{Branch, Contact, Energy, MatrixKind, ModeField, Speed, Spring};
+use hbvib::{Branch, Constant, Contact, Energy, MatrixKind, ModeField, Speed, Spring};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -72,14 +72,18 @@ impl Wheel {
         let (mut k, mut force) = (own + next + next.transpose(), self.constant.clone());
         for contact in &self.contacts {
             let [t, n] = [0, 2].map(|place| self.row(contact, place));
-            k += &t * t.transpose() * contact.kt + &n * n.transpose() * contact.kn;
-            force += n * contact.preload;
+            k += &t * t.transpose() * contact.constant(Constant::Kt)
+                + &n * n.transpose() * contact.constant(Constant::Kn);
+            force += n * contact.constant(Constant::Preload);
         }
         let x = k.lu().solve(&force).unwrap();
         for contact in &self.contacts {
             let [t, n] = [0, 2].map(|place| self.row(contact, place).dot(&x));
-            let load = contact.preload - contact.kn * n;
-            assert!(load > 0.0 && contact.kt * t.abs() < contact.mu * load, "slips at rest");
+            let load = contact.constant(Constant::Preload) - contact.constant(Constant::Kn) * n;
+            assert!(
+                load > 0.0 && contact.constant(Constant::Kt) * t.abs() < contact.constant(Constant::Mu) * load,
+                "slips at rest"
+            );
         }
         x
     }
@@ -151,9 +155,12 @@ impl Wheel {
             for j in 0..=2 * FINE {
                 let turn = Complex64::cis(TAU * (j % FINE) as f64 / FINE as f64);
                 let [y, n] = [0, 1].map(|i| at(&motions[i], turn));
-                let load = (contact.preload - contact.kn * n).max(0.0);
-                let f = (contact.kt * (y - slider)).clamp(-contact.mu * load, contact.mu * load);
-                slider = y - f / contact.kt;
+                let load = (contact.constant(Constant::Preload) - contact.constant(Constant::Kn) * n).max(0.0);
+                let f = (contact.constant(Constant::Kt) * (y - slider)).clamp(
+                    -contact.constant(Constant::Mu) * load,
+                    contact.constant(Constant::Mu) * load,
+                );
+                slider = y - f / contact.constant(Constant::Kt);
                 if let Some([y0, n0, f0, load0]) = before.filter(|_| j > FINE) {
                     work += 0.5 * (f + f0) * (y - y0) - 0.5 * (load + load0) * (n - n0);
                 }

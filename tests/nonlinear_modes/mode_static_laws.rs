@@ -6,7 +6,7 @@ use crate::common::mode_cases::{damping, follow, harmonic};
 use crate::common::{all_harmonics, amplitude_range, harmonics, laws::Plate, relative_gap};
 use crate::mode_about_static::{answer, balancing, mass_of_three, pressed};
 use hbvib::{
-    Branch, Call, Contact, ContactKind, Frame, Iwan, ModeChoice, ModeOptions, Monomial, Patch, Polynomial,
+    Branch, Call, Constant, Contact, ContactKind, Frame, Iwan, ModeChoice, ModeOptions, Monomial, Patch, Polynomial,
     SolverOptions, Table, User, UserForce,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -213,7 +213,10 @@ fn case(name: &'static str, contacts: Vec<Contact>, constant: [f64; 3], states: 
 
 fn cases() -> Vec<Case> {
     let place = |f: f64| [f, 0.0, 0.0];
-    let elements: Vec<(f64, f64)> = joint().iter().map(|c| (c.kt, c.slip_limit())).collect();
+    let elements: Vec<(f64, f64)> = joint()
+        .iter()
+        .map(|c| (c.constant(Constant::Kt), c.slip_limit()))
+        .collect();
     let table = Table::new(&DISPLACEMENTS, &FORCES).unwrap();
     let series = Polynomial::scalar(&SPRING, &DAMPER).unwrap();
     let mut all = vec![
@@ -284,10 +287,9 @@ fn cases() -> Vec<Case> {
 
 /// The laws that are sampled.
 fn sampled_cases() -> Vec<Case> {
-    let stop = Contact {
-        preload: 0.4,
-        ..Contact::unilateral(Some(1), None, 1.5, 0.0)
-    };
+    let stop = Contact::unilateral(Some(1), None, 1.5, 0.0)
+        .with(Constant::Preload, 0.4)
+        .unwrap();
     let stopped = |x: Motion| -(0.4 - 1.5 * x[1]).max(0.0);
     vec![
         case(

@@ -4,7 +4,7 @@
 use crate::common::mode_cases::{follow, only};
 use crate::common::models::oscillator;
 use crate::common::{all_harmonics, amplitude_range, harmonics};
-use hbvib::{Contact, ModeOptions, Model, SolverOptions};
+use hbvib::{Constant, Contact, ModeOptions, Model, SolverOptions};
 use std::f64::consts::PI;
 
 /// ẍ + kx = F + max(kn(−x − c), 0).
@@ -24,10 +24,9 @@ impl Stop {
     }
 
     fn model(&self) -> Model {
-        let stop = Contact {
-            preload: self.preload,
-            ..Contact::unilateral(Some(0), None, self.kn, self.gap)
-        };
+        let stop = Contact::unilateral(Some(0), None, self.kn, self.gap)
+            .with(Constant::Preload, self.preload)
+            .unwrap();
         oscillator(1.0, self.k).contact(&stop).force(0, 0, self.force).build()
     }
 

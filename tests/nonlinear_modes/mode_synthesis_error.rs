@@ -5,8 +5,8 @@ use crate::common::mode_cases::follow;
 use crate::common::models::{coupled, dense};
 use crate::common::{amplitude_range, at_dof, harmonics, sweep};
 use hbvib::{
-    Contact, Hooks, MatrixKind, ModeChoice, ModeOptions, Model, SolverOptions, SynthesisOptions, SynthesisPoint,
-    nonlinear_mode, synthesise,
+    Constant, Contact, Hooks, MatrixKind, ModeChoice, ModeOptions, Model, SolverOptions, SynthesisOptions,
+    SynthesisPoint, nonlinear_mode, synthesise,
 };
 
 /// Three masses in a chain under a force on one of them.
@@ -22,9 +22,10 @@ fn chain(beta: f64, contacts: &[Contact], constant: f64, (dof, force): (usize, f
 }
 
 fn cases() -> Vec<(&'static str, Vec<Contact>, f64)> {
-    let stop = |preload, gap| Contact {
-        preload,
-        ..Contact::unilateral(Some(1), None, 1.5, gap)
+    let stop = |preload, gap| {
+        Contact::unilateral(Some(1), None, 1.5, gap)
+            .with(Constant::Preload, preload)
+            .unwrap()
     };
     let rubbing = Contact::friction_2d([Some(0), Some(1)], [None; 2], (0.8, 0.9), 0.4, 0.6);
     vec![
@@ -237,10 +238,9 @@ fn random_chain(random: &mut Random) -> Model {
                 let normal = (dof + 1) % n;
                 Contact::friction_2d([Some(dof), Some(normal)], [None; 2], (k, k), 0.4, preload)
             }
-            _ => Contact {
-                preload: if loaded { preload } else { 0.0 },
-                ..Contact::unilateral(Some(dof), None, k, if loaded { 0.0 } else { preload })
-            },
+            _ => Contact::unilateral(Some(dof), None, k, if loaded { 0.0 } else { preload })
+                .with(Constant::Preload, if loaded { preload } else { 0.0 })
+                .unwrap(),
         };
         model.add_contact(&contact).unwrap();
     }

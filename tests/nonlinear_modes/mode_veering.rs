@@ -3,7 +3,7 @@
 
 use crate::common::mode_cases::{damping, delta, follow, only};
 use crate::common::{BASE, Blisk, D, R, amplitude_range, data, harmonics, number};
-use hbvib::{Branch, Contact, ModeChoice, ModeField, ModeOptions, Model, SolverOptions, Spring};
+use hbvib::{Branch, Constant, ModeChoice, ModeField, ModeOptions, Model, SolverOptions, Spring};
 
 /// The sector of a nodal diameter without structural damping, its contact's stiffness scaled, and
 /// the ring's too.
@@ -20,12 +20,8 @@ fn model(case: &Blisk, stiffness: f64, ring: f64) -> Model {
         })
         .unwrap();
     let contact = case.contact();
-    model
-        .add_contact(&Contact {
-            kt: stiffness * contact.kt,
-            ..contact
-        })
-        .unwrap();
+    let kt = stiffness * contact.constant(Constant::Kt);
+    model.add_contact(&contact.with(Constant::Kt, kt).unwrap()).unwrap();
     model
 }
 

@@ -3,7 +3,9 @@
 
 use crate::common::refusal::{OMEGA, refused, unharmed};
 use crate::common::{BASE, harmonics, solve_at};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, Part, Status, Storage, Values, contact_evaluate, forced_residual};
+use hbvib::{
+    Constant, Contact, MatrixKind, MatrixView, Model, Part, Status, Storage, Values, contact_evaluate, forced_residual,
+};
 use num_complex::Complex64;
 
 #[test]
@@ -161,34 +163,22 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
                 "ground",
             ),
             (
-                Contact {
-                    kt: f64::NAN,
-                    ..contact.clone()
-                },
+                contact.clone().with(Constant::Kt, f64::NAN).unwrap(),
                 Status::NotFinite,
                 "kt",
             ),
             (
-                Contact {
-                    kt: -1.0,
-                    ..contact.clone()
-                },
+                contact.clone().with(Constant::Kt, -1.0).unwrap(),
                 Status::Argument,
                 "kt = -1",
             ),
             (
-                Contact {
-                    mu: f64::NAN,
-                    ..contact.clone()
-                },
+                contact.clone().with(Constant::Mu, f64::NAN).unwrap(),
                 Status::NotFinite,
                 "mu",
             ),
             (
-                Contact {
-                    preload: -2.0,
-                    ..contact.clone()
-                },
+                contact.clone().with(Constant::Preload, -2.0).unwrap(),
                 Status::Argument,
                 "preload = -2",
             ),
@@ -226,57 +216,40 @@ fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
     unharmed(|model| {
         let friction = BASE.contact();
         let spring = Contact::cubic(2, Some(3), 1.0, -1.0);
-        for (bad, status, words) in [
+        for (contact, constant, value, status, words) in [
             (
-                Contact {
-                    cubic: f64::INFINITY,
-                    ..spring.clone()
-                },
+                &spring,
+                Constant::Cubic,
+                f64::INFINITY,
                 Status::NotFinite,
                 "cubic = inf",
             ),
+            (&friction, Constant::Cubic, f64::NAN, Status::NotFinite, "cubic = NaN"),
             (
-                Contact {
-                    cubic: f64::NAN,
-                    ..friction.clone()
-                },
-                Status::NotFinite,
-                "cubic = NaN",
-            ),
-            (
-                Contact {
-                    cubic: 2.0,
-                    ..friction.clone()
-                },
+                &friction,
+                Constant::Cubic,
+                2.0,
                 Status::Argument,
                 "cubic = 2, needs 0 for a Jenkins contact",
             ),
             (
-                Contact {
-                    mu: 0.3,
-                    ..spring.clone()
-                },
+                &spring,
+                Constant::Mu,
+                0.3,
                 Status::Argument,
                 "mu = 0.3, needs 0 for a cubic spring",
             ),
             (
-                Contact {
-                    preload: f64::INFINITY,
-                    ..spring.clone()
-                },
+                &spring,
+                Constant::Preload,
+                f64::INFINITY,
                 Status::Argument,
                 "preload = inf, needs 0 for a cubic spring",
             ),
-            (
-                Contact {
-                    kt: -1.0,
-                    ..spring.clone()
-                },
-                Status::Argument,
-                "kt = -1",
-            ),
+            (&spring, Constant::Kt, -1.0, Status::Argument, "kt = -1"),
         ] {
-            refused(model.add_contact(&bad), status, &[words]);
+            let changed = contact.clone().with(constant, value);
+            refused(changed.and_then(|bad| model.add_contact(&bad)), status, &[words]);
         }
         let mut sprung = model.try_clone().unwrap();
         sprung.add_contact(&spring).unwrap();
@@ -367,10 +340,7 @@ fn arrays_of_the_wrong_length_are_refused_before_anything_is_written() {
     );
     refused(
         contact_evaluate(
-            &Contact {
-                kt: f64::NAN,
-                ..contact.clone()
-            },
+            &contact.clone().with(Constant::Kt, f64::NAN).unwrap(),
             3,
             0,
             1.0,

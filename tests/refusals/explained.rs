@@ -3,7 +3,7 @@
 
 use crate::common::refusal::refused;
 use crate::common::{amplitude_range, harmonics, omega_range, peers::structure, sweep};
-use hbvib::{Contact, ContactState, Hooks, Model, SolverOptions, Status, forced_response, nonlinear_mode};
+use hbvib::{Constant, Contact, ContactState, Hooks, Model, SolverOptions, Status, forced_response, nonlinear_mode};
 
 #[test]
 fn a_contact_without_stiffness_is_refused_by_the_name_of_its_constant() {
@@ -24,10 +24,9 @@ fn a_contact_without_stiffness_is_refused_by_the_name_of_its_constant() {
 #[test]
 fn a_negative_preload_is_refused_with_the_gap_that_means_the_same() {
     let mut model = Model::new(1).unwrap();
-    let stop = Contact {
-        preload: -3.0,
-        ..Contact::unilateral(Some(0), None, 2.0, 0.5)
-    };
+    let stop = Contact::unilateral(Some(0), None, 2.0, 0.5)
+        .with(Constant::Preload, -3.0)
+        .unwrap();
     refused(
         model.add_contact(&stop),
         Status::Argument,

@@ -5,8 +5,8 @@ use crate::common::models::{dense, oscillator};
 use crate::common::refusal::{self, refused};
 use crate::common::{BASE, at_dof, harmonics};
 use hbvib::{
-    Amplitude, Branch, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, Result, SolverOptions,
-    Status, nonlinear_mode,
+    Amplitude, Branch, Constant, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, Result,
+    SolverOptions, Status, nonlinear_mode,
 };
 use num_complex::Complex64;
 
@@ -142,14 +142,8 @@ fn a_mode_that_moves_no_contact_is_refused() {
     // No contact at all, and contacts that never slip or never resist.
     refused(follow(&row(None), &RANGE), Status::Argument, &["moves no contact"]);
     for contact in [
-        Contact {
-            preload: f64::INFINITY,
-            ..middle.clone()
-        },
-        Contact {
-            mu: 0.0,
-            ..middle.clone()
-        },
+        middle.clone().with(Constant::Preload, f64::INFINITY).unwrap(),
+        middle.clone().with(Constant::Mu, 0.0).unwrap(),
     ] {
         refused(
             follow(&row(Some(contact)), &RANGE),
@@ -257,10 +251,9 @@ fn bad_solver_options_are_refused() {
 #[test]
 fn a_constant_load_that_nothing_holds_is_refused() {
     // A mass without a spring, pulled from a pressed stop, or along friction beyond its limit.
-    let stop = Contact {
-        preload: 0.5,
-        ..Contact::unilateral(Some(0), None, 1.0, 0.0)
-    };
+    let stop = Contact::unilateral(Some(0), None, 1.0, 0.0)
+        .with(Constant::Preload, 0.5)
+        .unwrap();
     for contact in [stop, Contact::jenkins(0, None, 1.0, 0.5, 1.0)] {
         let model = oscillator(1.0, 0.0).contact(&contact).force(0, 0, 2.0).build();
         refused(

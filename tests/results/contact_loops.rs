@@ -5,7 +5,7 @@ use crate::common::energy::{close, exactly};
 use crate::common::models::oscillator;
 use crate::common::{self, B1, BASE, D, R, all_harmonics, amplitude_range, harmonics, solve_at, sweep};
 use hbvib::{
-    Branch, Contact, ContactKind, ContactLoop, ContactSummary, Hooks, Model, SolverOptions, State, Status,
+    Branch, Constant, Contact, ContactKind, ContactLoop, ContactSummary, Hooks, Model, SolverOptions, State, Status,
     contact_evaluate, nonlinear_mode,
 };
 use num_complex::Complex64;
@@ -47,7 +47,7 @@ fn check_friction(branch: &Branch, point: usize, id: usize, contact: &Contact) -
     let n = 1 << 15;
     let found = branch.contact_loop(point, id, n).unwrap();
     let s = branch.contact_summary(point, id).unwrap();
-    let (k, limit) = (contact.kt, contact.slip_limit());
+    let (k, limit) = (contact.constant(Constant::Kt), contact.slip_limit());
     let largest = found.motion.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
     let rounding = 1e-13 * (limit + k * largest);
     for j in 0..n {
@@ -83,7 +83,11 @@ fn check_friction(branch: &Branch, point: usize, id: usize, contact: &Contact) -
     assert!(s.motion_max[0] - largest < 1e-6 * largest);
     assert_eq!(
         (s.load_min, s.load_max, s.open_share),
-        (contact.preload, contact.preload, 0.0)
+        (
+            contact.constant(Constant::Preload),
+            contact.constant(Constant::Preload),
+            0.0
+        )
     );
     s
 }
@@ -171,7 +175,7 @@ fn the_ring_damper_balances_contact_by_contact() {
 #[test]
 fn points_of_a_mode_have_loops() {
     let (model, contact) = (BASE.sector(), BASE.contact());
-    let unit = (contact.slip_limit() / contact.kt).log10();
+    let unit = (contact.slip_limit() / contact.constant(Constant::Kt)).log10();
     let range = amplitude_range(unit + 1.0, unit + 4.0);
     let branch = nonlinear_mode(&model, &harmonics(5), &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);
@@ -194,14 +198,12 @@ fn contacts_without_coordinate_are_recovered() {
         ..Contact::jenkins(D, Some(B1), 3e6, 0.3, 2.0)
     };
     let stuck = Contact {
-        preload: f64::INFINITY,
         sector_offset: -1,
         ..across.clone()
-    };
-    let inert = Contact {
-        mu: 0.0,
-        ..across.clone()
-    };
+    }
+    .with(Constant::Preload, f64::INFINITY)
+    .unwrap();
+    let inert = across.clone().with(Constant::Mu, 0.0).unwrap();
     for contact in [&stuck, &across, &inert] {
         model.add_contact(contact).unwrap();
     }
@@ -236,7 +238,10 @@ fn contacts_without_coordinate_are_recovered() {
             );
             assert!(found.state.iter().all(|s| *s == State::Stick));
             assert_eq!((s.work, s.slip_share, s.open_share), (0.0, 0.0, 0.0));
-            assert_eq!((s.load_min, s.load_max), (contact.preload, contact.preload));
+            assert_eq!(
+                (s.load_min, s.load_max),
+                (contact.constant(Constant::Preload), contact.constant(Constant::Preload))
+            );
         } else {
             check_friction(&branch, 0, id, contact);
         }
@@ -253,10 +258,9 @@ fn contacts_without_coordinate_are_recovered() {
 #[test]
 fn a_stop_pushes_or_is_open() {
     for (gap, preload) in [(0.2, 0.0), (0.0, 0.0), (0.0, 0.3), (-0.1, 0.0), (9.0, 0.0), (-9.0, 0.0)] {
-        let contact = Contact {
-            preload,
-            ..Contact::unilateral(None, Some(0), 3.0, gap)
-        };
+        let contact = Contact::unilateral(None, Some(0), 3.0, gap)
+            .with(Constant::Preload, preload)
+            .unwrap();
         let mut model = oscillating(&[contact]);
         model.add_force(0, 1, 0.8.into()).unwrap();
         let branch = solve_at(&model, &exactly(9), 1.7);
@@ -302,7 +306,7 @@ fn a_cubic_spring_has_a_curve_for_a_loop() {
         (0.0, 0.0, 0.0, 0.0, 0.0)
     );
     assert!(s.half_range[0] > 0.0 && s.motion_min[0] + s.motion_max[0] == 0.0);
-    assert!(matches!(model.contacts()[0].kind, ContactKind::Cubic));
+    assert!(matches!(model.contacts()[0].kind, ContactKind::Cubic(_)));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! against the laws' own formulas and marches of plain steps.
 
 use crate::common::laws::{Case, Plate, cases, range, solve};
-use hbvib::{ContactKind, ContactLoop, ContactSummary, State};
+use hbvib::{Constant, ContactKind, ContactLoop, ContactSummary, State};
 use std::f64::consts::TAU;
 
 fn of(values: &[f64], directions: usize, k: usize) -> impl Iterator<Item = f64> + '_ {
@@ -44,12 +44,16 @@ fn check_friction(case: &Case, l: &ContactLoop, s: &ContactSummary) {
     let (n, d) = (l.state.len(), l.directions);
     let normal = c.normal_direction();
     let tangents = d - usize::from(normal.is_some());
-    let load = |j: usize| normal.map_or(c.preload, |k| (c.load() - c.kn * l.motion[j * d + k]).max(0.0));
+    let load = |j: usize| {
+        normal.map_or(c.constant(Constant::Preload), |k| {
+            (c.load() - c.constant(Constant::Kn) * l.motion[j * d + k]).max(0.0)
+        })
+    };
     let loads: Vec<f64> = (0..n).map(load).collect();
     let rounding = 1e-12 * (1.0 + s.load_max);
     for (j, (f, load)) in l.force.chunks_exact(d).zip(&loads).enumerate() {
         let size = f[..tangents].iter().map(|f| f * f).sum::<f64>().sqrt();
-        let limit = c.mu * load;
+        let limit = c.constant(Constant::Mu) * load;
         match l.state[j] {
             State::Stick => assert!(size <= limit + rounding, "{}, {j}: {size} {limit}", case.name),
             State::Slip => assert!((size - limit).abs() <= rounding, "{}, {j}: {size} {limit}", case.name),
@@ -59,7 +63,7 @@ fn check_friction(case: &Case, l: &ContactLoop, s: &ContactSummary) {
             assert!((f[k] + load).abs() <= rounding, "{}, {j}", case.name);
         }
     }
-    let gap = plain_steps(l, c.kt, c.mu, &loads, tangents);
+    let gap = plain_steps(l, c.constant(Constant::Kt), c.constant(Constant::Mu), &loads, tangents);
     println!("{}: plain steps differ by {gap:.1e}", case.name);
     assert!(gap < 2e-3, "{}: {gap:e}", case.name);
     check_load(case, s, &loads);
@@ -148,9 +152,15 @@ fn forces_states_and_loads_are_those_of_the_law() {
         }
         let c = case.contact.clone();
         match &c.kind {
-            ContactKind::Jenkins | ContactKind::Friction2d | ContactKind::Friction3d => check_friction(&case, &l, &s),
-            ContactKind::Unilateral => {
-                let loads: Vec<f64> = l.motion.iter().map(|y| (c.kn * (-y - c.gap)).max(0.0)).collect();
+            ContactKind::Jenkins(_) | ContactKind::Friction2d(_) | ContactKind::Friction3d(_) => {
+                check_friction(&case, &l, &s)
+            }
+            ContactKind::Unilateral(_) => {
+                let loads: Vec<f64> = l
+                    .motion
+                    .iter()
+                    .map(|y| (c.constant(Constant::Kn) * (-y - c.constant(Constant::Gap))).max(0.0))
+                    .collect();
                 assert!(l.force.iter().zip(&loads).all(|(f, load)| (f + load).abs() < 1e-14));
                 assert!(
                     l.state
@@ -161,21 +171,27 @@ fn forces_states_and_loads_are_those_of_the_law() {
                 assert!(s.open_share > 0.1 && s.slip_share == 0.0);
                 check_load(&case, &s, &loads);
             }
-            ContactKind::Cubic => check_formula(&case, &l, |u, _| vec![0.5 * u[0] + 0.7 * u[0].powi(3)]),
-            ContactKind::Regularised => {
+            ContactKind::Cubic(_) => check_formula(&case, &l, |u, _| vec![0.5 * u[0] + 0.7 * u[0].powi(3)]),
+            ContactKind::Regularised(_) => {
                 check_formula(&case, &l, |_, v| vec![0.4 * (v[0] / 0.3).tanh()]);
-                check_load(&case, &s, &[c.preload]);
+                check_load(&case, &s, &[c.constant(Constant::Preload)]);
             }
             ContactKind::Table(table) => check_formula(&case, &l, |u, _| vec![table.force(u[0])]),
             ContactKind::Polynomial(_) => check_formula(&case, &l, |u, v| {
                 let (u, v) = (u[0], v[0]);
                 vec![0.5 * u + 0.3 * u * u + 0.2 * u.powi(3) + 0.02 * v + 0.05 * v.powi(3)]
             }),
-            ContactKind::User(_) => check_formula(&case, &l, |u, v| Plate::force([u[0], u[1]], [v[0], v[1]]).to_vec()),
+            kind => {
+                assert!(kind.user().is_some(), "a check of {kind:?} is missing");
+                check_formula(&case, &l, |u, v| Plate::force([u[0], u[1]], [v[0], v[1]]).to_vec());
+            }
         }
         let has_states = matches!(
             c.kind,
-            ContactKind::Jenkins | ContactKind::Friction2d | ContactKind::Friction3d | ContactKind::Unilateral
+            ContactKind::Jenkins(_)
+                | ContactKind::Friction2d(_)
+                | ContactKind::Friction3d(_)
+                | ContactKind::Unilateral(_)
         );
         if !has_states {
             assert!(l.state.iter().all(|s| *s == State::Stick), "{}", case.name);

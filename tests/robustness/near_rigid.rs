@@ -5,7 +5,8 @@ use crate::common::models::{Structure, chain_stiffness, diagonal};
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
 use hbvib::{
-    Branch, Contact, ContactKind, Iwan, MatrixKind, MatrixView, Model, SolverOptions, Status, Table, forced_residual,
+    Branch, Constant, Contact, ContactKind, Iwan, MatrixKind, MatrixView, Model, SolverOptions, Status, Table,
+    forced_residual,
 };
 use num_complex::Complex64;
 
@@ -94,14 +95,12 @@ impl Chain {
                 return;
             }
             "stop" => Contact::unilateral(at, to, kt, length * random.within(0.0, 1.0)),
-            "stop, pressed" => Contact {
-                preload: limit,
-                ..Contact::unilateral(at, to, kt, 0.0)
-            },
-            "friction 2D" => Contact {
-                gap: 0.1 * length,
-                ..Contact::friction_2d([a[0], a[1]], [b[0], b[1]], (kt, kt), mu, 0.0)
-            },
+            "stop, pressed" => Contact::unilateral(at, to, kt, 0.0)
+                .with(Constant::Preload, limit)
+                .unwrap(),
+            "friction 2D" => Contact::friction_2d([a[0], a[1]], [b[0], b[1]], (kt, kt), mu, 0.0)
+                .with(Constant::Gap, 0.1 * length)
+                .unwrap(),
             "friction 2D, pressed" => Contact::friction_2d([a[0], a[1]], [b[0], b[1]], (kt, kt), mu, limit),
             "friction 3D, constant load" => {
                 Contact::friction_3d([a[0], a[1], None], [b[0], b[1], None], (kt, 0.0), 1.0, limit)

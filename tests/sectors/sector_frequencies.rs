@@ -4,7 +4,7 @@ use crate::boundary_sector::{BoundarySector, N, about_z, dofs};
 use crate::common::models::sector_of_faces;
 use crate::common::refusal::refused;
 use hbvib::{
-    Contact, ContactState, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Status,
+    Constant, Contact, ContactState, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Status,
 };
 use nalgebra::{Cholesky, DMatrix};
 use num_complex::Complex64;
@@ -66,9 +66,10 @@ fn springs_inside_and_across_the_faces_turn_with_their_sector() {
             dof_b: node(b),
             frame: Some(Frame::new(n, None).unwrap()),
             sector_offset: offset as i64,
-            preload: 1.0,
             ..Contact::unilateral(None, None, kn, 0.0)
-        };
+        }
+        .with(Constant::Preload, 1.0)
+        .unwrap();
         model.add_contact(&contact).unwrap();
     }
     let (k, m) = sector.wheel(&across);

@@ -45,17 +45,7 @@ fn value(change: &Change, new: &Design, step: f64) -> f64 {
         Change::Force | Change::Factor(_) => 1.0 + step,
         Change::Direction(..) => step,
         Change::Speed => new.speed,
-        Change::Contact(constant, contact) => {
-            let contact = &new.contacts[contact.unwrap_or(0)];
-            match constant {
-                Constant::Preload => contact.preload,
-                Constant::Mu => contact.mu,
-                Constant::Kt => contact.kt,
-                Constant::Kn => contact.kn,
-                Constant::Gap => contact.gap,
-                Constant::Slider(k) => contact.slider[*k],
-            }
-        }
+        Change::Contact(constant, contact) => new.contacts[contact.unwrap_or(0)].constant(*constant),
     }
 }
 

@@ -67,10 +67,7 @@ impl Design {
             engine_order: case.engine_order,
             couplings: [Vec::new(), Vec::new(), a.next],
             rayleigh: (0.0, BETA),
-            contacts: vec![Contact {
-                preload,
-                ..case.contact()
-            }],
+            contacts: vec![case.contact().with(Constant::Preload, preload).unwrap()],
             forces: [0, 1].map(|dof| (dof, 1, case.force.into())).to_vec(),
             ..Self::plain(a.n, [a.mass, vec![0.0; a.n * a.n], a.own])
         }
@@ -124,11 +121,11 @@ impl Design {
             Change::Contact(constant, contact) => {
                 let with = new.contacts.len();
                 let range = contact.map_or(0..with, |c| c..c + 1);
-                let scale = constant_of(&mut new.contacts[range.start], *constant).abs();
+                let scale = new.contacts[range.start].constant(*constant).abs();
                 let step = step * if scale == 0.0 { 0.01 } else { scale };
                 for contact in &mut new.contacts[range] {
                     if contact.by_constant(*constant).is_some() {
-                        *constant_of(contact, *constant) += step;
+                        contact.set(*constant, contact.constant(*constant) + step).unwrap();
                     }
                 }
                 step
@@ -157,17 +154,6 @@ impl Design {
             }
         };
         (new, step)
-    }
-}
-
-fn constant_of(contact: &mut Contact, constant: Constant) -> &mut f64 {
-    match constant {
-        Constant::Preload => &mut contact.preload,
-        Constant::Mu => &mut contact.mu,
-        Constant::Kt => &mut contact.kt,
-        Constant::Kn => &mut contact.kn,
-        Constant::Gap => &mut contact.gap,
-        Constant::Slider(k) => &mut contact.slider[k],
     }
 }
 

@@ -7,12 +7,14 @@ use hbvib::MatrixKind::{Damping, Mass, Stiffness};
 use hbvib::{Amplitude, Constant, Contact, DampingForm, ModeOptions};
 use std::f64::consts::TAU;
 
-const OF_CONTACT: [Constant; 5] = [
+const OF_CONTACT: [Constant; 7] = [
     Constant::Preload,
     Constant::Mu,
     Constant::Kt,
     Constant::Kn,
     Constant::Gap,
+    Constant::Cubic,
+    Constant::Velocity,
 ];
 
 /// The constants of the first contact, and those of all together if there are several.
@@ -97,17 +99,19 @@ fn laws() -> Vec<(&'static str, Design)> {
         ("ten Jenkins", ten.collect()),
         (
             "friction 2d",
-            vec![Contact {
-                gap: 0.05,
-                ..Contact::friction_2d([Some(0), Some(2)], [None, None], (3.0, 2.0), 0.4, 1.5)
-            }],
+            vec![
+                Contact::friction_2d([Some(0), Some(2)], [None, None], (3.0, 2.0), 0.4, 1.5)
+                    .with(Constant::Gap, 0.05)
+                    .unwrap(),
+            ],
         ),
         (
             "friction 3d",
-            vec![Contact {
-                gap: -0.1,
-                ..Contact::friction_3d(space, [None; 3], (3.0, 2.0), 0.4, 1.5)
-            }],
+            vec![
+                Contact::friction_3d(space, [None; 3], (3.0, 2.0), 0.4, 1.5)
+                    .with(Constant::Gap, -0.1)
+                    .unwrap(),
+            ],
         ),
         (
             "friction 3d, constant load",
@@ -115,10 +119,11 @@ fn laws() -> Vec<(&'static str, Design)> {
         ),
         (
             "unilateral",
-            vec![Contact {
-                preload: 0.3,
-                ..Contact::unilateral(Some(2), None, 3.0, 0.1)
-            }],
+            vec![
+                Contact::unilateral(Some(2), None, 3.0, 0.1)
+                    .with(Constant::Preload, 0.3)
+                    .unwrap(),
+            ],
         ),
         ("cubic", vec![Contact::cubic(0, Some(1), 1.0, 0.3)]),
         ("regularised", vec![Contact::regularised(0, Some(1), 0.4, 1.0, 0.8)]),
@@ -127,10 +132,9 @@ fn laws() -> Vec<(&'static str, Design)> {
             vec![
                 Contact::friction_2d([Some(0), Some(2)], [Some(1), None], (3.0, 2.0), 0.4, 1.5),
                 Contact::jenkins(1, None, 2.0, 0.4, 1.0),
-                Contact {
-                    preload: 0.2,
-                    ..Contact::unilateral(Some(2), None, 3.0, 0.2)
-                },
+                Contact::unilateral(Some(2), None, 3.0, 0.2)
+                    .with(Constant::Preload, 0.2)
+                    .unwrap(),
             ],
         ),
     ]

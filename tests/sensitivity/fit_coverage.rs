@@ -99,7 +99,7 @@ fn ring() -> Case<'static> {
     let _ = BETA;
     Case {
         name: "sector with a ring",
-        truth: vec![design.contacts[0].kt, 300.0, 1.0],
+        truth: vec![design.contacts[0].constant(Constant::Kt), 300.0, 1.0],
         model: design.model(),
         parameters: vec![constant(Constant::Kt, 0), constant(Constant::Preload, 0), DAMPING],
         dof: 0,

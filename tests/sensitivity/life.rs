@@ -4,8 +4,8 @@
 use crate::common::models::{self, free_end, oscillator};
 use crate::common::{at_dof, data, number, omega_range};
 use hbvib::{
-    Contact, Duty, Error, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, Model, SolverOptions, Status, Wear,
-    best_load_for_life, forced_response, life,
+    Constant, Contact, Duty, Error, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, Model, SolverOptions, Status,
+    Wear, best_load_for_life, forced_response, life,
 };
 use std::f64::consts::PI;
 
@@ -90,7 +90,7 @@ fn by_runge_kutta(
         (0..n).map(row).collect()
     };
     let step = cycles / steps as f64;
-    let mut loads: Vec<f64> = model.contacts().iter().map(|c| c.preload).collect();
+    let mut loads: Vec<f64> = model.contacts().iter().map(|c| c.constant(Constant::Preload)).collect();
     let moved = |loads: &[f64], by: f64, slope: &[f64]| -> Vec<f64> {
         loads.iter().zip(slope).map(|(n, s)| n + by * s).collect()
     };

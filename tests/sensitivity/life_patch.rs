@@ -2,8 +2,8 @@
 
 use crate::common::{at_dof, omega_range};
 use hbvib::{
-    Contact, Duty, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model, SolverOptions, Status, Wear,
-    forced_response, life,
+    Constant, Contact, Duty, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model, SolverOptions, Status,
+    Wear, forced_response, life,
 };
 
 fn solver(harmonics: usize) -> SolverOptions {
@@ -65,7 +65,7 @@ impl Patch {
                     constants.2,
                 ),
             };
-            contact.gap = (-load).max(0.0) / self.kn;
+            contact.set(Constant::Gap, (-load).max(0.0) / self.kn).unwrap();
             model.add_contact(&contact).unwrap();
         }
         for &(dof, harmonic, value) in &self.forces {

@@ -159,14 +159,16 @@ fn largest_damping_of_the_ring_damper_is_that_of_single_backbones() {
     };
     for (case, near) in [(BASE, 208.8 * TAU), (heavy, 480.0 * TAU)] {
         let design = Design::ring_damper(&case, 300.0);
-        let kt = design.contacts[0].kt;
+        let kt = design.contacts[0].constant(Constant::Kt);
         let solver = tight(5);
         let branch = tracked(&design, constant(Constant::Kt), &solver, (kt, 0.2 * kt), near);
         println!("{} points, {:?}", branch.points(), branch.d_damping());
         assert_eq!(branch.status(), Status::Ok);
         for i in [0, branch.points() / 2, branch.points() - 1] {
             let mut other = design.clone();
-            other.contacts[0].kt = branch.parameter().unwrap()[i];
+            other.contacts[0]
+                .set(Constant::Kt, branch.parameter().unwrap()[i])
+                .unwrap();
             let at = branch.mode_at(i).unwrap();
             let options = ModeOptions {
                 choice: ModeChoice::Near(near),

@@ -3,7 +3,7 @@
 use crate::common::models::Structure;
 use crate::common::{BASE, SECTORS, Wheel, harmonics, solve_at};
 use crate::{multipliers, of_class, ordinary};
-use hbvib::{Contact, Floquet, MatrixKind, MatrixView, Model, MultiplierClass, Speed, Waves};
+use hbvib::{Constant, Contact, Floquet, MatrixKind, MatrixView, Model, MultiplierClass, Speed, Waves};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -164,9 +164,10 @@ fn a_stop_between_opposite_neighbours_has_the_multipliers_of_the_wheel() {
         for (gap_of_stop, preload) in [(0.2, 0.0), (0.0, 0.1)] {
             let stop = Contact {
                 sector_offset: 1,
-                preload,
                 ..Contact::unilateral(Some(1), Some(1), 0.7, gap_of_stop)
-            };
+            }
+            .with(Constant::Preload, preload)
+            .unwrap();
             let (sector, wheel) = (
                 sector(sectors, engine_order, &[stop.clone()]),
                 wheel(sectors, engine_order, &[stop]),

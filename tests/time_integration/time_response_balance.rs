@@ -3,7 +3,9 @@
 
 use crate::common::models::dense;
 use crate::common::{SECTORS, Wheel, all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::{Contact, Hooks, MatrixKind, MatrixView, Model, Part, Spring, TimeOptions, TimeResponse, time_response};
+use hbvib::{
+    Constant, Contact, Hooks, MatrixKind, MatrixView, Model, Part, Spring, TimeOptions, TimeResponse, time_response,
+};
 use num_complex::Complex64;
 
 fn in_time(model: &Model, omega: f64, highest: usize, start: Option<&[Complex64]>) -> TimeResponse {
@@ -215,7 +217,7 @@ fn beam(elements: usize, force: f64) -> Model {
     }
     let mut model = dense(&m, &k).rayleigh(0.4, 2e-4).build();
     let mut support = Contact::unilateral(Some(n - 2), None, 60.0, 0.0);
-    support.preload = 0.5;
+    support.set(Constant::Preload, 0.5).unwrap();
     model.add_contact(&support).unwrap();
     model.add_force(n - 2, 1, force.into()).unwrap();
     model

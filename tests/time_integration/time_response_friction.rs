@@ -6,7 +6,7 @@ use crate::common::laws_in_time::{
 };
 use crate::common::models::Structure;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
-use hbvib::{Contact, MatrixKind, SteadyMethod, TimeOptions, TimeResponse};
+use hbvib::{Constant, Contact, MatrixKind, SteadyMethod, TimeOptions, TimeResponse};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -125,7 +125,7 @@ fn friction_under_a_load_that_stays_is_a_jenkins_contact() {
 #[test]
 fn friction_without_a_coefficient_is_a_unilateral_spring() {
     let mut spring = Contact::unilateral(Some(1), None, 3.0, 0.0);
-    spring.preload = 0.5;
+    spring.set(Constant::Preload, 0.5).unwrap();
     let [a, b] = [friction(0.0, 0.5), spring].map(|c| in_time(&slanted(&[c], &forces(1.5)), 1.3, None));
     let error = relative_gap(&a.harmonics, &b.harmonics);
     println!("{error:.1e}, {} events", a.events);

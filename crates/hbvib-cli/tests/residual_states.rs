@@ -4,9 +4,9 @@
 use crate::bands::run;
 use crate::common::printed;
 use hbvib::{
-    BandOf, BandOptions, Contact, ContactKind, ForcedOptions, Frame, Hooks, LoadHistory, MatrixKind, MatrixView,
-    ModeBandOf, ModeOptions, Model, SolverOptions, SteadyMethod, TimeOptions, band, forced_response, freedom,
-    mode_band, nonlinear_mode, static_history, time_response,
+    BandOf, BandOptions, Contact, ForcedOptions, Frame, Hooks, LoadHistory, MatrixKind, MatrixView, ModeBandOf,
+    ModeOptions, Model, SolverOptions, SteadyMethod, TimeOptions, band, forced_response, freedom, mode_band,
+    nonlinear_mode, static_history, time_response,
 };
 use std::f64::consts::TAU;
 use std::fs;
@@ -28,12 +28,10 @@ fn wedge() -> Model {
         (Some(0), [-1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], 0.15),
     ] {
         let contact = Contact {
-            kind: ContactKind::Friction2d,
             dof_a: [Some(1), Some(2), None],
             dof_b: [blade, None, None],
             frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-            kn: 1.5,
-            ..Contact::jenkins(0, None, 1.0, mu, 0.0)
+            ..Contact::friction_2d([None; 2], [None; 2], (1.0, 1.5), mu, 0.0)
         };
         model.add_contact(&contact).unwrap();
     }
@@ -156,7 +154,7 @@ fn a_load_history_and_a_vibration_leave_their_places() {
     let stored = hbvib_io::read_number_arrays(&folder.join("places.npz")).unwrap();
     assert_eq!(stored[0].shape, [2, 2]);
     for (contact, place) in stored[0].real.chunks_exact(2).enumerate() {
-        assert!((place[0] - model.contacts()[contact].slider[0]).abs() < 1e-14);
+        assert!((place[0] - model.contacts()[contact].slider()[0]).abs() < 1e-14);
     }
 }
 

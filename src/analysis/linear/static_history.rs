@@ -7,6 +7,7 @@
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::analysis::linear::static_solution::{NEEDS_SPEED, linear_static_motion, static_state};
+use crate::contact::constants::Constant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -84,7 +85,7 @@ pub fn static_history(
     };
     let mut places = Vec::new();
     for contact in model.contacts() {
-        try_push(&mut places, contact.slider, CONTEXT)?;
+        try_push(&mut places, contact.slider(), CONTEXT)?;
     }
     let mut steps: Vec<StaticStep> = Vec::new();
     let load = |i: usize| Load {
@@ -290,10 +291,11 @@ impl Walk<'_> {
             evaluator.prepare(&set, &motion, self.interrupt)?;
         }
         evaluator.evaluate(&*law, &set, &motion, 1.0, &mut found, self.interrupt)?;
+        let kt = contact.constant(Constant::Kt);
         for (k, f) in found.force.iter().enumerate() {
             force[contact.places()[k]] = *f;
-            if k < contact.sliders() && contact.kt > 0.0 {
-                place[k] = motion[k] - f / contact.kt;
+            if k < contact.sliders() && kt > 0.0 {
+                place[k] = motion[k] - f / kt;
             }
         }
         Ok(())

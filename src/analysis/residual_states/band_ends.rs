@@ -268,7 +268,7 @@ pub(crate) fn with_ends<'a>(
             let found = own
                 .iter()
                 .position(|s| (s.contact, s.direction) == (contact, direction));
-            let place = found.map_or(held.model.contacts()[contact].slider[direction], |j| {
+            let place = found.map_or(held.model.contacts()[contact].slider()[direction], |j| {
                 reached.end.places[j]
             });
             try_push(&mut places, place, CONTEXT)?;

@@ -8,6 +8,7 @@ use crate::analysis::residual_states::band_search::Search;
 use crate::analysis::residual_states::freedom::free_sliders;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, keeps_force};
+use crate::contact::constants::Constant;
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
@@ -74,7 +75,7 @@ impl<'a> Starts<'a> {
                     contact: number,
                     direction,
                     middle: 0.5 * (summary.motion_min[direction] + summary.motion_max[direction]),
-                    reach: contact.mu * summary.load_max / contact.stiffness(direction),
+                    reach: contact.constant(Constant::Mu) * summary.load_max / contact.stiffness(direction),
                 };
                 if one.middle.is_finite() && one.reach.is_finite() {
                     try_push(&mut sliders, one, CONTEXT)?;

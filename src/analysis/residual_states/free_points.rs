@@ -6,7 +6,7 @@
 use crate::analysis::residual_states::held_sliders::HELD;
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, keeps_force, stuck_contacts};
 use crate::condense::Condensed;
-use crate::contact::force_derivative::Constant;
+use crate::contact::constants::Constant;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
@@ -194,7 +194,11 @@ impl<'a> FreePoints<'a> {
         let mut contacts = Vec::new();
         for of_contact in sliders.chunk_by(|a, b| a.contact == b.contact) {
             let contact = of_contact[0].contact;
-            held.set_constant(contact, Constant::Mu, HELD * model.contacts()[contact].mu)?;
+            held.set_constant(
+                contact,
+                Constant::Mu,
+                HELD * model.contacts()[contact].constant(Constant::Mu),
+            )?;
             try_push(&mut contacts, contact, CONTEXT)?;
         }
         let condensed = branch.condensed_at(point);

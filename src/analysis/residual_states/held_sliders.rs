@@ -9,7 +9,7 @@
 use crate::analysis::residual_states::slip_margins::{Held, Margin};
 use crate::analysis::residual_states::stuck_contacts::StuckSlider;
 use crate::condense::Condensed;
-use crate::contact::force_derivative::Constant;
+use crate::contact::constants::Constant;
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -112,7 +112,7 @@ impl<'a> HeldSliders<'a> {
     ) -> Result<Self> {
         let mut held = model.separate_clone()?;
         for slider in sliders.iter().filter(|slider| slider.direction == 0) {
-            let mu = HELD * model.contacts()[slider.contact].mu;
+            let mu = HELD * model.contacts()[slider.contact].constant(Constant::Mu);
             held.set_constant(slider.contact, Constant::Mu, mu)?;
         }
         // The mean and the even harmonics are carried wherever the sliders are.

@@ -6,6 +6,7 @@
 
 use crate::analysis::modes::nonlinear_mode::nonlinear_mode;
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, stuck_contacts};
+use crate::contact::constants::Constant;
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
@@ -138,7 +139,7 @@ pub fn mode_band(
     let mut reach = Vec::new();
     for slider in &sliders {
         let summary = branch.contact_summary_with(point, slider.contact, &interrupt)?;
-        let limit = model.contacts()[slider.contact].mu * summary.load_max;
+        let limit = model.contacts()[slider.contact].constant(Constant::Mu) * summary.load_max;
         try_push(&mut reach, limit / slider.stiffness, CONTEXT)?;
     }
     // The harmonics of the point, and the linear mode that it came from.

@@ -6,6 +6,7 @@
 
 use crate::analysis::residual_states::stuck_contacts::StuckSlider;
 use crate::condense::Condensed;
+use crate::contact::constants::Constant;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::{HarmonicSet, TurningPoints, jet};
 use crate::interrupt::Interrupt;
@@ -96,9 +97,11 @@ impl Held<'_> {
     /// μ, kn and n₀ of a contact, kn = 0 under a constant load.
     fn load(&self, slider: &StuckSlider) -> [f64; 3] {
         let contact = &self.model.contacts()[slider.contact];
+        let [mu, kn, preload] =
+            [Constant::Mu, Constant::Kn, Constant::Preload].map(|constant| contact.constant(constant));
         match slider.normal {
-            Some(_) => [contact.mu, contact.kn, contact.load()],
-            None => [contact.mu, 0.0, contact.preload],
+            Some(_) => [mu, kn, contact.load()],
+            None => [mu, 0.0, preload],
         }
     }
 

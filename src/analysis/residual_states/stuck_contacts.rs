@@ -3,6 +3,7 @@
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
+use crate::contact::constants::Constant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
@@ -36,7 +37,10 @@ pub(crate) struct Stuck {
 
 /// Whether a contact keeps a force where it sticks.
 pub(crate) fn keeps_force(contact: &Contact) -> bool {
-    contact.sliders() > 0 && contact.role() == Role::Active && contact.kt > 0.0 && contact.mu > 0.0
+    let has_friction = [Constant::Kt, Constant::Mu]
+        .iter()
+        .all(|constant| contact.constant(*constant) > 0.0);
+    contact.sliders() > 0 && contact.role() == Role::Active && has_friction
 }
 
 /// The sliders that stick at a packed motion in the solver's units. `model` is the model at the frequency of the solution.

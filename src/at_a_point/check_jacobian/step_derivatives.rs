@@ -4,7 +4,7 @@
 use crate::at_a_point::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
 use crate::at_a_point::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
 use crate::contact::law::Hysteretic;
-use crate::contact::laws::user_law::User;
+use crate::contact::laws::User;
 use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 

@@ -8,8 +8,8 @@
 //! k + ¾·c·A². An oscillator on such a spring is Duffing's; see Krack & Gross, Harmonic Balance
 //! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
 
-use crate::contact::constants::{Constants, Role};
-use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
+use crate::contact::constants::{Constant, Role, named_constants};
+use crate::contact::force_derivative::{Combination, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Spectral};
 use crate::contact::laws::polynomial::Polynomial;
 use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
@@ -18,29 +18,20 @@ use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// A cubic spring of the caller.
-#[derive(Clone, Copy, Debug)]
-pub struct CubicContact {
-    kt: f64,
-    cubic: f64,
+/// A cubic spring, in the units of the caller or of a solver.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cubic {
+    /// k, stiffness at small motion, force per length, at least 0.
+    pub kt: f64,
+    /// c, force per length cubed, of any sign.
+    pub cubic: f64,
 }
 
-impl CubicContact {
-    pub(super) fn new(constants: &Constants) -> Self {
-        Self {
-            kt: constants.kt,
-            cubic: constants.cubic,
-        }
-    }
-}
+named_constants!(Cubic, 1, Kt => kt, Cubic => cubic);
 
-impl ContactLaw for CubicContact {
+impl ContactLaw for Cubic {
     fn name(&self) -> &'static str {
         "cubic spring"
-    }
-
-    fn constants(&self) -> &'static [&'static str] {
-        &["kt", "cubic"]
     }
 
     fn check_stiffness(&self) -> Result<()> {
@@ -69,13 +60,23 @@ impl ContactLaw for CubicContact {
         self.kt
     }
 
+    /// The cubic term is f − kt·x.
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
-        (constant == Constant::Kt).then(|| ForceDerivative::tangential(Combination::MOTION))
+        let by_cubic = Combination {
+            force: 1.0,
+            motion: -self.kt,
+            ..Combination::ZERO
+        };
+        match constant {
+            Constant::Kt => Some(ForceDerivative::tangential(Combination::MOTION)),
+            Constant::Cubic => Some(ForceDerivative::by_factor(self.cubic, by_cubic)),
+            _ => None,
+        }
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
         Ok(Arc::new(Cubic {
-            linear: self.kt,
+            kt: self.kt,
             cubic: self.cubic * length * length,
         }))
     }
@@ -88,15 +89,6 @@ impl ContactLaw for CubicContact {
             ..LawInTime::smooth(Arc::new(law))
         })
     }
-}
-
-/// Constants of a cubic spring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cubic {
-    /// k, stiffness at small motion
-    pub linear: f64,
-    /// c, force per length cubed, of any sign
-    pub cubic: f64,
 }
 
 impl Law for Cubic {
@@ -139,7 +131,7 @@ impl Spectral for Cubic {
     }
 
     fn linear(&self) -> f64 {
-        self.linear
+        self.kt
     }
 
     fn degree(&self) -> f64 {
@@ -147,6 +139,6 @@ impl Spectral for Cubic {
     }
 
     fn at(&self, x: f64) -> f64 {
-        x * (self.linear + self.cubic * x * x)
+        x * (self.kt + self.cubic * x * x)
     }
 }

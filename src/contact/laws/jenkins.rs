@@ -8,9 +8,9 @@
 //! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
 //! doi:10.1115/1.1539868.
 
-use crate::contact::constants::{Constants, Role, needs_stiffness};
+use crate::contact::constants::{Constant, Role, named_constants, needs_stiffness, slip_limit};
 use crate::contact::contact_state::State;
-use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
+use crate::contact::force_derivative::{Combination, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d::friction_2d_events::Slider;
 use crate::contact::laws::saturated::Saturated;
@@ -25,45 +25,40 @@ use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A Jenkins contact of the caller.
-#[derive(Clone, Copy, Debug)]
-pub struct JenkinsContact {
-    kt: f64,
-    mu: f64,
-    preload: f64,
-    slip_limit: f64,
-    slider: f64,
+/// A Jenkins contact in the caller's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jenkins {
+    /// Stiffness while it sticks, force per length, at least 0; infinite: rigid while it sticks.
+    pub kt: f64,
+    /// Friction coefficient, at least 0.
+    pub mu: f64,
+    /// Normal load, force, at least 0; infinite sticks for ever.
+    pub preload: f64,
+    /// Place of the slider before any motion. The force of a contact that sticks through the period is kt·(x − slider).
+    pub slider: f64,
 }
 
-impl JenkinsContact {
-    pub(super) fn new(constants: &Constants) -> Self {
-        Self {
-            kt: constants.kt,
-            mu: constants.mu,
-            preload: constants.preload,
-            slip_limit: constants.slip_limit(),
-            slider: constants.slider[0],
-        }
+named_constants!(Jenkins, 0, Kt => kt, Mu => mu, Preload => preload, Slider(0) => slider);
+
+impl Jenkins {
+    fn slip_limit(&self) -> f64 {
+        slip_limit(self.mu, self.preload)
     }
 }
 
-impl ContactLaw for JenkinsContact {
+impl ContactLaw for Jenkins {
     fn name(&self) -> &'static str {
         "Jenkins contact"
     }
 
-    fn constants(&self) -> &'static [&'static str] {
-        &["kt", "mu", "preload"]
-    }
-
     fn check_stiffness(&self) -> Result<()> {
-        needs_stiffness("kt", self.kt)
+        needs_stiffness(Constant::Kt, self.kt)
     }
 
     fn role(&self) -> Role {
-        if self.kt == 0.0 || self.slip_limit == 0.0 {
+        if self.kt == 0.0 || self.slip_limit() == 0.0 {
             Role::Inert
-        } else if self.slip_limit.is_infinite() {
+        } else if self.slip_limit().is_infinite() {
             Role::Spring
         } else {
             Role::Active
@@ -82,24 +77,12 @@ impl ContactLaw for JenkinsContact {
         false
     }
 
-    fn may_stick(&self) -> bool {
-        true
-    }
-
-    fn sliders(&self) -> usize {
-        1
-    }
-
     fn largest_force(&self) -> f64 {
-        self.slip_limit
+        self.slip_limit()
     }
 
     fn is_preloaded(&self) -> bool {
         self.role() == Role::Active && self.slider != 0.0
-    }
-
-    fn has_preload(&self) -> bool {
-        true
     }
 
     /// A slider that never slips is a spring.
@@ -112,16 +95,12 @@ impl ContactLaw for JenkinsContact {
             Constant::Mu => ForceDerivative::by_factor(self.mu, Combination::BY_LIMIT),
             Constant::Preload => ForceDerivative::by_factor(self.preload, Combination::BY_LIMIT),
             Constant::Slider(0) => ForceDerivative::tangential(Combination::of_slider(0)),
-            Constant::Kn | Constant::Gap | Constant::Slider(_) => return None,
+            _ => return None,
         })
     }
 
-    fn may_stick_for_ever(&self) -> bool {
-        true
-    }
-
-    fn may_be_rigid(&self) -> bool {
-        true
+    fn may_be_infinite(&self, constant: Constant) -> bool {
+        matches!(constant, Constant::Kt | Constant::Preload)
     }
 
     fn normal_load(&self, _y: f64) -> f64 {
@@ -129,9 +108,9 @@ impl ContactLaw for JenkinsContact {
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
-        Ok(Arc::new(Jenkins {
+        Ok(Arc::new(ScaledJenkins {
             stiffness: self.kt,
-            limit: self.slip_limit / length,
+            limit: self.slip_limit() / length,
             slider: self.slider / length,
         }))
     }
@@ -140,7 +119,7 @@ impl ContactLaw for JenkinsContact {
         if self.slider != 0.0 {
             return None;
         }
-        let limit = self.slip_limit / length;
+        let limit = self.slip_limit() / length;
         Some(Arc::new(Saturated { stiffness, limit }))
     }
 
@@ -152,14 +131,14 @@ impl ContactLaw for JenkinsContact {
             );
         }
         Ok(LawInTime::events(
-            Slider::under_constant_load(self.kt, self.slip_limit).starting_at(self.slider),
+            Slider::under_constant_load(self.kt, self.slip_limit()).starting_at(self.slider),
         ))
     }
 }
 
-/// Constants of a Jenkins element.
+/// A Jenkins element in the units of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Jenkins {
+pub struct ScaledJenkins {
     /// k
     pub stiffness: f64,
     /// fc, infinite for a contact that sticks for ever
@@ -175,7 +154,7 @@ struct Stick {
     sign: f64,
 }
 
-impl Jenkins {
+impl ScaledJenkins {
     /// No spring or no friction: no force.
     fn is_inert(&self) -> bool {
         self.stiffness == 0.0 || self.limit == 0.0
@@ -215,7 +194,7 @@ impl Jenkins {
     }
 }
 
-impl Law for Jenkins {
+impl Law for ScaledJenkins {
     fn is_odd(&self) -> bool {
         self.slider == 0.0
     }
@@ -239,7 +218,7 @@ impl Law for Jenkins {
     }
 }
 
-impl PiecewiseLinear for Jenkins {
+impl PiecewiseLinear for ScaledJenkins {
     fn pieces(
         &self,
         set: &HarmonicSet,

@@ -9,6 +9,7 @@
 mod polynomial_terms;
 
 use crate::byte_stream::{ByteReader, ByteWriter};
+use crate::contact::constants::LawData;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::laws::polynomial::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
 use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
@@ -27,6 +28,10 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
+    /// Number of the law in saved models.
+    /// Kind: fixed.
+    pub(super) const POLYNOMIAL_NUMBER: u8 = 7;
+
     /// The sum of monomials in `directions` relative motions. Terms of equal powers are merged, and
     /// those that vanish left out.
     ///
@@ -130,22 +135,6 @@ impl Polynomial {
         })
     }
 
-    /// Writes the polynomial.
-    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) {
-        out.f64(self.length);
-        out.count(self.directions);
-        out.count(self.content.terms.len());
-        for term in &self.content.terms {
-            out.count(term.direction);
-            out.f64(term.coefficient);
-            out.count(term.count);
-            for factor in &self.content.factors[term.first..term.first + term.count] {
-                out.count(factor.variable);
-                out.u32(factor.power);
-            }
-        }
-    }
-
     /// Reads a polynomial.
     ///
     /// # Errors
@@ -199,6 +188,28 @@ impl Polynomial {
     pub fn linear_stiffness(&self, i: usize, j: usize) -> f64 {
         let linear = |t: &&Term| t.degree == 1 && t.direction == i && self.content.factors[t.first].variable == j;
         self.content.terms.iter().find(linear).map_or(0.0, |t| t.coefficient)
+    }
+}
+
+impl LawData for Polynomial {
+    fn number(&self) -> u8 {
+        Self::POLYNOMIAL_NUMBER
+    }
+
+    fn save_to(&self, out: &mut ByteWriter<'_>) -> Result<()> {
+        out.f64(self.length);
+        out.count(self.directions);
+        out.count(self.content.terms.len());
+        for term in &self.content.terms {
+            out.count(term.direction);
+            out.f64(term.coefficient);
+            out.count(term.count);
+            for factor in &self.content.factors[term.first..term.first + term.count] {
+                out.count(factor.variable);
+                out.u32(factor.power);
+            }
+        }
+        Ok(())
     }
 }
 

@@ -5,8 +5,8 @@
 //! of tanh from the real axis of τ; N samples leave an error of about e^{−(N−H)δ}. The number of
 //! samples that suffices hence depends on V/v₀, which is known with the solution only.
 
-use crate::contact::constants::{Constants, Role};
-use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
+use crate::contact::constants::{Constant, Role, named_constants, slip_limit};
+use crate::contact::force_derivative::{Combination, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
 use crate::contact::samples::{Samples, automatic_samples};
@@ -17,41 +17,36 @@ use std::sync::Arc;
 /// Kind: tuned; measured on: not recorded.
 const REGULARISED_REFINEMENT: usize = 4;
 
-/// Regularised friction of the caller.
-#[derive(Clone, Copy, Debug)]
-pub struct RegularisedContact {
-    slip_limit: f64,
-    mu: f64,
-    preload: f64,
-    velocity: f64,
+/// Regularised friction in the caller's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Regularised {
+    /// Friction coefficient, at least 0.
+    pub mu: f64,
+    /// Normal load, force, at least 0.
+    pub preload: f64,
+    /// Velocity at which the force reaches 76 % (tanh 1) of its limit, above 0.
+    pub velocity: f64,
 }
 
-impl RegularisedContact {
-    pub(super) fn new(constants: &Constants) -> Self {
-        Self {
-            slip_limit: constants.slip_limit(),
-            mu: constants.mu,
-            preload: constants.preload,
-            velocity: constants.velocity,
-        }
+named_constants!(Regularised, 5, Mu => mu, Preload => preload, Velocity => velocity);
+
+impl Regularised {
+    fn slip_limit(&self) -> f64 {
+        slip_limit(self.mu, self.preload)
     }
 }
 
-impl ContactLaw for RegularisedContact {
+impl ContactLaw for Regularised {
     fn name(&self) -> &'static str {
         "regularised friction"
     }
 
-    fn constants(&self) -> &'static [&'static str] {
-        &["mu", "preload", "velocity"]
-    }
-
     fn check(&self) -> Result<()> {
-        TanhFriction::new(self.slip_limit, self.velocity).map(|_| ())
+        TanhFriction::new(self.slip_limit(), self.velocity).map(|_| ())
     }
 
     fn role(&self) -> Role {
-        if self.slip_limit == 0.0 {
+        if self.slip_limit() == 0.0 {
             Role::Inert
         } else {
             Role::Active
@@ -67,27 +62,27 @@ impl ContactLaw for RegularisedContact {
     }
 
     fn resistance(&self) -> f64 {
-        self.slip_limit / self.velocity
+        self.slip_limit() / self.velocity
     }
 
     fn largest_force(&self) -> f64 {
-        self.slip_limit
-    }
-
-    fn has_preload(&self) -> bool {
-        true
+        self.slip_limit()
     }
 
     fn load_scales_motion(&self) -> bool {
         false
     }
 
-    /// The force is proportional to μ and to the load.
+    /// The force is proportional to μ and to the load, and a function of y'/velocity.
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
         match constant {
             Constant::Mu => Some(ForceDerivative::by_factor(self.mu, Combination::FORCE)),
             Constant::Preload => Some(ForceDerivative::by_factor(self.preload, Combination::FORCE)),
-            Constant::Kt | Constant::Kn | Constant::Gap | Constant::Slider(_) => None,
+            Constant::Velocity => Some(ForceDerivative::tangential(Combination {
+                by_tangential: -1.0 / self.velocity,
+                ..Combination::ZERO
+            })),
+            _ => None,
         }
     }
 
@@ -96,7 +91,7 @@ impl ContactLaw for RegularisedContact {
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
-        let law = TanhFriction::new(self.slip_limit, self.velocity)?;
+        let law = TanhFriction::new(self.slip_limit(), self.velocity)?;
         Ok(Arc::new(law.in_units(length)))
     }
 
@@ -105,7 +100,7 @@ impl ContactLaw for RegularisedContact {
     }
 }
 
-/// Constants of regularised friction.
+/// Regularised friction in the units of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TanhFriction {
     limit: f64,

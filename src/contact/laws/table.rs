@@ -6,6 +6,7 @@
 //! are for a unilateral spring, the table of two lines.
 
 use crate::byte_stream::{ByteReader, ByteWriter};
+use crate::contact::constants::LawData;
 use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
@@ -44,6 +45,10 @@ pub struct Table {
 }
 
 impl Table {
+    /// Number of the law in saved models.
+    /// Kind: fixed.
+    pub(super) const TABLE_NUMBER: u8 = 6;
+
     /// The spring through points (displacement, force), at least two, of ascending displacement.
     ///
     /// # Errors
@@ -101,17 +106,6 @@ impl Table {
             lines: Arc::new(lines),
             length: 1.0,
         })
-    }
-
-    /// Writes the table.
-    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) {
-        out.f64(self.length);
-        out.count(self.lines.len());
-        for line in self.lines.iter() {
-            for value in [line.from, line.slope, line.offset, line.noise] {
-                out.f64(value);
-            }
-        }
     }
 
     /// Reads a table.
@@ -233,6 +227,23 @@ impl Table {
             anchor: None,
             offset: self.scaled(line.offset),
         });
+    }
+}
+
+impl LawData for Table {
+    fn number(&self) -> u8 {
+        Self::TABLE_NUMBER
+    }
+
+    fn save_to(&self, out: &mut ByteWriter<'_>) -> Result<()> {
+        out.f64(self.length);
+        out.count(self.lines.len());
+        for line in self.lines.iter() {
+            for value in [line.from, line.slope, line.offset, line.noise] {
+                out.f64(value);
+            }
+        }
+        Ok(())
     }
 }
 

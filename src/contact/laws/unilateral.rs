@@ -6,9 +6,9 @@
 //! stiffness spectrum, F = k·T(S)·X + k·g·ĝ (Petrov & Ewins 2004, doi:10.1115/1.1644557, treat it
 //! as the normal part of a friction contact).
 
-use crate::contact::constants::{Constants, Role, needs_stiffness};
+use crate::contact::constants::{Constant, Role, clearance, load, named_constants, needs_stiffness};
 use crate::contact::contact_state::State;
-use crate::contact::force_derivative::{Constant, ForceDerivative};
+use crate::contact::force_derivative::ForceDerivative;
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
 use crate::contact::onset::Onset;
@@ -22,33 +22,29 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A unilateral spring of the caller.
-#[derive(Clone, Copy, Debug)]
-pub struct UnilateralContact {
-    kn: f64,
-    gap: f64,
-    clearance: f64,
-    load: f64,
+/// A unilateral spring in the caller's units: N = max(preload + kn·(closing − gap), 0), where closing is the motion of side b
+/// over that of side a.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Unilateral {
+    /// Stiffness while it is closed, force per length, at least 0.
+    pub kn: f64,
+    /// Normal load at rest where the gap is 0, force, at least 0.
+    pub preload: f64,
+    /// Closing at which a spring without preload begins to press, of any sign.
+    pub gap: f64,
 }
 
-impl UnilateralContact {
-    pub(super) fn new(constants: &Constants) -> Self {
-        Self {
-            kn: constants.kn,
-            gap: constants.gap,
-            clearance: constants.clearance(),
-            load: constants.load(),
-        }
+named_constants!(Unilateral, 2, Kn => kn, Preload => preload, Gap => gap);
+
+impl Unilateral {
+    fn clearance(&self) -> f64 {
+        clearance(self.kn, self.preload, self.gap)
     }
 }
 
-impl ContactLaw for UnilateralContact {
+impl ContactLaw for Unilateral {
     fn name(&self) -> &'static str {
         "unilateral spring"
-    }
-
-    fn constants(&self) -> &'static [&'static str] {
-        &["kn", "preload", "gap"]
     }
 
     fn places(&self) -> &'static [usize] {
@@ -56,7 +52,7 @@ impl ContactLaw for UnilateralContact {
     }
 
     fn check_stiffness(&self) -> Result<()> {
-        needs_stiffness("kn", self.kn)
+        needs_stiffness(Constant::Kn, self.kn)
     }
 
     fn role(&self) -> Role {
@@ -64,7 +60,7 @@ impl ContactLaw for UnilateralContact {
     }
 
     fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
-        if self.clearance < 0.0 { self.kn } else { 0.0 }
+        if self.clearance() < 0.0 { self.kn } else { 0.0 }
     }
 
     fn stiffness(&self, _k: usize) -> f64 {
@@ -75,12 +71,8 @@ impl ContactLaw for UnilateralContact {
         false
     }
 
-    fn has_preload(&self) -> bool {
-        true
-    }
-
     fn is_preloaded(&self) -> bool {
-        self.kn > 0.0 && self.load >= 0.0
+        self.kn > 0.0 && load(self.kn, self.preload, self.gap) >= 0.0
     }
 
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
@@ -89,42 +81,42 @@ impl ContactLaw for UnilateralContact {
             Constant::Preload | Constant::Gap | Constant::Kn => {
                 Some(ForceDerivative::of_normal_load(constant, self.kn, self.gap))
             }
-            Constant::Mu | Constant::Kt | Constant::Slider(_) => None,
+            _ => None,
         }
     }
 
     fn normal_load(&self, y: f64) -> f64 {
         match self.role() {
-            Role::Active => (self.kn * (-y - self.clearance)).max(0.0),
+            Role::Active => (self.kn * (-y - self.clearance())).max(0.0),
             Role::Inert | Role::Spring => 0.0,
         }
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
-        Ok(Arc::new(Unilateral {
+        Ok(Arc::new(ScaledUnilateral {
             stiffness: self.kn,
-            gap: self.clearance / length,
+            gap: self.clearance() / length,
         }))
     }
 
     fn in_time(&self) -> Result<LawInTime> {
-        Ok(LawInTime::events(Unilateral {
+        Ok(LawInTime::events(ScaledUnilateral {
             stiffness: self.kn,
-            gap: self.clearance,
+            gap: self.clearance(),
         }))
     }
 }
 
-/// Constants of a unilateral spring.
+/// A unilateral spring in the units of a solver, its preload a part of the gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unilateral {
+pub struct ScaledUnilateral {
     /// k
     pub stiffness: f64,
     /// g, of either sign
     pub gap: f64,
 }
 
-impl Unilateral {
+impl ScaledUnilateral {
     fn push(&self, start: f64, end: f64, closed: bool, pieces: &mut Vec<Piece>) {
         if end <= start {
             return;
@@ -144,7 +136,7 @@ impl Unilateral {
     }
 }
 
-impl Law for Unilateral {
+impl Law for ScaledUnilateral {
     fn is_odd(&self) -> bool {
         false
     }
@@ -162,7 +154,7 @@ impl Law for Unilateral {
     }
 }
 
-impl PiecewiseLinear for Unilateral {
+impl PiecewiseLinear for ScaledUnilateral {
     fn pieces(
         &self,
         set: &HarmonicSet,
@@ -222,7 +214,7 @@ impl PiecewiseLinear for Unilateral {
 }
 
 /// Open or closed, f = k·(x + g) where that is negative.
-impl EventLaw for Unilateral {
+impl EventLaw for ScaledUnilateral {
     fn begin(&self, at: &Instant, _e: &mut f64) -> (Mode, Option<Mode>) {
         let closed = at.motion[0] < -self.gap;
         (if closed { Mode::Closed } else { Mode::Open }, None)

@@ -10,6 +10,7 @@
 mod user_states;
 
 use crate::byte_stream::ByteWriter;
+use crate::contact::constants::LawData;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::linearisation::Range;
 use crate::contact::samples::{Samples, automatic_samples};
@@ -208,9 +209,20 @@ pub(crate) fn check_block(name: &str, values: &[f64], (rows, columns): (usize, u
     Err(Error::new(Status::Callback, message).recoverable())
 }
 
-impl User {
-    /// Writes what is known of the force into a digest.
-    pub(crate) fn digest_to(&self, out: &mut ByteWriter<'_>) {
+impl LawData for User {
+    fn number(&self) -> u8 {
+        8
+    }
+
+    fn save_to(&self, _out: &mut ByteWriter<'_>) -> Result<()> {
+        fail!(
+            Unsupported,
+            "a force of the caller is a function of its program, which cannot be saved"
+        )
+    }
+
+    /// Writes what is known of the force.
+    fn digest_to(&self, out: &mut ByteWriter<'_>) {
         for count in [self.directions, self.states, self.samples] {
             out.count(count);
         }
@@ -238,10 +250,6 @@ impl fmt::Debug for User {
 const USER_LAW_FAR: f64 = 1e6;
 
 impl ContactLaw for User {
-    fn is_of_caller(&self) -> bool {
-        true
-    }
-
     fn name(&self) -> &'static str {
         "law of the caller"
     }

@@ -1,6 +1,7 @@
 //! Rotation of a model: its speed, the loads of its contacts that follow from it, unbalance, and the model at one
 //! frequency.
 
+use crate::contact::constants::Constant;
 use crate::error::{Result, fail, try_push};
 use crate::model::Model;
 pub use crate::model::matrices::speed::{Speed, SpeedLoad};
@@ -54,7 +55,7 @@ impl Model {
         let before = self.speed_loads().iter().position(|load| load.contact == id);
         let gap = match (before, self.contacts().get(id)) {
             (Some(at), _) => self.speed_loads()[at].gap,
-            (None, Some(contact)) => contact.gap,
+            (None, Some(contact)) => contact.constant(Constant::Gap),
             (None, None) => 0.0,
         };
         self.change_preload(id, preload, gap)?;
@@ -80,7 +81,10 @@ impl Model {
     /// # Errors
     /// As [`Self::set_preload`].
     pub(crate) fn set_worn_load(&mut self, id: usize, load: f64) -> Result<()> {
-        let kn = self.contacts().get(id).map_or(0.0, |contact| contact.kn);
+        let kn = self
+            .contacts()
+            .get(id)
+            .map_or(0.0, |contact| contact.constant(Constant::Kn));
         let gap = if kn > 0.0 { (-load).max(0.0) / kn } else { 0.0 };
         self.change_preload(id, load.max(0.0), gap)?;
         self.speed_loads_mut().retain(|of| of.contact != id);

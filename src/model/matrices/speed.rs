@@ -1,6 +1,7 @@
 //! The speed of rotation Ω, fixed or tied to the frequency of the response, and normal loads N₀ + cΩ².
 
 use crate::contact::Contact;
+use crate::contact::constants::Constant;
 
 /// Speed of rotation Ω in rad per time unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,21 +45,14 @@ impl SpeedLoad {
     }
 
     fn under(&self, contact: &Contact, load: f64) -> Contact {
-        let opening = if load < 0.0 && contact.kn > 0.0 {
-            -load / contact.kn
-        } else {
-            0.0
-        };
-        Contact {
-            preload: load.max(0.0),
-            gap: self.gap + opening,
-            ..contact.clone()
-        }
+        let kn = contact.constant(Constant::Kn);
+        let opening = if load < 0.0 && kn > 0.0 { -load / kn } else { 0.0 };
+        contact.under(load.max(0.0), self.gap + opening)
     }
 
     /// n₀ of a load n₀ + c Ω² with the gap counted in.
     pub fn load_at_rest(&self, contact: &Contact) -> f64 {
-        self.preload - contact.kn * self.gap
+        self.preload - contact.constant(Constant::Kn) * self.gap
     }
 
     /// A load that stands for all speeds Ω = pω: |n₀| + |c|p², above zero.

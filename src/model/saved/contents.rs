@@ -1,5 +1,6 @@
 //! Contents of a model, read back: blocks of its matrices, normal loads as they were given.
 
+use crate::contact::constants::Constant;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::model::Model;
@@ -46,8 +47,13 @@ impl Model {
     pub fn given_load(&self, id: usize) -> Option<(f64, f64, f64)> {
         let contact = self.contacts().get(id)?;
         let at_speed = self.speed_loads().iter().find(|load| load.contact == id);
-        Some(at_speed.map_or((contact.preload, 0.0, contact.gap), |load| {
-            (load.preload, load.per_speed2, load.gap)
-        }))
+        Some(at_speed.map_or(
+            (
+                contact.constant(Constant::Preload),
+                0.0,
+                contact.constant(Constant::Gap),
+            ),
+            |load| (load.preload, load.per_speed2, load.gap),
+        ))
     }
 }

@@ -146,7 +146,7 @@ impl Model {
             contacts: digest(|out| {
                 for contact in &self.contacts {
                     contact.digest_to(out);
-                    for place in contact.slider {
+                    for place in contact.slider() {
                         out.f64(place);
                     }
                 }

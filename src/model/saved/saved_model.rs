@@ -8,6 +8,7 @@
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
+use crate::contact::constants::Constant;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::excitation::{Excitation, Force};
 use crate::model::few_motions::reduced_wave::KeptWaves;
@@ -142,7 +143,7 @@ impl Model {
         }
         if has_places {
             for contact in &self.contacts {
-                for place in contact.slider {
+                for place in contact.slider() {
                     out.f64(place);
                 }
             }
@@ -239,7 +240,9 @@ impl Model {
             model.load_aero(input)?;
         }
         for (i, contact) in model.contacts.iter_mut().enumerate().filter(|_| has_places) {
-            contact.slider = [input.f64()?, input.f64()?];
+            for k in 0..2 {
+                contact.set(Constant::Slider(k), input.f64()?)?;
+            }
             contact
                 .check_constants()
                 .map_err(|e| e.at(format_args!("contact {i}")))?;

@@ -1,6 +1,5 @@
 //! Unknowns of a fit: parameters of the model with start, bounds, prior, scale and ties.
 
-use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
 use crate::model::matrices::speed::Speed;
@@ -70,14 +69,7 @@ fn present(model: &Model, parameter: &Parameter<'_>) -> f64 {
             let of = |c: &&crate::contact::Contact| c.by_constant(*constant).is_some();
             let mut all = model.contacts().iter();
             let first = contact.map_or_else(|| all.find(of), |id| model.contacts().get(id));
-            first.map_or(0.0, |c| match constant {
-                Constant::Preload => c.preload,
-                Constant::Mu => c.mu,
-                Constant::Kt => c.kt,
-                Constant::Kn => c.kn,
-                Constant::Gap => c.gap,
-                Constant::Slider(k) => c.slider[*k],
-            })
+            first.map_or(0.0, |contact| contact.constant(*constant))
         }
     }
 }
@@ -86,7 +78,7 @@ fn present(model: &Model, parameter: &Parameter<'_>) -> f64 {
 fn is_positive(parameter: &Parameter<'_>) -> bool {
     match parameter {
         Parameter::Force | Parameter::Factor { .. } => true,
-        Parameter::Contact { constant, .. } => !matches!(constant, Constant::Gap | Constant::Slider(_)),
+        Parameter::Contact { constant, .. } => !constant.has_any_sign(),
         Parameter::Direction { .. } | Parameter::Speed => false,
     }
 }

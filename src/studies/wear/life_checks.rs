@@ -1,5 +1,6 @@
 //! Checks of the options of a life for a model.
 
+use crate::contact::constants::Constant;
 use crate::error::{Result, fail, try_copy};
 use crate::model::Model;
 use crate::options::{LifeFollow, LifeOptions, MOST_WORN};
@@ -97,7 +98,7 @@ impl LifeOptions<'_> {
         let n = self.wear.len();
         if self.stiffness.is_empty() {
             for (i, wear) in self.wear.iter().enumerate() {
-                if model.contacts()[wear.contact].kn <= 0.0 {
+                if model.contacts()[wear.contact].constant(Constant::Kn) <= 0.0 {
                     return fail!(
                         Argument,
                         "wear[{i}]: contact {} has no normal stiffness of its own; needs `stiffness`",

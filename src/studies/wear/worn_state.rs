@@ -2,7 +2,7 @@
 
 use crate::analysis::forced_response::forced_response;
 use crate::at_a_point::sensitivity_analysis::{Quantity, sensitivity_with};
-use crate::contact::force_derivative::Constant;
+use crate::contact::constants::Constant;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
@@ -173,7 +173,7 @@ impl<'a> WornStates<'a> {
     }
 
     fn kn(&self, i: usize) -> f64 {
-        self.model.contacts()[self.options.wear[i].contact].kn
+        self.model.contacts()[self.options.wear[i].contact].constant(Constant::Kn)
     }
 
     /// The largest load without wear, or the friction force where that is larger, as in a patch that forces press: the unit of errors of
@@ -526,7 +526,7 @@ impl<'a> WornStates<'a> {
 /// The constant by which the load of a contact acts.
 fn constant(model: &Model, contact: usize) -> Constant {
     let contact = &model.contacts()[contact];
-    if contact.kn > 0.0 && contact.load() < 0.0 {
+    if contact.constant(Constant::Kn) > 0.0 && contact.load() < 0.0 {
         Constant::Gap
     } else {
         Constant::Preload

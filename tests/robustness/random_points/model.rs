@@ -3,7 +3,7 @@
 use super::caller::{Dahl, Drag};
 use crate::common::peers::structure;
 use crate::random_problems::random::Random;
-use hbvib::{Contact, ContactKind, ContactState, Iwan, Model, Polynomial, Table, User};
+use hbvib::{Constant, Contact, ContactKind, ContactState, Iwan, Model, Polynomial, Table, User};
 use std::sync::Arc;
 
 /// The laws of the contacts.
@@ -202,10 +202,9 @@ fn add(kind: usize, place: &Place, model: &mut Model, random: &mut Random) {
             Contact::friction_3d(sides, [b, None, None], (k, kn), mu, limit / mu)
         }
         3 => Contact::unilateral(Some(a), b, kn, gap),
-        4 => Contact {
-            preload: limit,
-            ..Contact::unilateral(Some(a), b, kn, 0.0)
-        },
+        4 => Contact::unilateral(Some(a), b, kn, 0.0)
+            .with(Constant::Preload, limit)
+            .unwrap(),
         5 => Contact::cubic(a, b, k, 0.3 * kn / length.powi(2)),
         6 => Contact::regularised(a, b, 1.0, limit, omega * length * random.decade(-1.5, 0.5)),
         7 => {

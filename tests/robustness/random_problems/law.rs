@@ -3,7 +3,7 @@
 
 use super::random::Random;
 use crate::common::rest::{Disc, nearest_of_many};
-use hbvib::{Contact, ContactKind, Polynomial, Table};
+use hbvib::{Constant, Contact, ContactKind, Polynomial, Table};
 
 /// A law with its constants.
 #[derive(Clone, Debug)]
@@ -204,24 +204,23 @@ impl Law {
         let gap = |load: f64, kn: f64| if load < 0.0 { -load / kn } else { 0.0 };
         match *self {
             Self::Jenkins { kt, limit } => Contact::jenkins(a.unwrap(), b, kt, 1.0, limit),
-            Self::Friction2d { kt, kn, mu, load } => Contact {
-                gap: gap(load, kn),
-                ..Contact::friction_2d(side(0), side(1), (kt, kn), mu, load.max(0.0))
-            },
+            Self::Friction2d { kt, kn, mu, load } => {
+                Contact::friction_2d(side(0), side(1), (kt, kn), mu, load.max(0.0))
+                    .with(Constant::Gap, gap(load, kn))
+                    .unwrap()
+            }
             Self::Plane {
                 kt,
                 kn,
                 mu,
                 load,
                 normal,
-            } => Contact {
-                gap: gap(load, kn),
-                ..Contact::friction_3d(all(0), all(1), (kt, if normal { kn } else { 0.0 }), mu, load.max(0.0))
-            },
-            Self::Unilateral { kn, gap, preload } => Contact {
-                preload,
-                ..Contact::unilateral(a, b, kn, gap)
-            },
+            } => Contact::friction_3d(all(0), all(1), (kt, if normal { kn } else { 0.0 }), mu, load.max(0.0))
+                .with(Constant::Gap, gap(load, kn))
+                .unwrap(),
+            Self::Unilateral { kn, gap, preload } => Contact::unilateral(a, b, kn, gap)
+                .with(Constant::Preload, preload)
+                .unwrap(),
             Self::Cubic { k, k3 } => Contact::cubic(a.unwrap(), b, k, k3),
             Self::Tanh { limit, velocity } => Contact::regularised(a.unwrap(), b, 1.0, limit, velocity),
             Self::Table { ref x, ref f } => {

@@ -16,7 +16,7 @@ use crate::meshes::node_table::Nodes;
 use crate::meshes::surface_pairs::SurfacePairs;
 use crate::texts::counted::counted;
 use crate::texts::outcome::Outcome;
-use hbvib::{MatrixKind, Model, Speed};
+use hbvib::{Constant, MatrixKind, Model, Speed};
 use hbvib_io::{Dof, Files, Matrices, Matrix, Report, Symmetry};
 use num_complex::Complex64;
 use std::collections::HashMap;
@@ -202,16 +202,17 @@ fn add_contacts(
         for contact in contacts {
             let id = model.add_contact(&contact).map_err(|e| said(&e))?;
             if part.per_speed2 != 0.0 {
+                let preload = contact.constant(Constant::Preload);
                 // An area multiplies all of them alike.
                 let pairs = [
-                    (contact.kt, part.kt),
-                    (contact.kn, part.kn),
-                    (contact.preload, part.preload),
+                    (contact.constant(Constant::Kt), part.kt),
+                    (contact.constant(Constant::Kn), part.kn),
+                    (preload, part.preload),
                 ];
                 let given = pairs.into_iter().find(|(_, given)| *given != 0.0);
                 let share = given.map_or(1.0, |(of_pair, given)| of_pair / given);
                 model
-                    .set_preload_at_speed(id, contact.preload, part.per_speed2 * share)
+                    .set_preload_at_speed(id, preload, part.per_speed2 * share)
                     .map_err(|e| said(&e))?;
             }
         }

@@ -3,6 +3,7 @@
 use crate::building::built::Built;
 use crate::meshes::mesh::Mesh;
 use crate::texts::outcome::Outcome;
+use hbvib::Constant;
 use num_complex::Complex64;
 use std::fmt::Write;
 
@@ -43,7 +44,8 @@ pub fn preload(built: &Built, shape: &[Complex64], (omega, damping, dof): (f64, 
         let (a, b) = (side(contact.dof_a), side(contact.dof_b));
         let motion = [0, 1, 2].map(|k| (a[k] - b[k]) * amplitude);
         let moved = motion.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
-        largest = largest.max((HELD.0 * contact.kt / MU).max(HELD.1 * contact.kn) * moved);
+        largest = largest
+            .max((HELD.0 * contact.constant(Constant::Kt) / MU).max(HELD.1 * contact.constant(Constant::Kn)) * moved);
     }
     if largest > 0.0 { largest } else { 1.0 }
 }

@@ -13,7 +13,7 @@ use crate::meshes::node_table::{Nodes, node_list, positions};
 use crate::meshes::normals;
 use crate::static_steps::static_states::static_states;
 use crate::texts::outcome::Outcome;
-use hbvib::{Contact, ContactKind, Frame};
+use hbvib::{Constant, Contact, ContactKind, Cubic, Frame, Friction2d, Friction3d, Jenkins, Regularised, Unilateral};
 use hbvib_io::SurfaceContact;
 use std::collections::{HashMap, HashSet};
 
@@ -101,12 +101,12 @@ pub fn contacts(
         Ok(side)
     };
     let kind = match part.kind {
-        KindName::Jenkins => ContactKind::Jenkins,
-        KindName::Friction2d => ContactKind::Friction2d,
-        KindName::Friction3d => ContactKind::Friction3d,
-        KindName::Unilateral => ContactKind::Unilateral,
-        KindName::Cubic => ContactKind::Cubic,
-        KindName::Regularised => ContactKind::Regularised,
+        KindName::Jenkins => ContactKind::Jenkins(Jenkins::default()),
+        KindName::Friction2d => ContactKind::Friction2d(Friction2d::default()),
+        KindName::Friction3d => ContactKind::Friction3d(Friction3d::default()),
+        KindName::Unilateral => ContactKind::Unilateral(Unilateral::default()),
+        KindName::Cubic => ContactKind::Cubic(Cubic::default()),
+        KindName::Regularised => ContactKind::Regularised(Regularised::default()),
     };
     let sides = pairs.a.chunks_exact(width).zip(pairs.b.chunks_exact(width));
     let all: Outcome<Vec<Contact>> = sides
@@ -117,23 +117,23 @@ pub fn contacts(
             let preload = if area == 0.0 { 0.0 } else { part.preload * area };
             let gap = part.gap + pairs.gaps.get(k).copied().unwrap_or(0.0);
             let (preload, gap) = at_rest.as_ref().map_or((preload, gap), |all| all[k]);
-            Ok(Contact {
-                kind: kind.clone(),
-                dof_a: side(a)?,
-                dof_b: side(b)?,
+            let mut contact = Contact {
                 frame: frame(k)?,
                 sector_offset: part.sector_offset,
-                kt: part.kt * area,
-                kn: part.kn * area,
-                mu: part.mu,
-                preload,
-                gap,
-                cubic: part.cubic * area,
-                velocity: part.velocity,
-                slider: [0.0; 2],
-                dofs: Vec::new(),
-                rigid: None,
-            })
+                ..Contact::of_sides(kind.clone(), side(a)?, side(b)?)
+            };
+            for (constant, value) in [
+                (Constant::Kt, part.kt * area),
+                (Constant::Kn, part.kn * area),
+                (Constant::Mu, part.mu),
+                (Constant::Preload, preload),
+                (Constant::Gap, gap),
+                (Constant::Cubic, part.cubic * area),
+                (Constant::Velocity, part.velocity),
+            ] {
+                contact.set(constant, value).map_err(|e| e.to_string())?;
+            }
+            Ok(contact)
         })
         .collect();
     let contacts = all?;
@@ -227,15 +227,15 @@ fn side_looked_up(part: &ContactPart) -> &'static str {
 /// Forces on the degrees of freedom of a contact that hold it at rest against its preload. The normal points from side b to side a, as
 /// the normal degree of freedom does.
 fn balanced(contact: &Contact, normal: Option<[f64; 3]>) -> Vec<(usize, f64)> {
-    if contact.normal_direction().is_none() || contact.preload == 0.0 {
+    if contact.normal_direction().is_none() || contact.constant(Constant::Preload) == 0.0 {
         return Vec::new();
     }
     let on_a = match normal {
         Some(n) => {
             let length = n[0].hypot(n[1]).hypot(n[2]);
-            n.map(|x| -contact.preload * x / length)
+            n.map(|x| -contact.constant(Constant::Preload) * x / length)
         }
-        None => [0.0, 0.0, -contact.preload],
+        None => [0.0, 0.0, -contact.constant(Constant::Preload)],
     };
     let sides = [(&contact.dof_a, 1.0), (&contact.dof_b, -1.0)];
     let of_side = |(dofs, sign): (&[Option<usize>; 3], f64)| -> Vec<(usize, f64)> {

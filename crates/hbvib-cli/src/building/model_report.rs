@@ -5,7 +5,7 @@ use crate::building::built::Built;
 use crate::job_file::job::Job;
 use crate::static_steps::static_contacts::at_rest;
 use crate::texts::counted::counted;
-use hbvib::{ContactState, Interrupt};
+use hbvib::{Constant, ContactState, Interrupt};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -334,7 +334,7 @@ fn contacts(job: &Job, built: &Built, frequencies: &[Frequencies], warnings: &mu
                         a: name(&contact.dof_a),
                         b: name(&contact.dof_b),
                         area: built.areas.get(id).copied().flatten(),
-                        gap: contact.gap,
+                        gap: contact.constant(Constant::Gap),
                         distance: both.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])),
                         normal_force: rest.map(|rest| rest.normal),
                         friction_force: rest.map(|rest| rest.tangential),

@@ -1,7 +1,7 @@
 //! Contacts at rest: forces under constant loads and preload, and which are closed.
 
 use crate::building::built::Built;
-use hbvib::{ForcedOptions, Hooks, Model, SolverOptions, State, forced_response};
+use hbvib::{Constant, ForcedOptions, Hooks, Model, SolverOptions, State, forced_response};
 use num_complex::Complex64;
 
 /// Share of the vibrating forces under which the mean of each contact is that at rest.
@@ -84,7 +84,7 @@ fn calm(model: &Model) -> hbvib::Result<Model> {
         let scale = model
             .contacts()
             .iter()
-            .map(|contact| contact.preload)
+            .map(|contact| contact.constant(Constant::Preload))
             .fold(0.0, f64::max);
         calm.add_force(
             first.unwrap_or(0),

@@ -12,7 +12,7 @@ use crate::studies::mode_band::of_model;
 use crate::studies::residual_state::write_places;
 use crate::texts::counted::counted;
 use crate::texts::outcome::Outcome;
-use hbvib::{Band, BandOf, BandOptions, Branch, ForcedOptions, Hooks, Special, Status, band, forced_response};
+use hbvib::{Band, BandOf, BandOptions, Branch, Contact, ForcedOptions, Hooks, Special, Status, band, forced_response};
 use plotters::prelude::{ChartBuilder, LineSeries, Polygon};
 use plotters::style::{BLUE, Color};
 use std::f64::consts::TAU;
@@ -127,7 +127,7 @@ pub fn write(part: &BandPart, built: &Built, hooks: &mut Hooks<'_>, files: &mut 
         let (Some(path), Some(end), Some(peak)) = (path, end, amplitude) else {
             continue;
         };
-        let mut places: Vec<[f64; 2]> = built.model.contacts().iter().map(|contact| contact.slider).collect();
+        let mut places: Vec<[f64; 2]> = built.model.contacts().iter().map(Contact::slider).collect();
         for (&(contact, direction), place) in peak.band.sliders.iter().zip(&end.places) {
             places[contact][direction] = *place;
         }

@@ -9,7 +9,7 @@ use crate::outputs::npz::Npz;
 use crate::texts::counted::counted;
 use crate::texts::outcome::Outcome;
 use hbvib::{
-    Hooks, LoadHistory, Model, SolverOptions, StaticStep, Status, SteadyMethod, TimeOptions, static_history,
+    Contact, Hooks, LoadHistory, Model, SolverOptions, StaticStep, Status, SteadyMethod, TimeOptions, static_history,
     time_response,
 };
 use std::f64::consts::TAU;
@@ -62,7 +62,7 @@ pub fn set(
         let _ = writeln!(text, "residual state of {}", counted(steps.len(), "static step"));
     }
     vibrate(part, &mut built.model, hooks, &mut text).map_err(|e| said(&e))?;
-    let places: Vec<[f64; 2]> = built.model.contacts().iter().map(|contact| contact.slider).collect();
+    let places: Vec<[f64; 2]> = built.model.contacts().iter().map(Contact::slider).collect();
     files.write(part.places_npz.as_deref(), &|path| write_places(path, &places));
     let placed = places.iter().filter(|place| place.iter().any(|x| *x != 0.0)).count();
     let _ = writeln!(text, "sliders of {} are placed", counted(placed, "contact"));

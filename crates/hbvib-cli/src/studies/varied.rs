@@ -193,15 +193,13 @@ fn matrix(name: ParameterName) -> Option<MatrixKind> {
 /// A constant of a contact; its normal load and gap are those at rest.
 fn of_contact(model: &Model, constant: Constant, id: usize) -> f64 {
     let (preload, _, gap) = model.given_load(id).unwrap_or_default();
-    let of = |value: fn(&hbvib::Contact) -> f64| model.contacts().get(id).map_or(0.0, value);
     match constant {
         Constant::Preload => preload,
         Constant::Gap => gap,
-        Constant::Mu => of(|contact| contact.mu),
-        Constant::Kt => of(|contact| contact.kt),
-        Constant::Kn => of(|contact| contact.kn),
-        Constant::Slider(0) => of(|contact| contact.slider[0]),
-        Constant::Slider(_) => of(|contact| contact.slider[1]),
+        _ => model
+            .contacts()
+            .get(id)
+            .map_or(0.0, |contact| contact.constant(constant)),
     }
 }
 

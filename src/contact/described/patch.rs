@@ -1,5 +1,6 @@
 //! A contact patch: many node pairs between two surfaces, each with its share of the area.
 
+use crate::contact::constants::Constant;
 use crate::contact::description::Contact;
 use crate::contact::relative_motion::Frame;
 use crate::error::{Result, fail, try_push};
@@ -72,17 +73,16 @@ impl Patch<'_> {
         }
         // Between a node that moves along t1, t2 and n, and the ground.
         let frame = Frame::new([0.0, 0.0, 1.0], Some([1.0, 0.0, 0.0]))?;
-        Contact {
-            dof_a: [Some(0), Some(1), Some(2)],
-            dof_b: [None; 3],
+        let contact = Contact {
             frame: Some(frame),
-            preload: if self.pressure.is_some() { 0.0 } else { law.preload },
-            gap: if self.gap.is_some() { 0.0 } else { law.gap },
-            dofs: Vec::new(),
-            kind: law.kind.clone(),
-            ..*law
-        }
-        .check_constants()
+            ..Contact::of_sides(law.kind.clone(), [Some(0), Some(1), Some(2)], [None; 3])
+        };
+        let given = |array: Option<&[f64]>, constant| array.map_or(law.constant(constant), |_| 0.0);
+        let (preload, gap) = (given(self.pressure, Constant::Preload), given(self.gap, Constant::Gap));
+        contact
+            .with(Constant::Preload, preload)?
+            .with(Constant::Gap, gap)?
+            .check_constants()
     }
 
     fn contact(&self, i: usize) -> Result<Contact> {
@@ -97,27 +97,30 @@ impl Patch<'_> {
         };
         let (law, area) = (self.law, at_least_0("area", self.area[i], false)?);
         let pressure = match self.pressure {
-            Some(pressure) => at_least_0("pressure", pressure[i], law.ask(|law| law.may_stick_for_ever()))?,
-            None => law.preload,
+            Some(pressure) => at_least_0(
+                "pressure",
+                pressure[i],
+                law.ask(|law| law.may_be_infinite(Constant::Preload)),
+            )?,
+            None => law.constant(Constant::Preload),
         };
-        let gap = self.gap.map_or(law.gap, |gap| gap[i]);
+        let gap = self.gap.map_or(law.constant(Constant::Gap), |gap| gap[i]);
         if !gap.is_finite() {
             return fail!(NotFinite, "gap = {gap}, needs a finite number");
         }
-        Ok(Contact {
-            kind: law.kind.clone(),
-            dof_a: self.dof_a[i],
-            dof_b: self.dof_b.map_or([None; 3], |b| b[i]),
+        let mut contact = Contact {
             frame: Some(Frame::new(self.normal[i], self.tangent.map(|t| t[i]))?),
-            kt: law.kt * area,
-            kn: law.kn * area,
-            // An infinite pressure on no area is no load.
-            preload: if area == 0.0 { 0.0 } else { pressure * area },
-            gap,
-            cubic: law.cubic * area,
-            dofs: Vec::new(),
-            rigid: None,
-            ..*law
-        })
+            sector_offset: law.sector_offset,
+            ..Contact::of_sides(law.kind.clone(), self.dof_a[i], self.dof_b.map_or([None; 3], |b| b[i]))
+        };
+        for constant in Constant::DESCRIBED
+            .into_iter()
+            .filter(|constant| constant.is_per_area())
+        {
+            contact.set(constant, law.constant(constant) * area)?;
+        }
+        // An infinite pressure on no area is no load.
+        contact.set(Constant::Preload, if area == 0.0 { 0.0 } else { pressure * area })?;
+        contact.with(Constant::Gap, gap)
     }
 }

@@ -1,6 +1,7 @@
-//! Checks of the description of a contact: constants in their ranges, those of other laws zero, degrees
-//! of freedom only along directions in which the law acts.
+//! Checks of the description of a contact: constants in their ranges, degrees of freedom only along directions in which the
+//! law acts.
 
+use crate::contact::constants::Constant;
 use crate::contact::description::Contact;
 use crate::error::{Result, fail};
 
@@ -10,58 +11,40 @@ impl Contact {
     /// # Errors
     /// `NotFinite` or `Argument`, naming the constant, its value and its range.
     pub fn check_constants(&self) -> Result<()> {
-        for (name, value, may_be_infinite) in [
-            ("kt", self.kt, self.ask(|law| law.may_be_rigid())),
-            ("kn", self.kn, false),
-            ("mu", self.mu, false),
-            (
-                "preload",
-                self.preload,
-                self.ask(|law| law.may_stick_for_ever() || !law.has_preload()),
-            ),
-            ("velocity", self.velocity, false),
-        ] {
-            if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
+        for constant in Constant::DESCRIBED
+            .into_iter()
+            .filter(|constant| !constant.has_any_sign())
+        {
+            let (name, value) = (constant.name(), self.constant(constant));
+            if value.is_nan() || (value.is_infinite() && !self.ask(|law| law.may_be_infinite(constant))) {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number >= 0");
             }
-            if value < 0.0 && name == "preload" && self.kn > 0.0 && self.ask(|law| law.constants().contains(&"gap")) {
+            let (kn, gap) = (self.constant(Constant::Kn), self.constant(Constant::Gap));
+            if value < 0.0 && constant == Constant::Preload && kn > 0.0 {
                 return fail!(
                     Argument,
                     "contact: preload = {value}, needs a number >= 0; gap = {} instead opens the contact as far",
-                    self.gap - value / self.kn
+                    gap - value / kn
                 );
             }
             if value < 0.0 {
                 return fail!(Argument, "contact: {name} = {value}, needs a number >= 0");
             }
         }
-        for (name, value) in [("cubic", self.cubic), ("gap", self.gap)] {
+        for constant in [Constant::Cubic, Constant::Gap] {
+            let (name, value) = (constant.name(), self.constant(constant));
             if !value.is_finite() {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number");
             }
         }
         self.check_slider()?;
-        if self.kt.is_infinite() && self.preload.is_infinite() {
+        if self.constant(Constant::Kt).is_infinite() && self.constant(Constant::Preload).is_infinite() {
             return fail!(
                 Argument,
                 "contact: kt = inf under an infinite preload ties both sides; make what it connects one degree of freedom"
             );
         }
-        let constants = [
-            ("kt", self.kt),
-            ("kn", self.kn),
-            ("mu", self.mu),
-            ("preload", self.preload),
-            ("gap", self.gap),
-            ("cubic", self.cubic),
-            ("velocity", self.velocity),
-        ];
-        let (kind, used, motions) = self.ask(|law| (law.name(), law.constants(), law.motions()));
-        for (name, value) in constants {
-            if value != 0.0 && !used.contains(&name) {
-                return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
-            }
-        }
+        let (kind, motions) = self.ask(|law| (law.name(), law.motions()));
         self.ask(|law| law.check())?;
         let needed = motions.unwrap_or(self.places().len());
         if self.directions() != needed || !(self.dofs.is_empty() || motions.is_some()) {
@@ -83,11 +66,9 @@ impl Contact {
         self.ask(|law| law.check_stiffness())
     }
 
-    /// Refuses a place of a slider that the law does not have, or whose force nothing limits.
+    /// Refuses a place of a slider whose force nothing limits.
     fn check_slider(&self) -> Result<()> {
-        let sliders = self.sliders();
-        for (k, &place) in self.slider.iter().enumerate() {
-            let name = ["t1", "t2"][k];
+        for (name, place) in ["t1", "t2"].into_iter().zip(self.slider()) {
             if !place.is_finite() {
                 return fail!(
                     NotFinite,
@@ -97,20 +78,13 @@ impl Contact {
             if place == 0.0 {
                 continue;
             }
-            if k >= sliders {
-                return fail!(
-                    Unsupported,
-                    "contact: place of the slider along {name} = {place}, but a {} has none there",
-                    self.law_name()
-                );
-            }
-            if self.kt.is_infinite() {
+            if self.constant(Constant::Kt).is_infinite() {
                 return fail!(
                     Unsupported,
                     "contact: place of the slider along {name} = {place} under kt = inf, needs a finite kt"
                 );
             }
-            if self.preload.is_infinite() {
+            if self.constant(Constant::Preload).is_infinite() {
                 return fail!(
                     Unsupported,
                     "contact: place of the slider along {name} = {place} under an infinite preload, which is a linear spring; give its force \

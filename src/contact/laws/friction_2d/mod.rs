@@ -23,13 +23,13 @@
 pub(crate) mod friction_2d_events;
 mod friction_2d_slider;
 
-use crate::contact::constants::{Constants, Role, needs_stiffness};
+use crate::contact::constants::{Constant, LawData, Role, clearance, load, named_constants, needs_stiffness};
 use crate::contact::coupled_search::{Bound, CoupledSearch, find};
-use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
+use crate::contact::force_derivative::{Combination, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
 use crate::contact::laws::friction_2d::friction_2d_events::Slider;
 use crate::contact::laws::friction_2d::friction_2d_slider::{Phase, Play, Walk};
-use crate::contact::laws::unilateral::Unilateral;
+use crate::contact::laws::unilateral::ScaledUnilateral;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::{CoupledPiece, Piece};
@@ -41,31 +41,31 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Friction in one tangential direction of the caller.
-#[derive(Clone, Copy, Debug)]
-pub struct Friction2dContact {
-    kt: f64,
-    kn: f64,
-    mu: f64,
-    preload: f64,
-    gap: f64,
-    clearance: f64,
-    load: f64,
-    slider: f64,
+/// Friction in one tangential direction in the caller's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Friction2d {
+    /// Tangential stiffness, force per length, at least 0.
+    pub kt: f64,
+    /// Normal stiffness, force per length, above 0.
+    pub kn: f64,
+    /// Friction coefficient, at least 0.
+    pub mu: f64,
+    /// Normal load at rest where the gap is 0, force, at least 0.
+    pub preload: f64,
+    /// Closing at which a contact without preload begins to press, of any sign.
+    pub gap: f64,
+    /// Place of the slider before any motion.
+    pub slider: f64,
 }
 
-impl Friction2dContact {
-    pub(super) fn new(constants: &Constants) -> Self {
-        Self {
-            kt: constants.kt,
-            kn: constants.kn,
-            mu: constants.mu,
-            preload: constants.preload,
-            gap: constants.gap,
-            clearance: constants.clearance(),
-            load: constants.load(),
-            slider: constants.slider[0],
-        }
+named_constants!(
+    Friction2d, 3, Kt => kt, Kn => kn, Mu => mu, Preload => preload, Gap => gap, Slider(0) => slider
+);
+
+impl Friction2d {
+    /// n₀
+    fn load(&self) -> f64 {
+        load(self.kn, self.preload, self.gap)
     }
 }
 
@@ -82,23 +82,22 @@ pub(super) fn check_normal_stiffness(kn: f64, kt: f64, preload: f64) -> Result<(
 }
 
 /// The derivative of the forces of friction under a load that varies by one of its constants.
-pub(super) fn under_varying_load(constant: Constant, (kt, kn, mu, gap): (f64, f64, f64, f64)) -> ForceDerivative {
-    match constant {
+pub(super) fn under_varying_load(constant: Constant, law: &dyn LawData) -> Option<ForceDerivative> {
+    let [kt, kn, mu, gap] =
+        [Constant::Kt, Constant::Kn, Constant::Mu, Constant::Gap].map(|name| law.constant(name).unwrap_or(0.0));
+    Some(match constant {
         Constant::Kt => ForceDerivative::by_factor(kt, Combination::BY_TANGENTIAL),
         Constant::Mu => ForceDerivative::by_factor(mu, Combination::BY_LIMIT),
         Constant::Preload | Constant::Kn | Constant::Gap if kn == 0.0 => ForceDerivative::ONE_SIDED,
         Constant::Preload | Constant::Kn | Constant::Gap => ForceDerivative::of_normal_load(constant, kn, gap),
         Constant::Slider(k) => ForceDerivative::tangential(Combination::of_slider(k)),
-    }
+        Constant::Cubic | Constant::Velocity => return None,
+    })
 }
 
-impl ContactLaw for Friction2dContact {
+impl ContactLaw for Friction2d {
     fn name(&self) -> &'static str {
         "friction contact"
-    }
-
-    fn constants(&self) -> &'static [&'static str] {
-        &["kt", "kn", "mu", "preload", "gap"]
     }
 
     fn check(&self) -> Result<()> {
@@ -110,7 +109,7 @@ impl ContactLaw for Friction2dContact {
     }
 
     fn check_stiffness(&self) -> Result<()> {
-        needs_stiffness("kn", self.kn)
+        needs_stiffness(Constant::Kn, self.kn)
     }
 
     fn role(&self) -> Role {
@@ -118,7 +117,7 @@ impl ContactLaw for Friction2dContact {
     }
 
     fn stiffness_at_small_motion(&self, k: usize, l: usize) -> f64 {
-        if (self.mu == 0.0 && k == 0) || k != l || self.load <= 0.0 {
+        if (self.mu == 0.0 && k == 0) || k != l || self.load() <= 0.0 {
             0.0
         } else {
             self.stiffness(k)
@@ -133,39 +132,27 @@ impl ContactLaw for Friction2dContact {
         false
     }
 
-    fn may_stick(&self) -> bool {
-        true
-    }
-
-    fn has_preload(&self) -> bool {
-        true
-    }
-
-    fn sliders(&self) -> usize {
-        1
-    }
-
     fn is_preloaded(&self) -> bool {
-        self.kn > 0.0 && self.load >= 0.0
+        self.kn > 0.0 && self.load() >= 0.0
     }
 
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
         if constant == Constant::Slider(1) {
             return None;
         }
-        Some(under_varying_load(constant, (self.kt, self.kn, self.mu, self.gap)))
+        under_varying_load(constant, self)
     }
 
     fn normal_load(&self, y: f64) -> f64 {
-        (self.load - self.kn * y).max(0.0)
+        (self.load() - self.kn * y).max(0.0)
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
-        Ok(Arc::new(Friction2d {
+        Ok(Arc::new(ScaledFriction2d {
             kt: self.kt,
             kn: self.kn,
             mu: self.mu,
-            load: self.load / length,
+            load: self.load() / length,
             slider: self.slider / length,
         }))
     }
@@ -173,23 +160,23 @@ impl ContactLaw for Friction2dContact {
     /// A slider under a varying load; without friction a spring along the normal is left.
     fn in_time(&self) -> Result<LawInTime> {
         if self.kt == 0.0 || self.mu == 0.0 {
-            let spring = Unilateral {
+            let spring = ScaledUnilateral {
                 stiffness: self.kn,
-                gap: self.clearance,
+                gap: clearance(self.kn, self.preload, self.gap),
             };
             return Ok(LawInTime {
                 first: 1,
                 ..LawInTime::events(spring)
             });
         }
-        let slider = Slider::under_varying_load(self.kt, self.kn, self.mu, self.load).starting_at(self.slider);
+        let slider = Slider::under_varying_load(self.kt, self.kn, self.mu, self.load()).starting_at(self.slider);
         Ok(LawInTime::events(slider))
     }
 }
 
-/// Constants of friction under a varying normal load, all finite.
+/// Friction under a varying normal load in the units of a solver, all numbers finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction2d {
+pub struct ScaledFriction2d {
     /// Tangential stiffness, at least 0; 0 is without tangential force.
     pub kt: f64,
     /// Normal stiffness, at least 0; 0 is a constant load.
@@ -202,7 +189,7 @@ pub struct Friction2d {
     pub slider: f64,
 }
 
-impl Law for Friction2d {
+impl Law for ScaledFriction2d {
     fn directions(&self) -> usize {
         2
     }
@@ -234,7 +221,7 @@ impl Law for Friction2d {
     }
 }
 
-impl VaryingNormalLoad for Friction2d {
+impl VaryingNormalLoad for ScaledFriction2d {
     /// Without friction (kt or mu is 0) there are no tangential pieces.
     fn coupled_pieces(
         &self,
@@ -283,7 +270,7 @@ impl VaryingNormalLoad for Friction2d {
     }
 }
 
-impl Friction2d {
+impl ScaledFriction2d {
     /// Factors of the vibration [x, y] from which on the slider of the closed contact is dragged.
     fn slider_onset(&self, rest: f64, limit: f64, [x, y]: [Complex64; 2]) -> [f64; 2] {
         if self.kt == 0.0 || self.mu == 0.0 {
@@ -317,7 +304,7 @@ impl Friction2d {
             return Ok(());
         }
         find(&mut search.search, set, y, &mut search.normal, interrupt)?;
-        let spring = Unilateral {
+        let spring = ScaledUnilateral {
             stiffness: self.kn,
             gap: -self.load / self.kn,
         };

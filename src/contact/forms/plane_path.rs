@@ -12,7 +12,7 @@ use crate::linalg::factors::lu::Lu;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-pub(super) const CONTEXT: &str = "the path of a friction force";
+pub(crate) const CONTEXT: &str = "the path of a friction force";
 
 /// Panels per turn and reduced harmonic: a force that turns in slip, times the highest harmonic, is integrated to
 /// about 1e-11 over such panels.
@@ -201,8 +201,8 @@ pub struct PlanePath {
     /// The reason why the force repeats.
     pub repetition: Repetition,
     /// Times between the nodes at which a slider at rest comes close to its limit.
-    pub(super) moments: Vec<(f64, PlaneInstant)>,
-    pub(super) lu: Lu<f64>,
+    pub(crate) moments: Vec<(f64, PlaneInstant)>,
+    pub(crate) lu: Lu<f64>,
 }
 
 impl PlanePath {

@@ -10,16 +10,16 @@ use std::f64::consts::PI;
 /// One bound of a slider: its signal and the turning points of it over a whole turn.
 pub struct Bound {
     /// Packed signal.
-    pub(super) signal: Vec<f64>,
+    pub(crate) signal: Vec<f64>,
     /// Its turning points in order.
-    pub(super) turning_points: Vec<Extremum>,
+    pub(crate) turning_points: Vec<Extremum>,
 }
 
 /// Memory for the search of the pieces of motions with one harmonic set.
 pub struct CoupledSearch {
-    pub(super) search: TurningPoints,
-    pub(super) normal: Vec<Extremum>,
-    pub(super) bounds: [Bound; 2],
+    pub(crate) search: TurningPoints,
+    pub(crate) normal: Vec<Extremum>,
+    pub(crate) bounds: [Bound; 2],
 }
 
 impl CoupledSearch {
@@ -67,7 +67,7 @@ pub fn piece_lists(set: &HarmonicSet) -> Result<(Vec<Piece>, Vec<CoupledPiece>)>
 }
 
 /// Turning points over a whole turn, also for sets of odd harmonics: a varying load has no such symmetry.
-pub(super) fn find(
+pub(crate) fn find(
     search: &mut TurningPoints,
     set: &HarmonicSet,
     signal: &[f64],

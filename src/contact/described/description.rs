@@ -1,22 +1,22 @@
 //! The description of a contact by the caller.
 //!
-//! A [`Contact`] names the degrees of freedom of its sides and the constants of its law in the caller's
-//! units; its law answers for its role in the model, and [`Contact::law`] makes of it the [`Law`] that a
+//! A [`Contact`] names the degrees of freedom of its sides, and its kind carries the law with its constants in the
+//! caller's units; the law answers for its role in the model, and [`Contact::law`] makes of it the [`Law`] that a
 //! solver evaluates, in the solver's units.
 
-use crate::contact::constants::{Constants, Role};
-use crate::contact::force_derivative::{Constant, ForceDerivative};
+use crate::contact::constants::{Constant, Role, clearance, load, slip_limit};
+use crate::contact::force_derivative::ForceDerivative;
 use crate::contact::law::{ContactLaw, Law, LawInTime};
-use crate::contact::laws::registry::ContactKind;
+use crate::contact::laws::ContactKind;
 use crate::contact::relative_motion::{Direction, Frame};
 use crate::contact::rigid_point::RigidPoint;
-use crate::error::Result;
+use crate::error::{Result, fail};
 use std::sync::Arc;
 
 /// A contact between two sides, one of which may be the ground.
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// The law.
+    /// The law with its constants.
     pub kind: ContactKind,
     /// Degrees of freedom of side a along t1, t2 and n; `None` is the ground. A unilateral spring acts
     /// along n, laws of one direction along t1; places that are not used are `None`.
@@ -28,28 +28,6 @@ pub struct Contact {
     pub frame: Option<Frame>,
     /// Side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
-    /// Stiffness at small motion, force per length, at least 0; 0 for a unilateral spring. Infinite: a Jenkins contact is rigid
-    /// while it sticks.
-    pub kt: f64,
-    /// Stiffness of a unilateral spring, force per length, at least 0; 0 for the others.
-    pub kn: f64,
-    /// Friction coefficient, at least 0; 0 for springs.
-    pub mu: f64,
-    /// Normal load at rest, force, at least 0; infinite sticks for ever; 0 for a cubic spring. A
-    /// unilateral spring has N = max(preload + kn·(closing − gap), 0), where closing is the motion of
-    /// side b over that of side a.
-    pub preload: f64,
-    /// Closing at which a unilateral spring without preload begins to press, of any sign; 0 for the
-    /// others.
-    pub gap: f64,
-    /// Force per length cubed of a cubic spring, of any sign; 0 for the others.
-    pub cubic: f64,
-    /// Velocity at which regularised friction reaches 76 % (tanh 1) of its limit, above 0; 0 for the
-    /// others.
-    pub velocity: f64,
-    /// Places of the sliders of friction along t1 and t2 before any motion; 0 for the others. The force of a contact that
-    /// sticks through the period is kt·(x − slider).
-    pub slider: [f64; 2],
     /// Degrees of freedom on whose motions over the ground a law of the caller or a polynomial acts, in its
     /// order. Empty: the law acts on one motion, that between `dof_a` and `dof_b` along t1.
     pub dofs: Vec<usize>,
@@ -58,24 +36,58 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// The constants of the law.
-    pub(super) fn constants(&self) -> Constants {
-        Constants {
-            kt: self.kt,
-            kn: self.kn,
-            mu: self.mu,
-            preload: self.preload,
-            gap: self.gap,
-            cubic: self.cubic,
-            velocity: self.velocity,
-            slider: self.slider,
-            has_normal: self.has_normal(),
+    /// A constant of the law; 0 for one that it does not have.
+    #[must_use]
+    pub fn constant(&self, constant: Constant) -> f64 {
+        self.kind.data().constant(constant).unwrap_or(0.0)
+    }
+
+    /// Changes a constant of the law. One that it does not have is 0.
+    ///
+    /// # Errors
+    /// `NotFinite` or `Argument` for a constant that the law does not have, unless the value is 0.
+    pub fn set(&mut self, constant: Constant, value: f64) -> Result<()> {
+        if let Some(place) = self.kind.data_mut().constant_mut(constant) {
+            *place = value;
+        } else if value != 0.0 {
+            let (name, kind) = (constant.name(), self.law_name());
+            if value.is_nan() {
+                return fail!(NotFinite, "contact: {name} = {value}, needs 0 for a {kind}");
+            }
+            return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
         }
+        Ok(())
+    }
+
+    /// The contact with another value of a constant.
+    ///
+    /// # Errors
+    /// Those of [`Self::set`].
+    pub fn with(mut self, constant: Constant, value: f64) -> Result<Self> {
+        self.set(constant, value)?;
+        Ok(self)
+    }
+
+    /// The contact under another normal load and gap, as far as its law has them.
+    pub(crate) fn under(&self, preload: f64, gap: f64) -> Self {
+        let mut changed = self.clone();
+        for (constant, value) in [(Constant::Preload, preload), (Constant::Gap, gap)] {
+            if let Some(place) = changed.kind.data_mut().constant_mut(constant) {
+                *place = value;
+            }
+        }
+        changed
+    }
+
+    /// Places of the sliders of friction along t1 and t2 before any motion; 0 where there is none.
+    #[must_use]
+    pub fn slider(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.constant(Constant::Slider(k)))
     }
 
     /// Answer of the law to a question.
     pub(super) fn ask<R>(&self, question: impl FnOnce(&dyn ContactLaw) -> R) -> R {
-        self.kind.with_law(&self.constants(), question)
+        self.kind.ask(self.has_normal(), question)
     }
 
     /// Whether a side can move along n.
@@ -91,25 +103,33 @@ impl Contact {
     /// that presses at rest.
     #[must_use]
     pub fn clearance(&self) -> f64 {
-        self.constants().clearance()
+        clearance(
+            self.constant(Constant::Kn),
+            self.constant(Constant::Preload),
+            self.constant(Constant::Gap),
+        )
     }
 
     /// n₀ of a load N = max(n₀ − kn·y, 0) that varies; negative where a gap is open at rest.
     #[must_use]
     pub fn load(&self) -> f64 {
-        self.constants().load()
+        load(
+            self.constant(Constant::Kn),
+            self.constant(Constant::Preload),
+            self.constant(Constant::Gap),
+        )
     }
 
-    /// Whether the contact is rigid while it sticks, [`Contact::kt`] infinite.
+    /// Whether the contact is rigid while it sticks, kt infinite.
     #[must_use]
     pub fn is_rigid(&self) -> bool {
-        self.kt.is_infinite() && self.role() == Role::Active
+        self.constant(Constant::Kt).is_infinite() && self.role() == Role::Active
     }
 
     /// Slip limit μN₀; zero without friction under any load.
     #[must_use]
     pub fn slip_limit(&self) -> f64 {
-        self.constants().slip_limit()
+        slip_limit(self.constant(Constant::Mu), self.constant(Constant::Preload))
     }
 
     /// Whether the contact presses at rest: then it loads the structure without vibration.
@@ -199,7 +219,7 @@ impl Contact {
 
     /// Whether the force is a law of the caller.
     pub(crate) fn is_of_caller(&self) -> bool {
-        self.ask(|law| law.is_of_caller())
+        self.kind.user().is_some()
     }
 
     /// Largest change of the force by the relative velocity, N s/m; 0 for a law of the motion alone or of the caller.
@@ -210,7 +230,11 @@ impl Contact {
     /// Stiffness of a contact that is linear at any motion; 0 without force.
     #[must_use]
     pub fn stiffness_as_spring(&self) -> f64 {
-        if self.role() == Role::Inert { 0.0 } else { self.kt }
+        if self.role() == Role::Inert {
+            0.0
+        } else {
+            self.constant(Constant::Kt)
+        }
     }
 
     /// Whether the law needs the direction t1, not just the plane of it.
@@ -223,7 +247,7 @@ impl Contact {
     /// while it is closed), as with friction.
     #[must_use]
     pub fn may_stick(&self) -> bool {
-        self.ask(|law| law.may_stick())
+        self.sliders() > 0
     }
 
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
@@ -242,19 +266,21 @@ impl Contact {
     /// Number of directions in which the contact has a slider; 0 for laws without.
     #[must_use]
     pub fn sliders(&self) -> usize {
-        self.ask(|law| law.sliders())
+        let has = |k: &usize| self.kind.data().constant(Constant::Slider(*k)).is_some();
+        (0..2).filter(has).count()
     }
 
     /// Whether the place of a slider is given.
     #[must_use]
     pub fn is_placed(&self) -> bool {
-        self.slider.iter().any(|place| *place != 0.0)
+        self.slider().iter().any(|place| *place != 0.0)
     }
 
     /// Name of the contact if it has no normal load.
     #[must_use]
     pub fn without_load(&self) -> Option<&'static str> {
-        self.ask(|law| (!law.has_preload()).then(|| law.name()))
+        let has_load = self.kind.data().constant(Constant::Preload).is_some();
+        (!has_load).then(|| self.law_name())
     }
 
     /// Whether motion and normal load scale together; if not, the force is proportional to the load.

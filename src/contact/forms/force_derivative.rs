@@ -5,38 +5,7 @@
 //! of products of its Jacobian J with the motion itself, and of the part of the force that the Jacobian does not give.
 //! It has the exact events of that evaluation, and needs no other.
 
-/// A constant of a contact that a parameter may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Constant {
-    /// Normal load at rest.
-    Preload,
-    /// Friction coefficient.
-    Mu,
-    /// Tangential stiffness.
-    Kt,
-    /// Normal stiffness.
-    Kn,
-    /// Closing at which a contact without preload begins to press.
-    Gap,
-    /// Place of the slider before any motion along t1 (0) or t2 (1).
-    Slider(usize),
-}
-
-impl Constant {
-    /// Name of the constant in the description of a contact.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Preload => "preload",
-            Self::Mu => "mu",
-            Self::Kt => "kt",
-            Self::Kn => "kn",
-            Self::Gap => "gap",
-            Self::Slider(0) => "slider_t1",
-            Self::Slider(_) => "slider_t2",
-        }
-    }
-}
+use crate::contact::constants::Constant;
 
 /// Factors of the parts of an evaluation whose sum is the derivative of a force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -117,7 +86,7 @@ impl ForceDerivative {
                 by_shift: gap / kn,
                 ..Combination::ZERO
             },
-            Constant::Mu | Constant::Kt | Constant::Slider(_) => Combination::ZERO,
+            _ => Combination::ZERO,
         };
         Self {
             tangential: parts,

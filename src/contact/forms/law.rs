@@ -6,10 +6,10 @@
 //! [`Form`] and lives in [`crate::aft`], which knows no law by name. In time a law is an [`EventLaw`], linear
 //! between events, or smooth.
 
-use crate::contact::constants::Role;
+use crate::contact::constants::{Constant, Role};
 use crate::contact::contact_state::State;
 use crate::contact::coupled_search::CoupledSearch;
-use crate::contact::force_derivative::{Constant, ForceDerivative};
+use crate::contact::force_derivative::ForceDerivative;
 use crate::contact::linearisation::Range;
 use crate::contact::march::March;
 use crate::contact::onset::Onset;
@@ -28,11 +28,6 @@ use std::sync::Arc;
 pub trait ContactLaw {
     /// Name of a contact of this law in messages, "cubic spring".
     fn name(&self) -> &'static str;
-
-    /// Names of the constants that the law has; all others must be 0.
-    fn constants(&self) -> &'static [&'static str] {
-        &[]
-    }
 
     /// Checks between the constants, beyond signs and unused ones.
     ///
@@ -77,35 +72,14 @@ pub trait ContactLaw {
         0.0
     }
 
-    /// Whether this is a law of the caller, whose resistance is not known.
-    fn is_of_caller(&self) -> bool {
-        false
-    }
-
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
     fn is_spring(&self) -> bool {
         true
     }
 
-    /// Whether every motion meets exactly [`Self::stiffness`] while the contact sticks (along the normal:
-    /// while it is closed), as with friction.
-    fn may_stick(&self) -> bool {
-        false
-    }
-
-    /// Number of directions, the first ones, in which friction has a slider whose place may be given.
-    fn sliders(&self) -> usize {
-        0
-    }
-
     /// A bound of the force in each direction over all motions; infinite where there is none.
     fn largest_force(&self) -> f64 {
         f64::INFINITY
-    }
-
-    /// Whether the contact has a normal load at rest that a caller may set.
-    fn has_preload(&self) -> bool {
-        false
     }
 
     /// Whether the force is homogeneous of degree 1 in motion and normal load, as for friction with a stick stiffness;
@@ -120,13 +94,10 @@ pub trait ContactLaw {
         None
     }
 
-    /// Whether an infinite normal load is allowed: the contact then sticks for ever.
-    fn may_stick_for_ever(&self) -> bool {
-        false
-    }
-
-    /// Whether an infinite stick stiffness is allowed: rigid Coulomb friction.
-    fn may_be_rigid(&self) -> bool {
+    /// Whether a constant may be infinite: a normal load under which the contact sticks for ever, or a stick stiffness of rigid Coulomb
+    /// friction.
+    fn may_be_infinite(&self, constant: Constant) -> bool {
+        let _ = constant;
         false
     }
 

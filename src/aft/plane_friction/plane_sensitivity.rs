@@ -4,7 +4,7 @@
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_block::pack;
 use crate::aft::piecewise_exact::transform;
-use crate::aft::slip_session::{SlipSession, add, differentiate};
+use crate::aft::plane_friction::slip_session::{SlipSession, add, differentiate};
 use crate::contact::contact_state::State;
 use crate::contact::law::PlaneFriction;
 use crate::contact::plane_path::{PlaneForce, PlanePath, PlanePiece, Repetition, SlipPanel};

@@ -15,11 +15,14 @@
 //! closing at τ moves by −δR/R′: δf = −u′(τ) times that in stick, and in slip along u′ at the angle φ, with a = |u′|/R′,
 //! δθ = n·δu′/|u′| − φ′/(1 + a) δR/R′. The force at the start of the turn is the one that returns after it, which gives its derivative.
 
+mod plane_sensitivity;
+mod slip_session;
+
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_block::{Block, add_stiffness, apply, pack};
 use crate::aft::normal_force::Normal;
 use crate::aft::piecewise_exact::transform;
-use crate::aft::plane_sensitivity::PlaneSensitivity;
+use crate::aft::plane_friction::plane_sensitivity::PlaneSensitivity;
 use crate::aft::toeplitz::Toeplitz;
 use crate::contact::contact_state::State;
 use crate::contact::law::PlaneFriction;

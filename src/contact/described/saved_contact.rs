@@ -1,8 +1,9 @@
 //! A contact as bytes.
 
 use crate::byte_stream::{ByteReader, ByteWriter};
+use crate::contact::constants::Constant;
 use crate::contact::description::Contact;
-use crate::contact::laws::registry::load_kind;
+use crate::contact::laws::ContactKind;
 use crate::contact::relative_motion::Frame;
 use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, try_push};
@@ -38,16 +39,8 @@ impl Contact {
             }
         }
         out.i64(self.sector_offset);
-        for value in [
-            self.kt,
-            self.kn,
-            self.mu,
-            self.preload,
-            self.gap,
-            self.cubic,
-            self.velocity,
-        ] {
-            out.f64(value);
+        for constant in Constant::DESCRIBED {
+            out.f64(self.constant(constant));
         }
         out.count(self.dofs.len());
         for &dof in &self.dofs {
@@ -91,7 +84,7 @@ impl Contact {
     /// # Errors
     /// `Argument` for bytes that are no contact; `OutOfMemory`.
     pub(crate) fn load_from(input: &mut ByteReader<'_>) -> Result<Self> {
-        let kind = load_kind(input)?;
+        let kind = ContactKind::load_from(input)?;
         let mut sides = [[None; 3]; 2];
         for dof in sides.iter_mut().flatten() {
             *dof = input.optional()?;
@@ -109,32 +102,24 @@ impl Contact {
             None
         };
         let sector_offset = input.i64()?;
-        let mut constants = [0.0; 7];
+        let mut constants = [0.0; Constant::DESCRIBED.len()];
         for value in &mut constants {
             *value = input.f64()?;
         }
-        let [kt, kn, mu, preload, gap, cubic, velocity] = constants;
         let mut dofs = Vec::new();
         for _ in 0..input.entries(8)? {
             try_push(&mut dofs, input.count()?, "a loaded contact")?;
         }
         let [dof_a, dof_b] = sides;
-        Ok(Self {
-            kind,
-            dof_a,
-            dof_b,
+        let mut contact = Self {
             frame,
             sector_offset,
-            kt,
-            kn,
-            mu,
-            preload,
-            gap,
-            cubic,
-            velocity,
-            slider: [0.0; 2],
             dofs,
-            rigid: None,
-        })
+            ..Self::of_sides(kind, dof_a, dof_b)
+        };
+        for (constant, value) in Constant::DESCRIBED.into_iter().zip(constants) {
+            contact.set(constant, value)?;
+        }
+        Ok(contact)
     }
 }

@@ -17,11 +17,11 @@ mod friction_3d_period;
 mod friction_3d_slip;
 mod friction_3d_stuck;
 
-use crate::contact::constants::{Constants, Role, needs_stiffness};
+use crate::contact::constants::{Constant, Role, load, named_constants, needs_stiffness, slip_limit};
 use crate::contact::coupled_search::CoupledSearch;
-use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
+use crate::contact::force_derivative::{Combination, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PlaneFriction, VaryingNormalLoad};
-use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness, under_varying_load};
+use crate::contact::laws::friction_2d::{ScaledFriction2d, check_normal_stiffness, under_varying_load};
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_plane};
 use crate::contact::piece::{CoupledPiece, Piece};
@@ -32,36 +32,60 @@ use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Friction in a plane of the caller.
-#[derive(Clone, Copy, Debug)]
-pub struct Friction3dContact {
-    constants: Constants,
-    load: f64,
-    slip_limit: f64,
+/// Friction in a plane in the caller's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Friction3d {
+    /// Tangential stiffness of both directions, force per length, at least 0.
+    pub kt: f64,
+    /// Normal stiffness, force per length, above 0; 0 without a degree of freedom along n.
+    pub kn: f64,
+    /// Friction coefficient, at least 0.
+    pub mu: f64,
+    /// Normal load at rest where the gap is 0, force, at least 0.
+    pub preload: f64,
+    /// Closing at which a contact without preload begins to press, of any sign; 0 without a degree of freedom along n.
+    pub gap: f64,
+    /// Place of the slider before any motion along t1 and t2.
+    pub slider: [f64; 2],
 }
 
-impl Friction3dContact {
-    pub(super) fn new(constants: &Constants) -> Self {
-        Self {
-            constants: *constants,
-            load: constants.load(),
-            slip_limit: constants.slip_limit(),
-        }
+named_constants!(
+    Friction3d, 4, Kt => kt, Kn => kn, Mu => mu, Preload => preload, Gap => gap, Slider(0) => slider[0], Slider(1) => slider[1]
+);
+
+impl Friction3d {
+    /// The law of a contact that can move along n or not.
+    pub(super) fn on(&self, has_normal: bool) -> PlaneContact {
+        PlaneContact { law: *self, has_normal }
     }
 }
 
-impl ContactLaw for Friction3dContact {
+/// Friction in a plane of a contact whose load varies, if it can move along n, or is constant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlaneContact {
+    law: Friction3d,
+    has_normal: bool,
+}
+
+impl PlaneContact {
+    /// n₀
+    fn load(&self) -> f64 {
+        load(self.law.kn, self.law.preload, self.law.gap)
+    }
+
+    fn slip_limit(&self) -> f64 {
+        slip_limit(self.law.mu, self.law.preload)
+    }
+}
+
+impl ContactLaw for PlaneContact {
     fn name(&self) -> &'static str {
         "friction contact"
     }
 
-    fn constants(&self) -> &'static [&'static str] {
-        &["kt", "kn", "mu", "preload", "gap"]
-    }
-
     fn check(&self) -> Result<()> {
-        let c = &self.constants;
-        if c.has_normal {
+        let c = &self.law;
+        if self.has_normal {
             return check_normal_stiffness(c.kn, c.kt, c.preload);
         }
         if c.kn != 0.0 || c.gap != 0.0 {
@@ -76,21 +100,21 @@ impl ContactLaw for Friction3dContact {
     }
 
     fn places(&self) -> &'static [usize] {
-        if self.constants.has_normal { &[0, 1, 2] } else { &[0, 1] }
+        if self.has_normal { &[0, 1, 2] } else { &[0, 1] }
     }
 
     fn check_stiffness(&self) -> Result<()> {
-        let c = &self.constants;
-        if c.has_normal {
-            needs_stiffness("kn", c.kn)
+        let c = &self.law;
+        if self.has_normal {
+            needs_stiffness(Constant::Kn, c.kn)
         } else {
-            needs_stiffness("kt", c.kt)
+            needs_stiffness(Constant::Kt, c.kt)
         }
     }
 
     fn role(&self) -> Role {
-        let c = &self.constants;
-        if c.kn == 0.0 && (c.kt == 0.0 || self.slip_limit == 0.0) {
+        let c = &self.law;
+        if c.kn == 0.0 && (c.kt == 0.0 || self.slip_limit() == 0.0) {
             Role::Inert
         } else {
             Role::Active
@@ -98,7 +122,7 @@ impl ContactLaw for Friction3dContact {
     }
 
     fn stiffness_at_small_motion(&self, k: usize, l: usize) -> f64 {
-        if (self.constants.mu == 0.0 && k < 2) || k != l || self.load <= 0.0 {
+        if (self.law.mu == 0.0 && k < 2) || k != l || self.load() <= 0.0 {
             0.0
         } else {
             self.stiffness(k)
@@ -106,70 +130,58 @@ impl ContactLaw for Friction3dContact {
     }
 
     fn stiffness(&self, k: usize) -> f64 {
-        let c = &self.constants;
-        if c.has_normal && k == 2 { c.kn } else { c.kt }
+        let c = &self.law;
+        if self.has_normal && k == 2 { c.kn } else { c.kt }
     }
 
     fn is_spring(&self) -> bool {
         false
     }
 
-    fn may_stick(&self) -> bool {
-        true
-    }
-
-    fn sliders(&self) -> usize {
-        2
-    }
-
     fn largest_force(&self) -> f64 {
-        if self.constants.kn == 0.0 {
-            self.slip_limit
+        if self.law.kn == 0.0 {
+            self.slip_limit()
         } else {
             f64::INFINITY
         }
     }
 
-    fn has_preload(&self) -> bool {
-        true
-    }
-
     fn is_preloaded(&self) -> bool {
-        let is_pressed = self.constants.kn > 0.0 && self.load >= 0.0;
-        self.role() == Role::Active && (is_pressed || self.constants.slider.iter().any(|w| *w != 0.0))
+        let is_pressed = self.law.kn > 0.0 && self.load() >= 0.0;
+        self.role() == Role::Active && (is_pressed || self.law.slider.iter().any(|w| *w != 0.0))
     }
 
     fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
-        let c = &self.constants;
-        if c.has_normal {
-            return Some(under_varying_load(constant, (c.kt, c.kn, c.mu, c.gap)));
+        let c = &self.law;
+        if self.has_normal {
+            return under_varying_load(constant, c);
         }
         match constant {
             Constant::Kt => Some(ForceDerivative::by_factor(c.kt, Combination::BY_TANGENTIAL)),
             Constant::Mu => Some(ForceDerivative::by_factor(c.mu, Combination::BY_LIMIT)),
             Constant::Preload => Some(ForceDerivative::by_factor(c.preload, Combination::BY_LIMIT)),
             Constant::Slider(k) => Some(ForceDerivative::tangential(Combination::of_slider(k))),
-            Constant::Kn | Constant::Gap => None,
+            _ => None,
         }
     }
 
     fn normal_load(&self, y: f64) -> f64 {
-        let c = &self.constants;
-        if c.has_normal {
-            (self.load - c.kn * y).max(0.0)
+        let c = &self.law;
+        if self.has_normal {
+            (self.load() - c.kn * y).max(0.0)
         } else {
             c.preload
         }
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
-        let c = &self.constants;
-        Ok(Arc::new(Friction3d {
+        let c = &self.law;
+        Ok(Arc::new(ScaledFriction3d {
             kt: c.kt,
             kn: c.kn,
             mu: c.mu,
-            load: self.load / length,
-            has_normal: c.has_normal,
+            load: self.load() / length,
+            has_normal: self.has_normal,
             slider: c.slider.map(|w| w / length),
         }))
     }
@@ -182,9 +194,9 @@ impl ContactLaw for Friction3dContact {
     }
 }
 
-/// Constants of friction in a plane.
+/// Friction in a plane in the units of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction3d {
+pub struct ScaledFriction3d {
     /// kt, tangential stiffness of both directions, ≥ 0.
     pub kt: f64,
     /// kn, normal stiffness, ≥ 0; without normal motion it has no effect.
@@ -199,7 +211,7 @@ pub struct Friction3d {
     pub slider: [f64; 2],
 }
 
-impl Law for Friction3d {
+impl Law for ScaledFriction3d {
     fn directions(&self) -> usize {
         if self.has_normal { 3 } else { 2 }
     }
@@ -242,7 +254,7 @@ impl Law for Friction3d {
     }
 }
 
-impl PlaneFriction for Friction3d {
+impl PlaneFriction for ScaledFriction3d {
     fn path(&self, motion: &[f64], normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
         path.load((self.kt, self.slider), self.limit(), motion);
         if self.kt == 0.0 || self.mu == 0.0 {
@@ -271,7 +283,7 @@ impl PlaneFriction for Friction3d {
 }
 
 /// The normal force alone: friction in one direction without tangential stiffness.
-impl VaryingNormalLoad for Friction3d {
+impl VaryingNormalLoad for ScaledFriction3d {
     fn coupled_pieces(
         &self,
         set: &HarmonicSet,
@@ -281,7 +293,7 @@ impl VaryingNormalLoad for Friction3d {
         tangential: &mut Vec<CoupledPiece>,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let law = Friction2d {
+        let law = ScaledFriction2d {
             kt: 0.0,
             kn: self.kn,
             mu: self.mu,
