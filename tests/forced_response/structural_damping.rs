@@ -233,7 +233,7 @@ fn modal_damping_damps_each_mode_by_its_ratio_and_no_other_motion() {
     let n = 6;
     let (m, k) = chain(n);
     let ratios = [0.01, 0.0, 0.03, 0.002];
-    let mut model = dense(&m.as_slice(), &k.as_slice()).build();
+    let mut model = dense(m.as_slice(), k.as_slice()).build();
     model.set_modal_damping(&ratios).unwrap();
     let force = DVector::from_fn(n, |i, _| Complex64::new(1.0 - 0.3 * i as f64, 0.2 * i as f64));
     for (dof, f) in force.iter().enumerate() {

@@ -41,7 +41,7 @@ fn a_loss_factor_on_a_linear_structure_is_half_of_it_as_damping_ratio() {
     let (m, k, kt) = (1.5, 40.0, 25.0);
     let model = oscillator(m, k)
         .loss_factor(ETA)
-        .contact(&Contact::jenkins(0, None, kt, 1.0, 1e3))
+        .contact(Contact::jenkins(0, None, kt, 1.0, 1e3))
         .build();
     let branch = follow(
         &model,
@@ -71,7 +71,7 @@ fn a_loss_factor_beside_a_jenkins_contact_has_the_closed_form_of_one_harmonic() 
     let (m, k, kt, slip) = (1.5_f64, 40.0, 25.0, 0.1);
     let model = oscillator(m, k)
         .loss_factor(ETA)
-        .contact(&Contact::jenkins(0, None, kt, 1.0, kt * slip))
+        .contact(Contact::jenkins(0, None, kt, 1.0, kt * slip))
         .build();
     let amplitudes = [1.01, 1.3, 2.0, 7.0, 100.0];
     let at: Vec<f64> = amplitudes.iter().map(|a| (a * slip * m.sqrt()).log10()).collect();

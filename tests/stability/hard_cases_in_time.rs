@@ -263,9 +263,9 @@ fn uncoupled_masses_have_the_multipliers_of_one_mass() {
     let reference = at("HC27", &one_mass(0.02, &slider(0), 0.2), 1.25, 31).radius;
     let repeated = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0, 0.0, 0.0, 1.0 + 1e-10])
         .damping(&[0.02, 0.0, 0.0, 0.02])
-        .contact(&slider(0))
+        .contact(slider(0))
         .force(0, 1, 0.2)
-        .contact(&slider(1))
+        .contact(slider(1))
         .force(1, 1, 0.2)
         .build();
     let found = at("HC27", &repeated, 1.25, 31);
